@@ -1,8 +1,9 @@
-//! Compares searches for candidate pairs: Slump's own search (a grid or a tree, depending on the size ratio of the
-//! discs), the hashed cell grid alone, and parry's bounding volume hierarchy traversed against itself. The hierarchy is
-//! rebuilt every time, or kept and refitted to the moved grains, with or without its own upkeep. The bench first checks
-//! that all searches give the same sorted list. It then times the update of the structure and the listing of the pairs,
-//! on one thread.
+//! Benchmark: compares searches for candidate pairs, that is pairs of discs that may touch soon. The searches are
+//! Slump's own search (a grid or a tree, depending on the size ratio of the discs), the hashed cell grid alone, and
+//! parry's bounding volume hierarchy traversed against itself. The hierarchy is rebuilt every time, or kept and
+//! refitted to the moved grains, with or without parry's incremental optimisation. The benchmark first checks that all
+//! searches give the same sorted list. It then times the update of the structure and the listing of the pairs, on one
+//! thread.
 
 mod common;
 
@@ -18,13 +19,13 @@ use rand_pcg::Pcg64;
 use slump::contact::{Candidates, Grid, Reach};
 use slump::world::{Grain, Grains, Gravity, World};
 
-/// Radii of `count` discs, largest first.
+/// Returns the radii of `count` discs, largest first, for a kind of size distribution.
 fn radii(kind: &str, count: usize, random: &mut Pcg64) -> Vec<f64> {
     let mut radii: Vec<f64> = (0..count)
         .map(|index| match kind {
             "0.8-1.2 d" => random.random_range(0.4..0.6),
             "1:20 log-uniform" => 0.05 * 20f64.powf(random.random()),
-            // One large disc for 200 small ones: about two thirds of the area.
+            // One large disc for 200 small discs: the large discs fill about two thirds of the area of all discs.
             _ => {
                 if index % 200 == 0 {
                     1.0
@@ -38,7 +39,7 @@ fn radii(kind: &str, count: usize, random: &mut Pcg64) -> Vec<f64> {
     radii
 }
 
-/// Discs without overlap in a square that they fill by more than half, in random order.
+/// Returns a world of discs without overlap, in random order. The discs fill at least half of a square.
 fn packed(kind: &str, count: usize) -> World {
     let mut random = Pcg64::seed_from_u64(count as u64);
     let radii = radii(kind, count, &mut random);
@@ -83,7 +84,7 @@ fn packed(kind: &str, count: usize) -> World {
     }
 }
 
-/// Each grain's box, grown by half the skin.
+/// Returns the bounding box of each grain, enlarged by half the skin (m).
 fn boxes(world: &World, skin: f64) -> impl Iterator<Item = Aabb> {
     let grains = world.grains.positions.iter().zip(&world.grains.radii);
     grains.map(move |(&place, &radius)| {
@@ -97,7 +98,7 @@ fn near(world: &World, i: u32, j: u32, skin: f64) -> bool {
     grains.positions[i].distance(grains.positions[j]) < grains.radii[i] + grains.radii[j] + skin
 }
 
-/// Walks the tree against itself.
+/// Fills `pairs` with the sorted candidate pairs that are found by traversing the tree against itself.
 fn walk(
     tree: &Bvh,
     workspace: &mut BvhWorkspace,
@@ -125,7 +126,8 @@ fn refit(tree: &mut Bvh, world: &World, skin: f64) {
     tree.refit_without_opt();
 }
 
-/// A state in which single grains have moved by more than half the skin, so that the grid's list must be rebuilt.
+/// Returns a state in which single grains have moved by more than half the skin (m), so that the grid's list must be
+/// rebuilt.
 fn moved(world: &World, skin: f64) -> World {
     let mut moved = world.clone();
     let mut random = Pcg64::seed_from_u64(1);
@@ -136,8 +138,8 @@ fn moved(world: &World, skin: f64) -> World {
     moved
 }
 
-/// Checks that all searches give the same list on two states, the second of which is the tree's state. Returns the
-/// list.
+/// Checks that all searches give the same list on two states, and returns the list of the second state. `tree` was
+/// built for the second state.
 fn checked_pairs(
     states: [&World; 2],
     skin: f64,
@@ -158,7 +160,7 @@ fn checked_pairs(
     pairs
 }
 
-/// Times all searches on `count` discs and returns a summary line.
+/// Times all searches on `count` discs, and returns one line that summarises the times.
 fn compare(criterion: &mut Criterion, kind: &str, count: usize) -> String {
     let world = packed(kind, count);
     let skin = 0.2 * world.mean_diameter;

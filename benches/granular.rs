@@ -1,4 +1,4 @@
-//! Cost of computing all granular measures of one moment, for 10,000 discs on a floor.
+//! Benchmark: time to compute all granular measures of one moment, for 10,000 discs on a floor.
 
 mod common;
 

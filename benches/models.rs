@@ -1,4 +1,4 @@
-//! Time that a scene saves by computing only the physics that it needs.
+//! Benchmark: time that a scene saves because only the physics that it needs is computed.
 
 mod common;
 
@@ -12,8 +12,8 @@ use slump::world::{Parameters, Physics};
 
 const SMOOTH: Physics = Physics { axes: 2, friction: false, rotation: false, cohesion: true };
 
-/// The cradle from just before the shock on, with the given physics. The collision is head-on, so friction and spin
-/// stay 0, and every model does the same sweeps.
+/// Returns the scene `cradle` at a moment just before its shock, with the given physics. The collision is head-on, so
+/// friction and spin stay 0, and every model takes the same sweeps.
 fn cradle_with(physics: Physics) -> Simulation {
     let line = cradle();
     let parameters = Parameters { friction: 0.5, ..line.parameters };
@@ -25,7 +25,7 @@ fn cradle_with(physics: Physics) -> Simulation {
     simulation
 }
 
-/// 138 discs at rest, stepped with a fixed number of sweeps.
+/// Returns 138 discs at rest with the given physics. Each step takes 50 sweeps.
 fn pile_with(physics: Physics) -> Simulation {
     let settled = common::settled(138);
     let world = settled.world().clone();

@@ -1,5 +1,5 @@
-//! Time of whole steps, from detection to the new state, with a fixed number of sweeps: sequential (`nsgs`) and by
-//! tiles (`nsgs-parallel`), on one thread and two, with both kinds of stopping test.
+//! Benchmark: time of whole steps, from detection to the new state, with a fixed number of sweeps. The solvers are
+//! `nsgs` (sequential) and `nsgs-parallel` (by tiles), on one thread and on two, with two stop criteria.
 
 mod common;
 
@@ -9,10 +9,11 @@ use common::timing::{criterion, least_secs};
 use rayon::ThreadPoolBuilder;
 use slump::solver::{Method, SolverSettings, StopTest};
 
-/// Sweeps of every timed step.
+/// Number of sweeps of every timed step.
 const SWEEPS: u32 = 40;
 
-/// Numbers of discs. Other numbers can be given: `SLUMP_DISCS=100000,1000000 cargo bench --bench steps`.
+/// Numbers of discs, unless the environment variable gives other numbers: `SLUMP_DISCS=100000,1000000 cargo bench
+/// --bench steps`.
 const DISCS: [usize; 3] = [2_000, 10_000, 50_000];
 
 fn main() {
@@ -22,7 +23,7 @@ fn main() {
         Some(text) => text.split(',').map(|count| count.parse().expect("a number")).collect(),
         None => DISCS.to_vec(),
     };
-    // Inside a pool, a step counts as one of several simulations and stays on its thread.
+    // A step inside a thread pool counts as one of several simulations, so it stays on its thread.
     let alone = ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     let mut criterion = criterion();
     let mut summary = Vec::new();

@@ -1,5 +1,5 @@
-//! Cost of one contact update, cost of a step apart from its sweeps, and cost per contact of a whole solve,
-//! sequentially and by colours.
+//! Benchmark: time of one contact update, time of a step apart from its sweeps, and time per contact of a whole solve,
+//! sequentially and by colours (groups of contacts that share no grain).
 
 mod common;
 
@@ -13,11 +13,12 @@ use slump::solver::{
     Memory, Method, Ordering, SolverSettings, SpinningPlane, StopTest, solve, sweep,
 };
 
-/// Sweeps of every timed step, so that the work is fixed.
+/// Number of sweeps of every timed step, so that the work is always the same.
 const SWEEPS: u32 = 50;
 
-/// Time of a solve of the simulation's next problem, including set-up, ns per contact and sweep: in the default order,
-/// by colours one after the other, by colours in parallel, and in parallel on two threads.
+/// Times a solve of the simulation's next contact problem, including set-up, in ns per contact and sweep, and returns
+/// one line that summarises the times. The variants are: contacts in the default order, by colours one after the other,
+/// by colours in parallel, and by colours in parallel on two threads.
 fn by_colours(criterion: &mut Criterion, simulation: &Simulation, count: usize) -> String {
     let one_by_one = SolverSettings {
         method: Method::Nsgs,

@@ -1,6 +1,6 @@
-//! Cost of the window: frames per second while the solver runs at full speed, steps per second with the window open and
-//! without it, and the latency of a slider. The display itself is not included: the real panels are drawn into memory
-//! by the driver that a window would use.
+//! Benchmark: cost of the window. It measures frames per second while the solver runs at full speed, steps per second
+//! with and without the window, and the latency of a slider. The display itself is not included: the real panels are
+//! drawn into memory by the driver that a window would use.
 //!
 //! ```text
 //! cargo bench --bench window
@@ -18,20 +18,20 @@ use slump::live::{Command, Live, LiveFrame, LiveOptions, LiveStart, Pace};
 use slump::sim::{Simulation, Tally};
 use slump::solver::{Method, SolverSettings, StopTest};
 
-/// Pixels of the window.
+/// Width and height of the window, pixels.
 const SIZE: [u32; 2] = [1280, 800];
-/// Time during which frames are counted.
+/// Time during which frames are counted, s.
 const COUNTED: Duration = Duration::from_secs(4);
-/// Timed steps of the pile, during its collapse.
+/// Number of timed steps of the pile, during its collapse.
 const STEPS: u64 = 1500;
-/// Number of repeats; the fastest counts.
+/// Number of repeats; the fastest repeat counts.
 const REPEATS: usize = 3;
-/// Steps of the pile that is timed while other piles are computed, at 1e-3 s, and the number of repeats.
+/// Number of steps (Δt = 1e-3 s) of the pile that is timed while other piles are computed, and number of repeats.
 const COLLAPSE: u64 = 900;
 const TURNS: usize = 10;
-/// Number of timed frames; the fastest counts.
+/// Number of timed layouts of the panels; the fastest layout counts.
 const FRAMES: usize = 100;
-/// Changes of the time step whose latency is measured.
+/// Number of changes of the time step, or of pauses, whose latency is measured.
 const CHANGES: usize = 40;
 
 /// A window without a display.
@@ -62,7 +62,7 @@ impl Window {
         canvas.draw(context, SIZE, 1.0, false, |root| ui(root, state)).expect("a picture");
     }
 
-    /// Draws until every command has been carried out.
+    /// Draws frames until every command has been carried out.
     fn wait(&mut self) {
         loop {
             self.draw();
@@ -73,7 +73,8 @@ impl Window {
         }
     }
 
-    /// Time to lay out the panels and make their triangles, without drawing pixels, ms: the least of all repeats.
+    /// Returns the time to lay out the panels and make their triangles, without drawing pixels, ms: the shortest time
+    /// of all repeats.
     fn panels(&mut self) -> f64 {
         let Self { state, context, .. } = self;
         let size = egui::vec2(SIZE[0] as f32, SIZE[1] as f32);
@@ -88,7 +89,8 @@ impl Window {
         millis.fold(f64::INFINITY, f64::min)
     }
 
-    /// Time from the command to pause until the run stands still, ms: median and worst. Nothing is drawn meanwhile.
+    /// Returns the median and the longest time from the command to pause until the run stands still, ms. Nothing is
+    /// drawn meanwhile.
     fn pauses(&mut self) -> [f64; 2] {
         let mut millis: Vec<f64> = (0..CHANGES)
             .map(|_| {
@@ -107,7 +109,7 @@ impl Window {
         [millis[CHANGES / 2], millis[CHANGES - 1]]
     }
 
-    /// The newest step that the solver has published.
+    /// Returns the newest step that the solver has published.
     fn newest_step(&mut self) -> u64 {
         let frame = self.state.run.live.latest();
         frame.worlds.first().map_or(0, |world| world.snapshot.observables.step)
@@ -146,7 +148,7 @@ fn pile() -> Simulation {
 }
 
 fn main() {
-    // With this argument, criterion asks for the tests of a bench.
+    // With this argument criterion asks for the tests of a benchmark, and this benchmark has none.
     if std::env::args().any(|argument| argument == "--test") {
         return;
     }
@@ -162,8 +164,8 @@ fn main() {
     beside_other_piles();
 }
 
-/// Measures by how much other piles on idle cores slow down the world in front: the pile's collapse, alternately with
-/// and without other piles. Nothing is drawn meanwhile.
+/// Measures how much other piles on idle cores slow down the pile in front: the collapse of this pile is timed
+/// alternately with and without other piles. Nothing is drawn meanwhile.
 fn beside_other_piles() {
     let cache = tempfile::tempdir().expect("a folder");
     let mut least = [f64::INFINITY; 2];
@@ -219,7 +221,8 @@ fn frames() {
     }
 }
 
-/// Settling discs, solved as the window solves large scenes by default: forty sweeps on all cores.
+/// Returns settling discs with the solver settings that the window uses by default for large scenes: forty sweeps on
+/// all cores.
 fn large(count: usize) -> Simulation {
     let mut simulation = common::settled(count);
     let settings = SolverSettings {
@@ -266,12 +269,12 @@ fn steps() {
         window.state.run.live.send(Command::Play);
         loop {
             let news = window.state.run.live.latest().number != shown;
-            // The end is detected in the newest frame, drawn or not: a delay of the picture is not a delay of the
-            // solver.
+            // The end is detected in the newest frame, whether it is drawn or not, because a delay of the picture is
+            // not a delay of the solver.
             if window.newest_step() >= STEPS {
                 break;
             }
-            // Like the event loop of a window: draws a frame when there is something new, but not too often.
+            // Like the event loop of a window, draws a frame when there is a new frame, but not too often.
             if news && drawn.elapsed() >= SOFTWARE_FRAME_INTERVAL {
                 drawn = Instant::now();
                 window.draw();

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs the Python package as a user does, in its own environment, and runs its tests: python/try.sh [PYTEST ARGUMENTS].
-# It shares the program's target folder, and so most compiled crates. The tests compare it with the program, which must be
-# built first: cargo build --release --no-default-features. Another Python: PYTHON=python3.13 python/try.sh
+# The package shares the target folder of the program, and so most compiled crates. The tests compare the package with
+# the program, which must be built first: cargo build --release --no-default-features. For another Python version:
+# PYTHON=python3.13 python/try.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}

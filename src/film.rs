@@ -1,4 +1,4 @@
-//! Picture sequences: GIF animations, and videos that ffmpeg encodes.
+//! Animated pictures of a run: GIF animations, and MP4 videos that ffmpeg encodes.
 
 use std::fs::File;
 use std::io::ErrorKind::NotFound;
@@ -16,10 +16,10 @@ use crate::output::{DraftFile, PendingFile, Texts, folder_of};
 
 /// Lowest and highest frame rate of a video, Hz.
 pub(crate) const VIDEO_RATES_HZ: [f64; 2] = [1.0, 240.0];
-/// Shortest and longest side of a video, px. Encoders refuse longer ones.
+/// Shortest and longest side of a video, pixels. Encoders refuse longer sides.
 pub(crate) const VIDEO_SIDES: [u32; 2] = [16, 16_384];
-/// ffmpeg encoders of videos that browsers play, with options for good pictures. The first one that ffmpeg has is
-/// used.
+/// Encoders of ffmpeg for videos that browsers can play, with options for good quality. The first encoder that the
+/// installed ffmpeg contains is used.
 const ENCODERS: [(&str, &[&str]); 4] = [
     ("libx264", &["-crf", "18"]),
     ("libopenh264", &["-b:v", "8M"]),
@@ -27,30 +27,33 @@ const ENCODERS: [(&str, &[&str]); 4] = [
     ("libvpx-vp9", &["-crf", "24", "-b:v", "0", "-cpu-used", "4"]),
 ];
 
-/// Hundredths of a second per second: the unit of a picture's duration in a GIF.
+/// Hundredths of a second per second. GIF files give the duration of a picture in hundredths of a second.
 const CENTISECS: f64 = 100.0;
-/// Shortest duration of a picture, in hundredths of a second. Viewers show shorter ones for a tenth of a second.
+/// Shortest duration of a picture in a GIF, hundredths of a second. Viewers show pictures of shorter duration for a
+/// tenth of a second.
 const LEAST_CENTISECS: f64 = 2.0;
-/// Number of pixels from which the GIF encoder chooses the colours: it looks at every n-th pixel, and at all pixels
-/// of a small picture, in which the legend's colours have few pixels.
+/// Number of pixels from which the GIF encoder chooses the colours of a picture: it samples every n-th pixel. It
+/// samples all pixels of a small picture, because the legend's colours have few pixels.
 const LOOKED_AT: u32 = 100_000;
-/// Largest n: the encoder looks at one in ten pixels at least.
+/// Largest n in this sampling: the encoder samples at least one in ten pixels.
 const MOST_PASSED: u32 = 10;
 
-/// A GIF. The file gets its name when it is finished.
+/// A GIF animation that is being written. The file gets its name when it is finished.
 pub(crate) struct Animation {
     path: PathBuf,
     picture_centisecs: u16,
-    /// Two handles of one file: the encoder keeps the one that it writes to.
+    /// `encoder` and `draft` have handles of the same file, because the encoder owns the handle that it writes to.
     encoder: Option<Encoder<DraftFile>>,
     draft: PendingFile,
     pictures: usize,
-    /// Length of the pictures in the file, bytes; `None` if the file has no length.
+    /// Length of the file after the last complete picture, bytes; `None` if the output is a device or pipe, which has
+    /// no length.
     whole: Option<u64>,
 }
 
 impl Animation {
-    /// The possible frame rate nearest to `rate_hz`: a GIF counts durations in hundredths of a second.
+    /// Returns the possible frame rate nearest to `rate_hz`, Hz. Durations in a GIF are multiples of a hundredth of a
+    /// second.
     #[cfg(feature = "panels")]
     pub(crate) fn nearest_rate_hz(rate_hz: f64) -> f64 {
         CENTISECS / f64::from(Self::centisecs(rate_hz))
@@ -60,14 +63,14 @@ impl Animation {
         (CENTISECS / rate_hz).round().max(LEAST_CENTISECS) as u16
     }
 
-    /// Starts an animation with this many pictures per second, or with [`Self::nearest_rate_hz`].
+    /// Starts an animation with `rate_hz` pictures per second, rounded as in [`Self::nearest_rate_hz`].
     pub(crate) fn start(path: &Path, rate_hz: f64) -> Result<Self> {
         let draft = PendingFile::start(path)?;
         let (path, picture_centisecs) = (path.to_owned(), Self::centisecs(rate_hz));
         Ok(Self { path, picture_centisecs, encoder: None, draft, pictures: 0, whole: None })
     }
 
-    /// Adds a picture. Before the first one, the texts are written as a comment.
+    /// Adds a picture. Before the first picture, `texts` are written as a comment in the file.
     pub(crate) fn add(&mut self, image: RgbaImage, texts: &Texts) -> Result<()> {
         let added = self.encode(image, texts);
         let file = self.draft.file();
@@ -75,7 +78,7 @@ impl Animation {
             self.pictures += 1;
             self.whole = file.stream_position().ok();
         } else if let Some(whole) = self.whole {
-            // The file may contain a part of the picture.
+            // After an error the file may contain a part of the picture, which is removed.
             let _ = file.set_len(whole).and_then(|()| file.seek(SeekFrom::Start(whole)));
         }
         added.map_err(|error| Error::file(&self.path, error))
@@ -94,7 +97,7 @@ impl Animation {
                 let mut encoder = Encoder::new(self.draft.file().try_clone()?, width, height, &[])?;
                 encoder.set_repeat(Repeat::Infinite)?;
                 let lines = texts.lines();
-                // A block of a comment has at most 255 bytes.
+                // A block of a comment in a GIF has at most 255 bytes.
                 let blocks: Vec<&[u8]> = lines.as_bytes().chunks(255).collect();
                 encoder.write_raw_extension(AnyExtension(Extension::Comment as u8), &blocks)?;
                 none.insert(encoder)
@@ -122,7 +125,7 @@ fn too_large() -> EncodingError {
         .into()
 }
 
-/// Refuses a name that does not end like the file's format. Devices and pipes may have any name.
+/// Refuses a file name that does not end with the ending of the file's format. Devices and pipes may have any name.
 pub(crate) fn check_ending(option: &str, path: &Path, ending: &str, other: &str) -> Result<()> {
     let is_special = path.metadata().is_ok_and(|there| !there.is_file() && !there.is_dir());
     let has_ending = path.extension().is_some_and(|it| it.eq_ignore_ascii_case(ending));
@@ -134,23 +137,23 @@ pub(crate) fn check_ending(option: &str, path: &Path, ending: &str, other: &str)
     Err(Error::value(option, path.display(), allowed))
 }
 
-/// A video in MP4. The file gets its name when it is finished.
+/// An MP4 video that is being written. The file gets its name when it is finished.
 pub(crate) struct Video {
     path: PathBuf,
     rate_hz: f64,
-    /// Started with the first picture, which determines the size.
+    /// The running encoder. It starts with the first picture, whose size becomes the size of the video.
     ffmpeg: Option<Ffmpeg>,
 }
 
 impl Video {
-    /// Starts a video with this many pictures per second.
+    /// Starts a video with `rate_hz` pictures per second.
     pub(crate) fn start(path: &Path, rate_hz: f64) -> Result<Self> {
         check_ffmpeg(path.display())?;
         Ok(Self { path: path.to_owned(), rate_hz, ffmpeg: None })
     }
 
-    /// Adds a picture. All pictures have the size of the first, with even sides. The texts of the first picture
-    /// become the video's comment.
+    /// Adds a picture. All pictures must have the size of the first picture, and both sides must be even. The texts of
+    /// the first picture become the video's comment.
     pub(crate) fn add(&mut self, image: &RgbaImage, texts: &Texts) -> Result<()> {
         let added = match &mut self.ffmpeg {
             Some(ffmpeg) => ffmpeg.add(image),
@@ -171,10 +174,11 @@ impl Video {
     }
 }
 
-/// A running ffmpeg. Dropping it ends ffmpeg and deletes the encoded file.
+/// A running ffmpeg process. Dropping this value ends the process and deletes the temporary encoded file.
 struct Ffmpeg {
     process: Child,
-    /// The encoded file. ffmpeg goes back in it to put the table of pictures before them, so a pipe is not possible.
+    /// Temporary file that ffmpeg writes. At the end ffmpeg inserts the index of pictures at the beginning of the file,
+    /// so a pipe cannot be used.
     encoded: NamedTempFile,
     messages: File,
 }
@@ -202,7 +206,8 @@ impl Ffmpeg {
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .stderr(messages.try_clone()?);
-        // Ctrl-C ends this program's run; the program then finishes the video.
+        // ffmpeg gets a process group of its own, so that Ctrl-C ends only the run of this program. The program then
+        // finishes the video.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         #[cfg(windows)]
@@ -217,7 +222,7 @@ impl Ffmpeg {
         let written = self.process.stdin.as_mut().map(|stdin| stdin.write_all(image.as_raw()));
         match written {
             Some(Ok(())) => Ok(()),
-            // ffmpeg closed its input; its message gives the reason.
+            // ffmpeg has closed its input. `finish` returns the error message of ffmpeg.
             Some(Err(error)) => self.finish().and(Err(error)),
             None => Err(std::io::Error::other("ffmpeg has ended")),
         }
@@ -241,13 +246,13 @@ impl Ffmpeg {
 
 impl Drop for Ffmpeg {
     fn drop(&mut self) {
-        // Both calls do nothing if it has ended.
+        // Both calls do nothing if the process has already ended.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
 }
 
-/// The encoder to use with its options, or an error with what is missing.
+/// Returns the name and options of the first available encoder, or an error message that says which program is missing.
 fn encoder() -> std::result::Result<(&'static str, &'static [&'static str]), &'static str> {
     static FOUND: OnceLock<std::result::Result<usize, &str>> = OnceLock::new();
     let find = || {
@@ -269,7 +274,7 @@ fn encoder() -> std::result::Result<(&'static str, &'static [&'static str]), &'s
     FOUND.get_or_init(find).map(|index| ENCODERS[index])
 }
 
-/// Checks that ffmpeg can encode videos; `given` is the option that needs it.
+/// Checks that ffmpeg can encode videos. `given` is the value of the option that needs ffmpeg, for the error message.
 pub(crate) fn check_ffmpeg(given: impl std::fmt::Display) -> Result<()> {
     encoder().map(drop).map_err(|missing| {
         Error::value("video", given, format!("{missing}; a GIF and frames need nothing more"))
@@ -283,7 +288,7 @@ mod tests {
 
     use super::*;
 
-    /// A legend has few of a picture's pixels but most of its colours.
+    /// A legend has only few pixels of a picture, but most of the picture's colours.
     #[test]
     fn a_legend_of_colours_keeps_them_in_a_picture_of_any_size() {
         let folder = tempfile::tempdir().expect("a folder");

@@ -13,10 +13,10 @@
 //! ```
 //!
 //! Programs start from a [`scene`] and step its [`sim::Simulation`]. Your own stepper, contact law or method implements
-//! [`sim::Advance`]. [`next_problem`](sim::Simulation::next_problem) shows a single problem to a
-//! [`sim::ProblemVisitor`], and [`solver::solve`] solves it. The programs in `examples/` show how.
+//! [`sim::Advance`]. [`next_problem`](sim::Simulation::next_problem) passes the contact problem of the next step to a
+//! [`sim::ProblemVisitor`], and [`solver::solve`] solves such a problem. The programs in `examples/` show how.
 //!
-//! Each module uses those before it:
+//! In this list, `a` ← `b` means that the module `b` uses the module `a`:
 //!
 //! * `slump-core`: [`setting`] ← [`world`] ← [`contact`] ← [`solver`] ← [`sim`] ← [`scene`]
 //! * `slump-data`: [`granular`] ← [`data`] ← [`interchange`], [`config`]
@@ -32,7 +32,7 @@
     allow(dead_code, unused_imports, reason = "a page has neither files nor a command line")
 )]
 #![warn(missing_docs, unreachable_pub)]
-// These macros panic if a stream is closed or full; the functions of `output` do not.
+// The macros `println!` and `eprintln!` panic if a stream is closed or full. The functions of `output` do not panic.
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
 pub use slump_core::{contact, error, scene, setting, sim, solver, world};
@@ -45,18 +45,18 @@ use slump_core::number;
 use slump_core::threads;
 use slump_data::output;
 
-/// The version, with the commit if it is known.
+/// Version of the program, with the git commit if the commit is known.
 const VERSION: &str = env!("SLUMP_VERSION");
 
-/// The doc tests of the page on Python and Rust.
+/// The doc tests of `docs/python-and-rust.md`.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/python-and-rust.md")]
 struct BookOnRust;
 
-/// A clock that also exists in a browser.
+/// The wall clock. `std::time::Instant` does not work in a browser, so the browser version uses another type.
 #[cfg(not(target_arch = "wasm32"))]
 use std::time::Instant;
-/// A clock that also exists in a browser.
+/// The wall clock of the browser version.
 #[cfg(target_arch = "wasm32")]
 use web_time::Instant;
 
@@ -65,7 +65,7 @@ mod headless;
 pub mod live;
 pub mod render;
 
-// The program. It is public only for `main.rs`, tests and benches of this package.
+// The modules of the program. They are public only for `main.rs`, and for the tests and benchmarks of this package.
 #[cfg(feature = "panels")]
 #[doc(hidden)]
 pub mod app;

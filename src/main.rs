@@ -1,4 +1,4 @@
-//! The command line: see [`slump::cli`].
+//! The program `slump`: see [`slump::cli`].
 
 use std::process::ExitCode;
 

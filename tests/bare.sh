@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Runs the README's two commands on a minimal machine: tests/bare.sh [FOLDER].
 #
-# Makes a minimal Debian 12 root in FOLDER (target/bare by default), with Rust, a C linker and git from Debian's packages and
-# nothing else: no ffmpeg, no graphics driver, no Python. Clones the last commit into it, runs both commands there and prints
-# how long each took. Needs root, mmdebstrap (apt install mmdebstrap), and about 10 GB.
+# Makes a minimal Debian 12 system in FOLDER (target/bare by default), with Rust, a C linker and git from Debian's
+# packages and nothing else: no ffmpeg, no graphics driver, no Python. Clones the last commit into this system, runs
+# both commands there and prints the time that each takes. Needs root permissions, mmdebstrap (apt install mmdebstrap),
+# and about 10 GB.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 root=$(realpath -m "${1:-target/bare}")
@@ -21,7 +22,7 @@ mkdir -p "$root"
 
 mmdebstrap --quiet --variant=minbase --include=ca-certificates,cargo-web,gcc,git,libc6-dev,rustc-web bookworm "$root"
 touch "$root/bare-root"
-# Name resolution, and the certificates that this machine trusts.
+# Copy the name resolution and the certificates that this machine trusts.
 cp -L /etc/resolv.conf /etc/hosts "$root/etc/"
 rm -rf "$root/etc/ssl/certs"
 cp -rL /etc/ssl/certs "$root/etc/ssl/"
@@ -35,7 +36,7 @@ in_root() {
     ' sh "$root" "cd /slump && $1"
 }
 
-# tell NAME COMMAND: runs it, and prints its last lines and its time.
+# tell NAME COMMAND: runs the command, and prints its results and its time.
 tell() {
     local start=$SECONDS
     in_root "$2" >"$root/$1.log" 2>&1 || { tail -40 "$root/$1.log"; fail "\"$2\" fails: $root/$1.log"; }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Compares builds of the program for several compilers and systems: all must reach the same state and the same table of
-# observables, bit for bit, in five runs.
+# Compares builds of the program by several compilers and for several systems: in five runs, all builds must give
+# bitwise equal final states and tables of observables.
 #
 #   tests/bits.sh PROGRAM PROGRAM …
 #
@@ -18,7 +18,7 @@ for program in "$@"; do
     number=$((number + 1))
     for run in "${!runs[@]}"; do
         folder=$out/$number-$run
-        # Wine expects paths below Z:, but accepts this one. The words must be split.
+        # Wine expects paths below Z:, but accepts this path, too. The shell must split the command into words.
         # shellcheck disable=SC2086
         $program run ${runs[run]} --times 0 --renderer cpu --size 64x64 --frames "$folder" 2>"$out/log" ||
             { cat "$out/log" >&2; echo "tests/bits.sh: $program fails: run ${runs[run]}" >&2; exit 1; }

@@ -1,5 +1,6 @@
-# For scripts that drive the real window: a display with a free number, a folder for their files, and functions that read
-# the state that the window exports. A script sets `program` before it sources this file, and sets `window` itself.
+# Helpers for scripts that control the real window: a display with a free number, a folder for files, and functions that
+# read the state that the window exports. A script sets `program` (path of the program) before it sources this file, and
+# sets `window` (process id of the window) itself.
 
 work=$(mktemp -d)
 state=$work/state.json
@@ -22,7 +23,7 @@ fail() {
     exit 1
 }
 
-# screen WIDTHxHEIGHT: replaces the display by one of this size.
+# screen WIDTHxHEIGHT: replaces the display by a display of this size.
 screen() {
     [ -z "$server" ] || kill "$server" 2>/dev/null || true
     rm -f "$work/display"
@@ -46,5 +47,6 @@ wait_for() {
     fail "waited in vain for $1"
 }
 
-# at CONTROL PART: prints the pixel at this fraction of the width of a control.
+# at CONTROL FRACTION: prints the coordinates of the pixel at this fraction of the width of a control, at half its
+# height.
 at() { value "'%d %d' % (lambda c: (c[0] + $2 * (c[2] - c[0]), (c[1] + c[3]) / 2))(s['controls']['$1'])"; }

@@ -27,7 +27,7 @@ interval = 0.01
 grains = [0, 1, 2]
 """
 ENDINGS = {".png": b"IEND\xaeB`\x82", ".svg": b"</svg>", ".json": b"}\n", ".csv": b"\n", ".md": b"\n"}
-# Figures of one study that stores series, in a few seconds.
+# Figures of one study that stores time series; they take a few seconds.
 FIGURES = ["reproduce", "fig8", "cradle-choices", "--quick"]
 CHART = ["chart", "--quick", "--only", "simulation"]
 random.seed(1)
@@ -35,7 +35,7 @@ counts, losses, finished = collections.Counter(), collections.defaultdict(list),
 
 
 def heed_signals():
-    """Restore default handlers: the program would inherit ignored signals, as under nohup."""
+    """Restore the default signal handlers: the program would inherit ignored signals, for example under nohup."""
     for number in SIGNALS.values():
         if number != signal.SIGKILL:
             signal.signal(number, signal.SIG_DFL)
@@ -46,7 +46,7 @@ def start(*words):
 
 
 def hit(run, name, after, before):
-    """Send a signal at a random time and return the exit code."""
+    """Send a signal to a process at a random time. Return its exit code."""
     time.sleep(random.uniform(after, before))
     run.send_signal(SIGNALS[name])
     try:
@@ -63,8 +63,8 @@ def note(kind, wrong):
 
 
 def half_written(out):
-    """Files with final names that do not end as their format requires. Journals and tables of observables grow during
-    the run and are not checked."""
+    """Return files with final names that do not end as their format requires. Journals and tables of observables grow
+    during the run and are not checked."""
     wrong = []
     for path in glob.glob(os.path.join(glob.escape(out), "**", "*.*"), recursive=True):
         ending = ENDINGS.get(os.path.splitext(path)[1])
@@ -76,7 +76,7 @@ def half_written(out):
 
 
 def check_folder(out, killed):
-    """Faults of a folder of frames."""
+    """Return the faults in a folder of frames."""
     wrong = half_written(out)
     left = [name for name in os.listdir(out) if "tmp" in name] if os.path.isdir(out) else []
     if left and not killed:
@@ -135,7 +135,7 @@ def name_of(line):
 
 
 def kept_in(out):
-    """The finished runs of a folder: the complete lines of each journal, and the bytes of their series."""
+    """Return the finished runs of a folder: the complete lines of each journal, and the bytes of their series."""
     kept = {}
     for path in glob.glob(os.path.join(out, "**", "*.jsonl"), recursive=True):
         # A kill can leave an incomplete last line.
@@ -154,7 +154,7 @@ def number_of(kept):
 
 
 def compare(before, after):
-    """Differences between the finished runs before and after."""
+    """Return the differences between the finished runs before and after an interruption."""
     wrong = []
     for path, (lines, courses) in before.items():
         now, courses_now = after.get(path, ([], {}))
@@ -170,13 +170,13 @@ def compare(before, after):
 
 
 def outcome_of(out):
-    """Results of finished work, without reports, because these contain times."""
+    """Return the results of finished work. Reports are omitted, because they contain times."""
     names = [name for name in sorted(os.listdir(out)) if name.endswith((".csv", ".svg", ".png"))]
     return {name: open(os.path.join(out, name), "rb").read() for name in names}
 
 
 def resumed(folder, name, words, longest, whole):
-    """Interrupt a sweep or a set of figures, then run it to its end."""
+    """Interrupt a sweep or a set of figures, then run the command to its end."""
     out = os.path.join(folder, "out")
     code = hit(start(*words, "--out", out), name, 0.01, longest)
     before, wrong = kept_in(out), half_written(out)
@@ -241,15 +241,15 @@ TABLES = ["--headless", "--scene", "cradle", "--duration", "4", "--data-format",
 
 
 def files_of(out):
-    """Tables and pictures. They depend only on the work, except for the command line in the head of a table."""
+    """Return tables and pictures. They depend only on the work, except for the command line in the head of a table."""
     paths = glob.glob(os.path.join(out, "**", "*.*"), recursive=True)
     read = lambda path: [line for line in open(path, "rb") if not line.startswith(b"# command: ")]
     return {os.path.relpath(path, out): read(path) for path in paths if path.endswith((".csv", ".png"))}
 
 
 def two_programs(folder, works):
-    """Two programs use one folder; the second starts at a random time. A program that ends with success must have all of
-    its results there, unless the other one clears the folder and started after the first had ended."""
+    """Start two programs that use one folder, the second at a random time. If a program ends with success, all its
+    results must be there, unless the other program clears the folder and started after the first had ended."""
     out = os.path.join(folder, "out")
     kinds = random.choices(list(works), k=2)
     clears = [random.random() < 0.5 for _ in kinds]

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Fingerprints of about 8,000 short runs: scenes x steppers x methods x remedies x numbers, one line per run.
+"""Prints fingerprints (hashes) of about 8,000 short runs, one line per run: combinations of scenes, steppers, methods,
+remedies and numbers.
 
 tests/fingerprints.py target/release/slump > table        # all of them
 tests/fingerprints.py target/release/slump 17 > table     # every 17th
 
 Two builds with bitwise equal trajectories print the same table. To check a change that must not alter trajectories,
-make a table before and after it, and compare them with diff.
+make a table before and after the change, and compare both tables with diff.
 """
 import csv, hashlib, itertools, os, subprocess, sys, tempfile
 from concurrent.futures import ThreadPoolExecutor

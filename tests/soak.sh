@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Lets the real window run as fast as it can under Xvfb, and checks that its memory does not grow: the record has a memory
-# limit and is thinned when it is reached. Then random clicks, drags and keys hit the window for the same time: it must
-# stay open, print nothing on stderr and need less than 600 MiB.
+# Runs the real window under Xvfb as fast as possible, and checks that its memory does not grow: the recorded run has a
+# memory limit, and some of its states are removed when it reaches the limit. Then random clicks, drags and keys are
+# sent to the window for the same time: it must stay open, print nothing on stderr and need less than 600 MiB.
 #
-#   tests/soak.sh [SECONDS]        time of each part (default: a minute; 3600 is an hour)
+#   tests/soak.sh [SECONDS]        time of each part (default: 60)
 #
 # Needs the programs that tests/window.sh needs.
 set -euo pipefail
@@ -16,14 +16,14 @@ seconds=${1:-60}
 screen 1280x800
 resident_mib() { awk '/^VmRSS/ { print int($2 / 1024) }' "/proc/$window/status"; }
 
-# The pile slumps, comes to rest and continues: playing does not stop at the end of the scene.
+# The duration is so long that the run does not end after the pile has slumped and come to rest.
 "$program" --reset-ui --bond 20 --dt 2e-3 --max-sweeps 20 --duration 1e6 --export-state "$state" > "$work/log" 2>&1 &
 window=$!
 wait_for "the pile" "s['scene'] == 'pile'"
 xdotool mousemove $(at scene 0.5)
 sleep 1
 xdotool search --name Slump windowfocus
-# At full speed.
+# Six steps of the pace select full speed.
 for _ in 1 2 3 4 5 6; do xdotool key bracketright; done
 xdotool key space
 wait_for "the first steps" "s['playing'] and s['step'] > 10"
@@ -36,7 +36,7 @@ for part in 1 2 3 4 5 6 7 8 9 10; do
     echo "$(value "s['step']") steps, $(resident_mib) MiB"
     [ "$part" -ne 5 ] || halfway=$(resident_mib)
 done
-# Keyframes, stored moments and curves may take 96, 64 and 6 MiB.
+# Memory limits: 96 MiB for keyframes, 64 MiB for stored states, and 6 MiB for curves.
 [ "$(resident_mib)" -le $((halfway + 180)) ] || fail "more than all budgets together since half of the time"
 [ "$seconds" -lt 600 ] || [ "$(resident_mib)" -le $((halfway + halfway / 10)) ] \
     || fail "memory grew from $halfway to $(resident_mib) MiB"
@@ -45,7 +45,7 @@ echo "soak.sh: $(value "s['step']") steps in $seconds s, $halfway MiB halfway an
 kill "$window"
 wait "$window" 2> /dev/null || true
 rm -f "$state"
-# It may save files in the folder in which it is started.
+# The random actions may save files in the folder in which the window is started.
 cd "$work"
 "$program" --reset-ui --export-state "$state" > "$work/log" 2>&1 &
 window=$!
@@ -54,7 +54,7 @@ sleep 1
 xdotool search --name Slump windowfocus
 RANDOM=${SLUMP_MONKEY:-1}
 anywhere() { echo "$((RANDOM % 1280)) $((RANDOM % 800))"; }
-# A random control of the window, or sometimes any position.
+# Prints a random position in a random control of the window, or any position if the state cannot be read.
 somewhere() {
     python3 -c "
 import json, random

@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# Starts the real window under Xvfb, drags the slider of the time step with the mouse, and checks
-# through the state that the window exports that the drag reached the solver. Also: release, resize,
-# a state, a session, data and a video that are saved, a grain that comes and goes by hand, a lost graphics device, closing,
-# a screen of small pixels, and the sentence that a missing display is told with.
+# Starts the real window under Xvfb, drags the slider of the time step with the mouse, and checks in the state that the
+# window exports that the new time step has reached the solver. Also tests releasing the slider, resizing, saving (a
+# state, a session, data and a video), adding and removing a grain, a lost graphics device, closing, a screen of small
+# pixels, and the error message if there is no display.
 #
 #   tests/window.sh [FOLDER]        screenshots go to FOLDER (default target/window)
 #
-# screenshots/window.png is its window-lesson-end.png, screenshots/drag.gif its drag.gif.
+# The pictures screenshots/window.png and screenshots/drag.gif are the files window-lesson-end.png and drag.gif in
+# FOLDER.
 #
-# Needs a release build (cargo build --release), and of Debian: xvfb xdotool imagemagick python3 ffmpeg,
+# Needs a release build (cargo build --release), and Debian's packages xvfb xdotool imagemagick python3 ffmpeg,
 # mesa-vulkan-drivers libvulkan1 (or libegl1 libgl1-mesa-dri), and the X11 client libraries that
 # winit loads: libx11-6 libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0.
 set -euo pipefail
@@ -19,7 +20,7 @@ shots=${1:-target/window}
 mkdir -p "$shots"
 . tests/display.sh
 
-# Without a display, one sentence says what is missing.
+# Without a display, the program prints one sentence that says what is missing.
 if env -u DISPLAY "$program" --reset-ui > /dev/null 2> "$work/log"; then
     fail "a window opened without a display"
 fi
@@ -35,25 +36,25 @@ sleep 1
 xdotool search --name Slump windowfocus
 import -window root "$shots/window-start.png"
 
-# The slider, from its handle to the right end.
+# Drag the slider from its handle to the right end.
 xdotool mousemove $(at Δt 0.66) mousedown 1
 for part in 0.75 0.85 0.95 1.0; do xdotool mousemove $(at Δt $part); sleep 0.05; done
 xdotool mouseup 1
 wait_for "the time step" "5e-3 <= s['parameters']['time_step_secs'] <= 1e-2"
 dragged=$(value "s['parameters']['time_step_secs']")
 
-# Let go, the pile starts by itself, with what was dragged.
+# When the slider is released, the pile starts again with the new time step.
 wait_for "three steps" "s['step'] >= 3 and abs(s['time_secs'] / s['step'] - $dragged) < 1e-9"
 import -window root "$shots/window-released.png"
 
-# Keys.
+# Test keys: pause, and one step.
 xdotool key space
 wait_for "the pause" "not s['playing']"
 step=$(value "s['step']")
 xdotool key Right
 wait_for "one step" "s['step'] == $step + 1"
 
-# What was computed goes to files: the last moment, and all of them.
+# Save the last state, the session, and the data of all states.
 xdotool mousemove $(at save 0.5) click 1
 wait_for "the page Save" "'Save state' in s['controls']"
 sleep 1
@@ -72,7 +73,7 @@ import -window root "$shots/window-data.png"
 "$program" --headless --restart "$saved" --duration "$(python3 -c "print($at_secs + 0.1)")" --save "$work/later.slump" > /dev/null 2> "$work/log" \
     || fail "the state that was saved does not go on"
 
-# The record as a video.
+# Save the recorded run as a video and as an animation.
 xdotool mousemove $(at "Save video" 0.5) click 1
 wait_for "the video" "__import__('glob').glob('$work/out/slump-pile-bond20-dt*.mp4') != []"
 import -window root "$shots/window-video.png"
@@ -83,7 +84,7 @@ head -c 6 "$work"/out/slump-pile-*.gif | grep -q GIF89a || fail "the animation i
 xdotool mousemove $(at save 0.5) click 1
 sleep 1
 
-# With Shift, a click puts a grain beside the pile, however high that stands; another takes it out.
+# With Shift, a click next to the pile adds a grain, at any height of the pile. A second click removes the grain.
 grains=$(value "s['grains']")
 beside=$(value "'%d %d' % (lambda c: (c[0] + 0.9 * (c[2] - c[0]), c[1] + 0.1 * (c[3] - c[1])))(s['controls']['scene'])")
 xdotool mousemove $beside keydown Shift_L
@@ -98,7 +99,7 @@ wait_for "one grain less" "s['grains'] == $grains"
 xdotool key r
 wait_for "the reset" "s['step'] == 0"
 
-# A press and a release without delay are a click.
+# Pressing and releasing the button without delay counts as a click.
 xdotool mousemove $(at release 0.5) mousedown 1 mouseup 1
 wait_for "the release by a quick click" "s['playing']"
 xdotool mousedown 1 mouseup 1
@@ -106,7 +107,7 @@ wait_for "the pause by a quick click" "not s['playing']"
 xdotool key r
 wait_for "the second reset" "s['step'] == 0"
 
-# Another size, and small ones.
+# Resize the window, also to small sizes.
 for size in "1000 700" "640 480" "1280 800"; do
     xdotool search --name Slump windowsize $size
     wait_for "$size pixels" "s['window'] == [${size/ /, }]"
@@ -114,14 +115,14 @@ for size in "1000 700" "640 480" "1280 800"; do
     import -window root "$shots/window-${size/ /x}.png"
 done
 
-# A lost graphics device comes back, and the run goes on.
+# After the graphics device is lost, the window gets a new device and the run continues.
 xdotool key ctrl+shift+g
 sleep 2
 xdotool key Right
 wait_for "a step after the device was lost" "s['step'] == 1 and s['devices'] == 2"
 import -window root "$shots/window-recovered.png"
 
-# Switches other piles on or off, on their page, until the expression is true.
+# switch_other_piles EXPRESSION: presses the switch for other piles on its page, and waits until the expression is true.
 switch_other_piles() {
     xdotool mousemove $(at more 0.5) click 1
     wait_for "the pages" "'Compare' in s['controls']"
@@ -135,7 +136,7 @@ switch_other_piles() {
     sleep 1
 }
 
-# Idle costs nothing: less than a tenth of a second of processor time in two. Other piles are no idleness.
+# An idle window needs less than 0.1 s of processor time in 2 s. Other piles would need processor time, so they are off.
 switch_other_piles "s['other_threads'] == 0"
 xdotool mousemove $(at "scene" 0.5)
 sleep 1
@@ -146,7 +147,7 @@ sleep 2
 used=$(($(ticks) - before))
 [ "$used" -lt "$(($(getconf CLK_TCK) / 10))" ] || fail "an idle window used $used ticks in 2 s"
 
-# Closed, it keeps its layout: without the plots, the scene is higher.
+# A window that opens again has the layout of the closed window: without the plots, the scene is higher.
 height() { value "s['controls']['scene'][3]"; }
 with_plots=$(height)
 xdotool mousemove $(at "Plots" 0.5) click 1
@@ -162,8 +163,8 @@ window=$!
 wait_for "the pile" "s['scene'] == 'pile'"
 wait_for "the layout of the last time" "abs(s['controls']['scene'][3] - $without_plots) < 2"
 
-# Nobody has asked for a scene: the first lesson. The plots and other piles again, release, and the effect within ten
-# seconds of a machine that does nothing else.
+# Without a requested scene, the window opens the first lesson. Show the plots and other piles again and start the run.
+# On an idle machine the effect is visible within ten seconds.
 wait_for "the lesson" "s['lesson'] == 1 and s['worlds'] == 2"
 xdotool mousemove $(at "Plots" 0.5) click 1
 sleep 0.5
@@ -176,17 +177,18 @@ xdotool key space
 wait_for "the end of the first lesson" "not s['playing'] and s['time_secs'] > 0.99"
 [ "$(value "s['slump'] > 0.3")" = True ] || fail "the first pile of the lesson stands"
 for _ in 1 2 3 4; do
-    # A machine that has other things to do comes to them late; what stands still for long is not computed for.
+    # On a busy machine the other piles take long, and the window stops computing them if nothing happens. The key
+    # prevents this.
     xdotool key Left
     sleep 20
     [ "$(value "s['other_piles'] >= 3")" = True ] && break
 done
-# What the mouse points at would tell of itself.
+# Move the mouse to a position without a tooltip.
 xdotool mousemove 700 20
 sleep 1
 import -window root "$shots/window-lesson-end.png"
 
-# The one gesture, as a picture that moves: Δt is dragged from 0.1 ms to 2 ms, let go, and the pile starts again.
+# Film the central gesture: Δt is dragged from 0.1 ms to 2 ms and released, and the pile starts again.
 ffmpeg -loglevel error -y -f x11grab -framerate 10 -video_size 1280x800 -t 8 -i "$DISPLAY" -vf \
     "scale=800:-1:flags=lanczos,split[a][b];[a]palettegen=max_colors=64[p];[b][p]paletteuse=dither=none" \
     "$shots/drag.gif" &
@@ -211,7 +213,7 @@ for lesson in 2 3; do
     import -window root "$shots/window-lesson-$lesson.png"
 done
 
-# What was chosen outlives the window that is killed.
+# The chosen settings are still there after the window is killed.
 sleep 3
 kill -9 "$window"
 wait "$window" 2> /dev/null || true
@@ -225,7 +227,7 @@ kill "$window"
 wait "$window" 2> /dev/null || true
 rm -f "$state"
 
-# A session opens at its moment, with its record.
+# A session opens at the time at which it was saved, with its recorded run.
 "$program" --session "$session" --export-state "$state" > "$work/log" 2>&1 &
 window=$!
 wait_for "the session's moment" "s['step'] == $session_step and s['lesson'] == 0"
@@ -237,7 +239,7 @@ kill "$window"
 wait "$window" 2> /dev/null || true
 rm -f "$state"
 
-# On a screen of small pixels all is twice as large, in light and in dark.
+# On a screen of small pixels everything is twice as large, in the light and the dark theme.
 screen 2560x1440
 for theme in light dark; do
     WINIT_X11_SCALE_FACTOR=2 "$program" --reset-ui --bond 20 --theme $theme --export-state "$state" > "$work/log" 2>&1 &

@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
-# Tests the program for Windows under wine: it computes, saves, resumes, keeps two runs apart and opens its window.
+# Tests the program for Windows under Wine: computing, saving, resuming, two runs with one folder, and the window.
 #
 #   tests/windows.sh PROGRAM.exe [FOLDER]         tests it; a screenshot of the window goes to FOLDER (target/windows)
-#   tests/windows.sh --run PROGRAM.exe ARGUMENTS  starts it
+#   tests/windows.sh --run PROGRAM.exe ARGUMENTS  starts it under Wine
 #
 # Needs Debian's packages wine wine64 gcc-mingw-w64-x86-64 xvfb xdotool imagemagick mesa-vulkan-drivers.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 export WINEPREFIX=$here/target/wine WINEDEBUG=-all WINEDLLOVERRIDES="mscoree=;mshtml="
 
-# Wine 8 lacks the library from which Rust gets random numbers. Windows has it, so this copy is not released.
+# Wine 8 lacks the library from which Rust gets random numbers. Windows has this library, so the replacement is not
+# released.
 system=$WINEPREFIX/drive_c/windows/system32
 if [ ! -e "$system/bcryptprimitives.dll" ]; then
     mkdir -p "$WINEPREFIX"
@@ -57,14 +58,14 @@ slump run --restart half.slump --duration 0.1 --times 0.1 --renderer cpu --size 
     fail "a saved run is not continued"
 cmp <(tail -n 1 whole/observables.csv) <(tail -n 1 rest/observables.csv) || fail "a continued run comes to another end"
 
-# A study; a second call has nothing left to do.
+# Compute a study. A second call must find all runs complete.
 printf 'name = "two"\n[base]\nscene = "cradle"\nduration = 0.1\n[vary]\ndt = [1e-3, 2e-3]\n' >study.toml
 slump sweep study.toml --out study >/dev/null || fail "a study fails"
 cp study/runs.csv before.csv
 slump sweep study.toml --out study >/dev/null || fail "a finished study is not read"
 cmp before.csv study/runs.csv || fail "a finished study changes"
 
-# Two runs do not write to one folder.
+# Two runs must not write to the same folder.
 wine "$program" run cradle --dt 1e-3 --duration 3000 --renderer cpu --size 64x18 --frames busy >/dev/null 2>&1 &
 for _ in $(seq 300); do [ ! -s busy/observables.csv ] || break; sleep 0.1; done
 if slump run cradle --duration 0.1 --renderer cpu --size 64x18 --frames busy --overwrite >/dev/null; then
@@ -73,7 +74,7 @@ fi
 grep -q "is being written by another run" log || fail "a folder in use is not named"
 wineserver --kill
 
-# The window, which keeps its settings in %APPDATA%.
+# Open the window, which stores its settings in %APPDATA%.
 Xvfb -displayfd 4 -screen 0 1280x800x24 4>display >/dev/null 2>&1 &
 server=$!
 for _ in $(seq 100); do [ ! -s display ] || break; sleep 0.1; done

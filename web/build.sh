@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# Builds the page into a folder of static files: web/build.sh [FOLDER], target/page by default.
+# Builds the browser version as a folder of static files: web/build.sh [FOLDER], target/page by default.
 #
-# It asks for Debian's rustc-web, cargo-web, rust-web-src and lld, and for wasm-bindgen
-# (cargo install wasm-bindgen-cli --version, that of web/Cargo.toml).
+# Needs Debian's packages rustc-web, cargo-web, rust-web-src and lld, and wasm-bindgen in the version that
+# web/Cargo.toml names (cargo install wasm-bindgen-cli --version VERSION).
 set -euo pipefail
 web=$(realpath "$(dirname "$0")")
 out=$(realpath -m "${1:-$web/../target/page}")
 cd "$web"
 target=$(realpath -m ../target/web)
 
-# The standard library is built with the page: Debian's rustc comes with its source.
+# The standard library is compiled, too; its source is in Debian's packages.
 RUSTC_BOOTSTRAP=1 PATH=/usr/bin:$PATH CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER=/usr/bin/wasm-ld \
     RUSTFLAGS="-Ctarget-feature=+simd128" \
     cargo build --release --locked -Zbuild-std=std,panic_abort --target wasm32-unknown-unknown --target-dir "$target"

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Opens the page in Chromium and compares it with the program: web/try.py PAGE PROGRAM PICTURES
+"""Opens the browser version in Chromium and compares it with the program: web/try.py PAGE PROGRAM PICTURES
 
-PAGE is the folder that web/build.sh made, PROGRAM the program `slump`. Screenshots go to the folder PICTURES; look
-at them. Needs Debian's chromium and chromium-driver, and Python's standard library only. states.mjs compares more
-runs with the program.
+PAGE is the folder that web/build.sh has made, PROGRAM the program `slump`. Screenshots are written into the folder
+PICTURES; look at them. Needs Debian's chromium and chromium-driver, and Python's standard library only. states.mjs
+compares more runs with the program.
 """
 import base64
 import functools
@@ -32,7 +32,7 @@ class Files(http.server.SimpleHTTPRequestHandler):
 
 
 class Browser:
-    """Headless Chromium with a software rasteriser, by WebDriver."""
+    """Headless Chromium with a software rasteriser, controlled by WebDriver."""
 
     def __init__(self, size):
         with socket.socket() as free:
@@ -77,7 +77,7 @@ class Browser:
         return self.command("/execute/sync", script=script, args=[])
 
     def told(self):
-        """State of the page; None before it runs."""
+        """Return the state of the page, or None before the page runs."""
         text = self.run("return globalThis.slump ? slump.told() : ''")
         return json.loads(text) if text else None
 
@@ -129,7 +129,7 @@ def middle(told, name):
 
 
 def state_of_program(options, steps):
-    """Hash of the program's last state; None if the program refuses the run."""
+    """Return the hash of the program's last state, or None if the program refuses the run."""
     with tempfile.TemporaryDirectory() as folder:
         duration = str(steps * TIME_STEP_SECS)
         command = [str(PROGRAM), "--headless", "--frames", folder, "--size", "64x48", "--renderer", "cpu", "--fps", "1"]
@@ -167,7 +167,8 @@ try:
     print(f"lesson 1 to its end at {told['time_secs']:.3f} s, {rate:.0f} frames of the run a second")
     browser.picture("end")
 
-    # While grains rain the worker receives no messages; it must cancel nevertheless.
+    # During the deposition of a new pile the worker receives no messages. It must be able to cancel the deposition
+    # nevertheless.
     browser.click(middle(browser.told(), "more"))
     browser.click(middle(browser.until("the page Pile", lambda told: "new pile" in told["controls"]), "new pile"))
     browser.until("it rains", lambda told: told["loading"] and "cancel" in told["controls"])
@@ -199,7 +200,7 @@ try:
     assert told["state_hash"] == opened, "loaded anew, a link comes to another state"
     print("loaded anew, the page comes to the same state")
 
-    # The page has loaded everything: from now on it must work without the network.
+    # The page has loaded all its files. From now on it must work without the network.
     browser.set_offline(True)
     assert not browser.run("return navigator.onLine"), "the browser is not offline"
     left, top, right, bottom = told["controls"]["Δt"]

@@ -1,4 +1,4 @@
-//! Discs at rest in a box, for the benches.
+//! Discs at rest in a box, shared by all benchmarks.
 
 #![allow(dead_code, reason = "every bench uses its own part of this")]
 
@@ -13,7 +13,7 @@ use slump::world::{Boundary, Grain, Parameters};
 /// Mean diameter d of the pile scene, m.
 const DIAMETER: f64 = 5e-3;
 
-/// The contact problem of the simulation's next step.
+/// Returns the contact problem of the simulation's next step.
 pub fn problem(simulation: &Simulation, settings: &SolverSettings) -> StepProblem<SpinningPlane> {
     let (world, parameters) = (simulation.world(), simulation.parameters());
     let Parameters { time_step_secs, friction, restitution, cone, .. } = *parameters;
@@ -27,14 +27,14 @@ pub fn problem(simulation: &Simulation, settings: &SolverSettings) -> StepProble
     problem
 }
 
-/// `count` cohesionless discs, settled in a box as wide as the pile is high. Their contacts are like those of a pile.
-/// The benches do not depend on how the discs fell, so they fall quickly.
+/// Returns a simulation of `count` cohesionless discs, settled in a box as wide as the pile is high. Their contacts are
+/// like the contacts of a pile. The benchmarks do not depend on how the discs fell, so the discs fall quickly.
 pub fn settled(count: usize) -> Simulation {
     let columns = ((count as f64).sqrt() * 1.2).ceil() as usize;
     let spacing = 1.21 * DIAMETER;
     let mut random = 1u64;
     let mut fraction = || {
-        // Any well-mixed sequence will do (Knuth's multiplier).
+        // Any well-mixed pseudorandom sequence is suitable here (Knuth's multiplier).
         random =
             random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (random >> 11) as f64 / (1u64 << 53) as f64
@@ -71,7 +71,7 @@ pub fn settled(count: usize) -> Simulation {
     simulation
 }
 
-/// The same state with other parameters.
+/// Returns a copy of a simulation in the same state with changed parameters.
 pub fn with(simulation: &Simulation, change: impl FnOnce(&mut Parameters)) -> Simulation {
     let mut simulation = simulation.clone();
     let mut parameters = *simulation.parameters();

@@ -1,11 +1,11 @@
-//! Timing by the minimum over all repeats. The minimum has the fewest interruptions and is the most reproducible number
-//! between two runs on one machine.
+//! Timing by the shortest of all repeats. The shortest time has the fewest interruptions, and is the number that
+//! differs least between two runs on one machine.
 
 use std::time::{Duration, Instant};
 
 use criterion::Criterion;
 
-/// Criterion with few samples, so that all benches together take some minutes.
+/// Returns criterion with few samples, so that all benchmarks together take some minutes.
 pub fn criterion() -> Criterion {
     Criterion::default()
         .sample_size(12)
@@ -15,7 +15,7 @@ pub fn criterion() -> Criterion {
         .configure_from_args()
 }
 
-/// Measures `routine` with criterion under `name`; returns the least time of one call, s.
+/// Measures `routine` with criterion under `name`. Returns the shortest time of one call, s.
 pub fn least_secs(criterion: &mut Criterion, name: &str, mut routine: impl FnMut()) -> f64 {
     let mut least = f64::INFINITY;
     criterion.bench_function(name, |bencher| {

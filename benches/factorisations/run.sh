@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes piles, records their contacts a moment after the walls went, and times the factorisations on them.
+# Makes piles, records their contacts shortly after the walls are removed, and times the factorisations on them.
 set -eu
 here=$(dirname "$(readlink -f "$0")")
 program=${SLUMP:-$here/../../target/release/slump}
@@ -14,5 +14,5 @@ for pile in 500,30.5,rain 2000,61,rain 10000,134,drop-and-roll ${PILES:-}; do
         || { cat "$work/log" >&2; exit 2; }
     tables="$tables $work/$grains/csv/contacts.csv"
 done
-# No space is in the names that mktemp gives.
+# The list is not quoted, because names from mktemp contain no spaces.
 cargo run --quiet --release --manifest-path "$here/Cargo.toml" -- $tables

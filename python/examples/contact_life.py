@@ -1,7 +1,7 @@
-"""An observable of your own against the time step: the rate at which a collapsing pile loses contacts.
+"""Measures a quantity of your own against the time step: the rate at which a collapsing pile loses contacts.
 
-Slump does not measure this. A callback looks at the contacts every few milliseconds, and counts the contacts that
-have disappeared until the next look.
+Slump does not measure this rate. A callback reads the contacts at equal intervals of simulated time, and counts the
+contacts that have disappeared since the previous call.
 
     python contact_life.py --out contact_life.png
 """
@@ -19,11 +19,11 @@ import slump
 BONDS = [20, 100]
 TIME_STEPS = [2e-4, 5e-4, 1e-3, 2e-3, 5e-3]
 LOOK = 1e-2
-"""Simulated time between two looks, s: a multiple of all time steps."""
+"""Simulated time between two calls of the callback, s: a multiple of all time steps."""
 
 
 class Losses:
-    """Number of contacts between grains at each look, and of those that have disappeared at the next."""
+    """Counts contacts between grains, summed over all calls, and the contacts that were gone at the next call."""
 
     def __init__(self) -> None:
         self.before: set[tuple[int, int]] = set()
@@ -31,7 +31,7 @@ class Losses:
         self.gone = 0
 
     def look(self, sim: slump.Simulation) -> None:
-        """Count contacts; call it at equal intervals of time."""
+        """Count the contacts of a simulation. Call this method at equal intervals of simulated time."""
         contacts = sim.contacts
         between = contacts["kind_j"] == "grain"
         now = set(zip(contacts["id_i"][between].tolist(), contacts["id_j"][between].tolist()))
@@ -41,7 +41,7 @@ class Losses:
 
 
 def lost(collapse: Collapse, duration: float) -> float:
-    """Fraction of the contacts that are lost between two looks."""
+    """Return the fraction of the contacts that are lost between two calls of the callback."""
     losses = Losses()
     collapse.simulation().run(until=duration, callback=losses.look, every=LOOK)
     return losses.gone / losses.there

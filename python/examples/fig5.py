@@ -1,6 +1,6 @@
-"""Fig. 5 of the paper: slump and overlap against the time step, with error bars over initial states.
+"""Draws Fig. 5 of the paper: slump and overlap against the time step, with error bars over initial states.
 
-Every pile is run at all time steps and Bond numbers, many at once.
+Every pile is run at all time steps and Bond numbers. Many runs are taken in parallel.
 
     python fig5.py --out fig5.png
 """
@@ -19,7 +19,7 @@ TIME_STEPS = [2e-4, 5e-4, 1e-3, 2e-3, 5e-3]
 
 
 def slump_and_overlap(collapse: Collapse, duration: float) -> tuple[float, float]:
-    """Slump at the end, and the mean overlap of touching grains over all steps, in d."""
+    """Run a pile. Return its slump at the end, and the mean overlap of touching grains over all steps, in d."""
     sim = collapse.simulation()
     sim.run(until=duration)
     history = sim.history
@@ -32,7 +32,7 @@ def main() -> None:
     piles = starts(2 if options.quick else options.states, options.quick)
     duration = 0.1 if options.quick else 1.0
 
-    # The longest runs first, so that no core waits for the last run.
+    # The longest runs come first, so that no core is idle while the last run ends.
     runs = [Collapse(pile, bond, time_step) for time_step in time_steps for bond in bonds for pile in piles]
     found = np.array(in_parallel(partial(slump_and_overlap, duration=duration), runs))
     slumps, overlaps = np.moveaxis(found.reshape(len(time_steps), len(bonds), len(piles), 2), -1, 0)

@@ -1,4 +1,4 @@
-"""The force network of a stable pile, and the distribution of its forces.
+"""Draws the force network of a stable pile, and the distribution of its contact forces.
 
     python force_network.py --out force_network.png
 """
@@ -22,23 +22,23 @@ BOND = 50
 
 
 def held(start: dict[str, Any]) -> slump.Simulation:
-    """A pile at rest without its walls."""
+    """Return a pile that has come to rest without its walls."""
     sim = slump.Simulation(start, bond=BOND, dt=5e-4)
     sim.run(until=0.3)
     return sim
 
 
 def branches(sim: slump.Simulation) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Both ends of each contact's line, from centre to centre, m, and its normal force, N."""
+    """Return the line of each contact, from centre to centre (m), and the normal force of each contact (N)."""
     grains, contacts = sim.grains, sim.contacts
     centres = np.stack([grains["x"], grains["y"]], axis=1)
-    # Ids number grains first, then fixed discs; a pile on a rough base touches nothing else.
+    # The ids are also row numbers here: grains come first, then fixed discs, and this pile touches no other bodies.
     ends = np.stack([centres[contacts["id_i"]], centres[contacts["id_j"]]], axis=1)
     return ends, contacts["normal_force"]
 
 
 def draw_network(axes: Axes, sim: slump.Simulation) -> None:
-    """Draw grains in grey, and contacts as wide as their force."""
+    """Draw grains in grey, and each contact as a line whose width is proportional to its force."""
     grains = sim.grains
     diameter = sim.mean_diameter
     farthest = np.abs(sim.positions[:, 0]).max() + 1.5 * diameter
@@ -70,7 +70,7 @@ def draw_network(axes: Axes, sim: slump.Simulation) -> None:
 
 
 def draw_distribution(axes: Axes, sims: list[slump.Simulation]) -> None:
-    """P(f) of pushing and of pulling forces, in units of the mean pushing force of each pile."""
+    """Draw the distribution P(f) of pushing and pulling forces, with f in units of each pile's mean push."""
     forces = []
     for sim in sims:
         normal = sim.contacts["normal_force"]
@@ -80,10 +80,10 @@ def draw_distribution(axes: Axes, sims: list[slump.Simulation]) -> None:
     middles = 0.5 * (edges[1:] + edges[:-1])
     for sign, colour, label in [(1, PUSH, "push"), (-1, PULL, "pull")]:
         counts, _ = np.histogram(sign * all_forces, edges)
-        # Relative to all contacts, so that both curves together have the area 1.
+        # Divide by the number of all contacts, so that both curves together have the area 1.
         density = counts / (len(all_forces) * np.diff(edges))
         error = np.sqrt(counts) / (len(all_forces) * np.diff(edges))
-        # Empty bins interrupt the line.
+        # NaN in empty bins interrupts the line.
         density[counts == 0] = np.nan
         axes.errorbar(middles, density, error, color=colour, marker="o", ms=4, capsize=2, label=label)
     axes.set_yscale("log")

@@ -6,8 +6,8 @@
     sim.run()
     print(sim.observables["slump"])
 
-Options are those of the command line, with underscores: ``slump.options()`` lists them. All quantities are in SI
-units.
+Options have the names of the command line, with underscores: ``slump.options()`` lists them. All quantities are in
+SI units.
 """
 
 from __future__ import annotations

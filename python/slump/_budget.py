@@ -1,4 +1,4 @@
-"""Error budgets: how much of a result is due to the grains, the contact law, the time step and the solver."""
+"""Error budgets: how much of a result is due to the initial state, the contact law, the time step and the solver."""
 
 from __future__ import annotations
 
@@ -11,17 +11,18 @@ from ._slump import _budget
 
 
 class Budget(dict):
-    """A table with a row per cause, as a dictionary of columns for ``pandas.DataFrame`` or ``polars.DataFrame``.
+    """An error budget: a table with one row per cause, as a dictionary of columns for ``pandas.DataFrame`` or
+    ``polars.DataFrame``.
 
-    ``adds`` is the effect of a change on the value, ``low`` and ``high`` are the ends of its interval. In 95 % of
-    budgets all intervals contain the true effect. Unknown values are None.
+    ``adds`` is the effect of a cause on the value. ``low`` and ``high`` are the ends of the confidence interval of this
+    effect: in 95 % of budgets all intervals contain the true effects. Unknown values are None.
     """
 
-    #: The answer in words, by quantity.
+    #: Result of the budget in words, by quantity.
     answers: dict[str, str]
-    #: "yes", "mostly", "no" or "not-known-yet", by quantity.
+    #: Whether the value can be trusted ("yes", "mostly", "no" or "not-known-yet"), by quantity.
     trust: dict[str, str]
-    #: All data of the budget, in the form of ``budget.json``.
+    #: All data of the budget, in the format of the file ``budget.json``.
     data: dict[str, Any]
 
     def __init__(self, data: dict[str, Any]):
@@ -62,13 +63,13 @@ def budget(
     out: str | os.PathLike[str] | None = None,
     **options: Any,
 ) -> Budget:
-    """Estimate how much of a result is due to the grains, the contact law, the time step and the solver.
+    """Estimate how much of a result is due to the initial state, the contact law, the time step and the solver.
 
     ``quantity`` is a measured column (``"slump"``, ``"coordination"``) at the end of a run, or its ``"mean(x)"``,
     ``"min(x)"``, ``"max(x)"`` or ``"total(x)"`` over the simulated time from ``begin`` to ``end`` (s). ``within`` is
-    half of the width that each interval should have (default: a tenth of the value). ``cost`` is the time limit on all
-    cores (s). With a folder ``out``, the same call resumes a budget that was stopped. Further options are those of
-    :class:`Simulation`.
+    half of the width that each confidence interval should have (default: a tenth of the value). ``cost`` is the time
+    limit of the computation on all cores (s). With a folder ``out``, the same call resumes a budget that was stopped.
+    Further options are the options of :class:`Simulation`.
     """
     quantities = [quantity] if isinstance(quantity, str) else list(quantity)
     if scene is not None:

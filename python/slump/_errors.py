@@ -1,4 +1,4 @@
-"""Errors and warnings, with the messages of the command line."""
+"""Exceptions and warnings of the package. Their messages are the same as on the command line."""
 
 
 class Error(Exception):
@@ -6,16 +6,16 @@ class Error(Exception):
 
 
 class InputError(Error, ValueError):
-    """A value that is not allowed. The message names the field, the value and the allowed values."""
+    """Raised if a value is not allowed. The message names the field, the value and the allowed values."""
 
 
 class FileError(Error, OSError):
-    """A file that cannot be read or written, or has the wrong form."""
+    """Raised if a file cannot be read or written, or has the wrong format."""
 
 
 class NotFiniteError(Error, ArithmeticError):
-    """A state that is no longer finite. The simulation keeps this state for inspection."""
+    """Raised if the state is no longer finite. The simulation keeps this state for inspection."""
 
 
 class SlumpWarning(UserWarning):
-    """A problem that does not stop the simulation. The message names the most likely remedy."""
+    """Warning of a problem that does not stop the simulation. The message names the change most likely to help."""

@@ -1,4 +1,4 @@
-"""Makes every setting an attribute of the class of simulations."""
+"""Makes every setting an attribute of the class `Simulation`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def _setting(name: str, about: str) -> property:
 
 
 def add() -> None:
-    """Add an attribute for each setting to the class."""
+    """Add an attribute for each setting to the class `Simulation`."""
     about = options()
     for name in _kinds():
         setattr(Simulation, name, _setting(name, about[name]))

@@ -1,4 +1,4 @@
-"""Results of solving contact problems."""
+"""Results of solving single contact problems."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ class Solution:
     method: str
     """Name of the solver."""
     on_bodies: bool
-    """True if the solver used the bodies, False if it used only W."""
+    """True if the solver used the bodies, False if it used only the Delassus matrix W."""
     sweeps: int
-    """Sweeps, or iterations of about the same cost."""
+    """Number of sweeps, or of iterations that cost about as much as a sweep."""
     factorisations: int
-    """Number of factorised matrices."""
+    """Number of matrix factorisations."""
     seconds: float
-    """Time of the solve only, s; the shortest of the repeats."""
+    """Time of the solve alone, s: the shortest of all repeats."""
     converged: bool
     """True if the solver reached its tolerance and the residual confirms it."""
     stalled: bool
     """True if the solver stalled before it reached its tolerance: more sweeps would not help."""
     residual: float
-    """Common residual of the impulses, dimensionless."""
+    """Residual of the impulses, dimensionless: the same measure for all solvers."""
     impulses: npt.NDArray[np.float64] = field(repr=False)
-    """(P_n, P_t), one row per contact, N·s."""
+    """Normal and tangential impulses (P_n, P_t), N·s, one row per contact."""
     velocities: npt.NDArray[np.float64] = field(repr=False)
-    """(v_n, v_t) at the end of the step, including the restitution term, one row per contact, m/s."""
+    """Velocities (v_n, v_t) at the end of the step, v_n with the restitution term, m/s, one row per contact."""
     body_velocities: npt.NDArray[np.float64] | None = field(repr=False)
-    """(v_x, v_y, ω) of each body at the end of the step, m/s and rad/s; None if the problem has no bodies."""
+    """Velocity and spin (v_x, v_y, ω) of each body at the end of the step, m/s and rad/s; None without bodies."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,14 +43,14 @@ class FoundSolution:
     """One solution of a contact problem under Coulomb friction."""
 
     residual: float
-    """Common residual, dimensionless."""
+    """Residual of the impulses, dimensionless: the same measure for all solvers."""
     is_solved: bool
-    """True if the residual is within the tolerance. Other results may be close to a solution from another start."""
+    """True if the residual is within the tolerance. If not, the result may be close to another solution of the list."""
     starts: list[int]
-    """Starts that led to it: 0 for the impulses of the problem, 1 for zero impulses, then random impulses."""
+    """Initial guesses that led to this solution: 0 is the impulses in the problem, 1 is zero, others are random."""
     distances: list[float]
-    """Distance of its velocities from those of each earlier solution, m/s: root mean square, weighted with mass."""
+    """Distance of the velocities from each earlier solution, m/s: root mean square, weighted with mass."""
     farthest: tuple[int, float]
-    """The grain whose velocity differs most from the first solution, and the difference, m/s."""
+    """Index of the grain whose velocity differs most from the first solution, and this difference, m/s."""
     body_velocities: npt.NDArray[np.float64] = field(repr=False)
-    """(v_x, v_y, ω) of each body at the end of the step, m/s and rad/s."""
+    """Velocity and spin (v_x, v_y, ω) of each body at the end of the step, m/s and rad/s."""

@@ -1,4 +1,5 @@
-//! Error budgets: how much of a result is due to the grains, the contact law and the solver.
+//! Error budgets for Python: estimates of how much of a result is due to the initial state, the contact law, the time
+//! step and the solver.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -10,8 +11,8 @@ use crate::conversion::exception;
 use crate::options::{GivenOptions, all_names};
 use slump_studies::{BudgetOptions, made_budget};
 
-/// Computes a budget and returns it as JSON. A later call resumes from the files in `folder`. The options are those of
-/// a simulation.
+/// Computes an error budget and returns it as JSON. The options are the options of a simulation. A later call with the
+/// same `folder` resumes from the files in this folder.
 #[pyfunction]
 #[pyo3(signature = (quantities, folder, cost_secs, *, begin=None, end=None, within=None, **options))]
 #[expect(clippy::too_many_arguments, reason = "as Python's class gives them")]
@@ -39,7 +40,7 @@ pub(crate) fn _budget(
     let mut interrupted = None;
     let made = py.detach(|| {
         made_budget(&options, &folder, &folder.join("states"), |_| {
-            // Ctrl-C is checked between two stages.
+            // Checks for Ctrl-C between two stages of the budget.
             match Python::attach(|py| py.check_signals()) {
                 Ok(()) => ControlFlow::Continue(()),
                 Err(error) => {

@@ -1,5 +1,5 @@
-//! Conversion between Rust and Python: lists and tables as NumPy arrays, nested data through JSON, and errors as
-//! exceptions with the same message.
+//! Conversion between Rust and Python: lists and tables become NumPy arrays, nested data are converted through JSON,
+//! and errors become exceptions with the same message.
 
 use numpy::ndarray::Dimension;
 use numpy::{
@@ -25,7 +25,7 @@ mod classes {
 }
 pub(crate) use classes::{InputError, SlumpWarning};
 
-/// Python exception for an error.
+/// Returns the Python exception for an error.
 pub(crate) fn exception(error: Error) -> PyErr {
     let sentence = error.to_string();
     match error {
@@ -38,7 +38,7 @@ pub(crate) fn exception(error: Error) -> PyErr {
     }
 }
 
-/// Exception for a value that is not allowed.
+/// Returns the Python exception for a value that is not allowed.
 pub(crate) fn refused(
     field: impl Into<String>,
     value: impl std::fmt::Display,
@@ -47,7 +47,7 @@ pub(crate) fn refused(
     exception(Error::value(field, value, allowed))
 }
 
-/// Marks an array as read-only: it is a copy, so writing to it would have no effect on the simulation.
+/// Makes an array read-only. The array is a copy, so writing to it would have no effect on the simulation.
 fn read_only<T: Element, D: Dimension>(
     array: Bound<'_, PyArray<T, D>>,
 ) -> Bound<'_, PyArray<T, D>> {
@@ -55,7 +55,7 @@ fn read_only<T: Element, D: Dimension>(
     array
 }
 
-/// A two-dimensional array from rows of `N` numbers.
+/// Returns a two-dimensional, read-only array of rows with `N` numbers each.
 pub(crate) fn rows<const N: usize>(
     py: Python<'_>,
     rows: impl ExactSizeIterator<Item = [f64; N]>,
@@ -64,7 +64,7 @@ pub(crate) fn rows<const N: usize>(
     rows.flatten().collect::<Vec<_>>().into_pyarray(py).reshape(shape).map(read_only)
 }
 
-/// Converts anything that NumPy accepts to an array of numbers. Refuses words, complex numbers and masked arrays,
+/// Converts anything that NumPy accepts to an array of numbers. Words, complex numbers and masked arrays are errors,
 /// because NumPy would drop a part of them.
 pub(crate) fn numbers<'py>(given: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     let numpy = given.py().import("numpy")?;
@@ -77,7 +77,7 @@ pub(crate) fn numbers<'py>(given: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArra
     array.call_method1("astype", ("float64",))?.extract()
 }
 
-/// Converts an array with one row of two numbers per grain to vectors.
+/// Converts an array with one row of two numbers per grain to vectors. The error names `name`.
 pub(crate) fn vectors<V: From<[f64; 2]>>(
     name: &str,
     given: &Bound<'_, PyAny>,
@@ -95,7 +95,7 @@ pub(crate) fn vectors<V: From<[f64; 2]>>(
     Ok(numbers.rows().into_iter().map(|row| [row[0], row[1]].into()).collect())
 }
 
-/// Smoothed fields as a dictionary of arrays.
+/// Returns smoothed fields as a dictionary of read-only arrays.
 pub(crate) fn fields_of<'py>(py: Python<'py>, fields: &Fields) -> PyResult<Bound<'py, PyDict>> {
     let [columns, lines] = fields.counts;
     let dict = PyDict::new(py);
@@ -113,7 +113,7 @@ pub(crate) fn fields_of<'py>(py: Python<'py>, fields: &Fields) -> PyResult<Bound
     let stresses =
         [("kinetic_stress", &fields.kinetic_stress), ("contact_stress", &fields.contact_stress)];
     for (name, stresses) in stresses {
-        // In row-major order, as NumPy expects.
+        // NumPy expects row-major order.
         let numbers: Vec<f64> =
             stresses.iter().flat_map(|stress| stress.transpose().to_cols_array()).collect();
         let array = numbers.into_pyarray(py).reshape([lines, columns, 2, 2])?;
@@ -122,7 +122,7 @@ pub(crate) fn fields_of<'py>(py: Python<'py>, fields: &Fields) -> PyResult<Bound
     Ok(dict)
 }
 
-/// A list of numbers or switches.
+/// Returns a read-only array of numbers or of True and False.
 pub(crate) fn list<T: Element>(
     py: Python<'_>,
     list: impl Iterator<Item = T>,
@@ -130,7 +130,7 @@ pub(crate) fn list<T: Element>(
     read_only(list.collect::<Vec<_>>().into_pyarray(py))
 }
 
-/// A table as a dictionary of columns.
+/// Returns a table as a dictionary of columns.
 pub(crate) fn columns<'py>(py: Python<'py>, table: Table) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for column in table.columns {
@@ -139,7 +139,7 @@ pub(crate) fn columns<'py>(py: Python<'py>, table: Table) -> PyResult<Bound<'py,
     Ok(dict)
 }
 
-/// The first row of a table as a dictionary from column names to Python numbers and words.
+/// Returns the first row of a table as a dictionary from column names to Python numbers and words.
 pub(crate) fn first_row<'py>(py: Python<'py>, table: Table) -> PyResult<Bound<'py, PyDict>> {
     let dict = columns(py, table)?;
     for (name, column) in dict.copy()? {
@@ -148,7 +148,7 @@ pub(crate) fn first_row<'py>(py: Python<'py>, table: Table) -> PyResult<Bound<'p
     Ok(dict)
 }
 
-/// A column as an array of a single type. A missing number is NaN; a missing flag is false.
+/// Returns a column as an array of a single type. A missing number becomes NaN; a missing flag becomes False.
 fn array(py: Python<'_>, values: Values) -> PyResult<Bound<'_, PyAny>> {
     Ok(match values {
         Values::Numbers(numbers) => list(py, numbers.into_iter()).into_any(),
@@ -168,7 +168,7 @@ fn array(py: Python<'_>, values: Values) -> PyResult<Bound<'_, PyAny>> {
     })
 }
 
-/// The JSON text of a dictionary, which may contain NumPy arrays and numbers.
+/// Returns the JSON text of a dictionary that may contain NumPy arrays and numbers.
 pub(crate) fn text_of(what: &str, data: &Bound<'_, PyAny>) -> PyResult<String> {
     let py = data.py();
     let options = PyDict::new(py);

@@ -1,5 +1,5 @@
-//! Keyword arguments as options of the command line: the same names with underscores, the same parser and the same
-//! messages. Also the lists of available scenes, steppers, methods and options.
+//! Conversion of keyword arguments to options of the command line: the same names with underscores, the same parser and
+//! the same messages. Also returns the lists of available scenes, steppers, solvers and options.
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -12,12 +12,12 @@ use slump_core::sim::{Settings, Stepper};
 use slump_core::solver::METHODS;
 use slump_data::config::Config;
 
-/// The given options, as pairs of a command-line name and a value.
+/// Options given by the caller, as pairs of a command-line name and a value in words.
 #[derive(Default)]
 pub(crate) struct GivenOptions(Vec<(String, String)>);
 
 impl GivenOptions {
-    /// Adds keyword arguments. Names that are not in `allowed` are refused.
+    /// Adds keyword arguments. A name that is not in `allowed` is an error.
     pub(crate) fn add_all(
         &mut self,
         keywords: Option<&Bound<'_, PyDict>>,
@@ -43,22 +43,22 @@ impl GivenOptions {
         Ok(())
     }
 
-    /// Adds an option with a value in the form of the command line.
+    /// Adds an option whose value is already written as on the command line.
     pub(crate) fn add_text(&mut self, name: &str, text: &str) {
         self.0.push((name.into(), text.into()));
     }
 
-    /// Parses the options as the command line does.
+    /// Parses the options as the command line does, and returns the configuration.
     pub(crate) fn config(&self) -> PyResult<Config> {
         let pairs = self.0.iter().map(|(name, value)| (name.as_str(), value.as_str()));
         Config::of_options(pairs).map_err(exception)
     }
 }
 
-/// A value in the form of the command line.
+/// Returns a value as it is written on the command line.
 fn text_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
     if value.hasattr("dtype")? && value.getattr("size")?.extract::<usize>().ok() == Some(1) {
-        // NumPy numbers are arrays with one element.
+        // NumPy numbers are arrays with one element; convert this element.
         return text_of(name, &value.call_method0("item")?);
     }
     if let Ok(switch) = value.cast::<PyBool>() {
@@ -78,22 +78,22 @@ fn text_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
     })
 }
 
-/// The keyword for an option's name.
+/// Returns the keyword argument for an option: the name with underscores.
 pub(crate) fn keyword(name: &str) -> String {
     name.replace('-', "_")
 }
 
-/// The names of all options.
+/// Returns the names of all options, as keyword arguments.
 pub(crate) fn all_names() -> Vec<String> {
     Config::names().iter().map(|name| keyword(name)).collect()
 }
 
-/// The names of all options that can be changed while a simulation runs.
+/// Returns the names of all options that can be changed while a simulation runs, as keyword arguments.
 pub(crate) fn setting_names() -> Vec<String> {
     Settings::about().map(|about| keyword(about.name)).collect()
 }
 
-/// All settings by their names.
+/// Returns all settings as a dictionary by name.
 pub(crate) fn settings<'py>(py: Python<'py>, settings: &Settings) -> PyResult<Bound<'py, PyDict>> {
     let found = PyDict::new(py);
     for about in Settings::about() {
@@ -120,31 +120,31 @@ fn lines<'py>(
     Ok(found)
 }
 
-/// The built-in scenes, each with a one-line description.
+/// Returns the built-in scenes, each with a one-line description.
 #[pyfunction]
 pub(crate) fn scenes(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     lines(py, SCENES.iter().map(|scene| (scene.name.into(), scene.summary)))
 }
 
-/// The steppers, each with a one-line description.
+/// Returns the steppers, each with a one-line description.
 #[pyfunction]
 pub(crate) fn steppers(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     lines(py, Stepper::ALL.iter().map(|stepper| (stepper.name().into(), stepper.hint())))
 }
 
-/// The solvers (values of `solver`), each with a one-line description.
+/// Returns the solvers (values of `solver`), each with a one-line description.
 #[pyfunction]
 pub(crate) fn methods(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     lines(py, METHODS.iter().map(|method| (method.name.into(), method.summary)))
 }
 
-/// The options of a simulation, each with its line in the help of the command line.
+/// Returns the options of a simulation, each with its line in the help of the command line.
 #[pyfunction]
 pub(crate) fn options(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     lines(py, Config::options().into_iter().map(|(name, help)| (keyword(&name), help)))
 }
 
-/// The type of each setting: float, int, bool, or a tuple of the allowed words.
+/// Returns the type of each setting: "float", "int", "bool", or a list of the allowed words.
 #[pyfunction]
 pub(crate) fn _kinds(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let found = PyDict::new(py);

@@ -1,4 +1,4 @@
-//! Solution of single contact problems, outside a simulation.
+//! Functions that solve single contact problems, outside a simulation.
 
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
@@ -15,11 +15,12 @@ use slump_data::interchange::{
     FoundSolution, ProblemFile, Solution, solutions_of_file, solve_file,
 };
 
-/// Interval between two checks for Ctrl-C.
+/// Interval between two checks for Ctrl-C. A longer interval makes Ctrl-C react later.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Solves a contact problem: a dictionary in the form of `Simulation.next_problem`, its JSON, or the path of a file in
-/// that format or in the format of Siconos. After Ctrl-C the unfinished work continues in the background.
+/// Solves a contact problem. `problem` is a dictionary in the form of `Simulation.next_problem`, the same data as JSON
+/// text, or the path of a file in this format or in the format of Siconos. After Ctrl-C the unfinished work continues
+/// in the background.
 #[pyfunction]
 #[pyo3(signature = (problem, method="auto", tolerance=1e-8, max_sweeps=1_000_000, repeat=1, without_bodies=false))]
 pub(crate) fn solve<'py>(
@@ -44,8 +45,8 @@ pub(crate) fn solve<'py>(
     as_python(py, solution.map_err(exception)?)
 }
 
-/// Looks for the solutions of a contact problem under Coulomb's law, from several initial guesses. After Ctrl-C the
-/// unfinished work continues in the background.
+/// Searches for the solutions of a contact problem under Coulomb friction, from several initial guesses. After Ctrl-C
+/// the unfinished work continues in the background.
 #[pyfunction]
 #[pyo3(signature = (problem, starts=8, tolerance=1e-8, max_sweeps=1_000_000))]
 pub(crate) fn solutions<'py>(
@@ -73,7 +74,7 @@ fn method_of(name: &str) -> PyResult<Method> {
 fn problem_of(problem: &Bound<'_, PyAny>) -> PyResult<ProblemFile> {
     let parsed = if let Ok(text) = problem.cast::<PyString>() {
         let text = text.to_string();
-        // A path is a single line and does not begin with a brace.
+        // JSON text begins with a brace or has several lines; a path does not.
         if text.trim_start().starts_with('{') || text.contains('\n') {
             ProblemFile::parse(&text)
         } else {
@@ -94,7 +95,7 @@ fn interruptible<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
 ) -> PyResult<T> {
     let (sender, mut receiver) = channel();
-    // After Ctrl-C there is no receiver any more.
+    // After Ctrl-C the result has no receiver any more and is dropped.
     let worker = thread::Builder::new().spawn(move || drop(sender.send(work())));
     worker.map_err(|error| PyOSError::new_err(error.to_string()))?;
     loop {

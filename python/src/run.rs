@@ -1,4 +1,4 @@
-//! A simulation together with its history, pair sums and recording.
+//! A run of a simulation from Python, with its history of steps, its sums of pair forces and its recording.
 
 use std::path::{Path, PathBuf};
 use std::process;
@@ -11,40 +11,40 @@ use slump_data::config::SavedState;
 use slump_data::config::scene_facts;
 use slump_data::data::{DataSettings, FrameSchedule, Recording, Times, formats_of};
 
-/// Time for which steps are taken between two checks for Ctrl-C. If it is longer, Ctrl-C reacts noticeably late. If it
-/// is shorter, more time is lost in checks, each of which waits for Python's lock.
+/// Time for which steps are taken between two checks for Ctrl-C. With a longer time, Ctrl-C reacts noticeably late.
+/// With a shorter time, the checks cost more, because each check waits for Python's lock.
 const SLICE: Duration = Duration::from_millis(20);
 
-/// A run of a scene.
+/// A run of a scene: the simulation, its history and its recording.
 pub(crate) struct Run {
-    /// The scene with which the run began.
+    /// Scene with which the run began.
     pub scene: Scene,
-    /// The simulation.
+    /// The simulation in its present state.
     pub simulation: Simulation,
-    /// Observables, one row per step since the start or since the history was last deleted.
+    /// Observables, one row per step since the start of the run or since the history was last deleted.
     pub rows: Vec<Observables>,
-    /// Sums of the forces of pairs, once `begin_pairs` was called.
+    /// Sums of the forces of pairs; `None` until `begin_pairs` is called.
     pub sums: Option<ForceSums>,
-    /// Sums over all steps of the run.
+    /// Statistics over all steps of the run.
     tally: Tally,
-    /// The recording, if there is one, and the process that started it.
+    /// The recording and the id of the process that started it; `None` without a recording.
     recording: Option<(u32, Recording)>,
-    /// Number of alarms that were already reported.
+    /// Number of alarms that have already been reported.
     alarms_told: usize,
 }
 
 /// Result of taking several steps.
 pub(crate) struct Taken {
-    /// Number of steps.
+    /// Number of steps that were taken.
     pub steps: u64,
-    /// True if a schedule is due at the last step.
+    /// True if the callback is due after the last step.
     pub is_due: bool,
-    /// The error that stopped the run, if any.
+    /// The error that stopped the run, if there was one.
     pub ended: Result<()>,
 }
 
 impl Run {
-    /// Starts a run of a scene.
+    /// Starts a run of a scene from its initial state.
     pub(crate) fn start(scene: Scene) -> Result<Self> {
         let simulation = scene.simulation()?;
         Ok(Self::of(SavedState::new(scene, simulation, Tally::default())))
@@ -53,26 +53,26 @@ impl Run {
     /// Resumes a run from a saved state.
     pub(crate) fn of(state: SavedState) -> Self {
         let SavedState { scene, simulation, tally, .. } = state;
-        // These alarms were reported before the state was saved.
+        // The alarms of this state were reported before it was saved.
         let alarms_told = simulation.alarms().len();
         let (rows, sums) = (Vec::new(), None);
         Self { scene, simulation, rows, sums, tally, recording: None, alarms_told }
     }
 
-    /// The complete present state, without the history of the steps.
+    /// Returns the complete present state, without the history of the steps. Fails if the state is no longer finite.
     pub(crate) fn saved(&self) -> Result<SavedState> {
         self.check_finite("finite where it is saved")?;
         Ok(SavedState::new(self.scene.clone(), self.simulation.clone(), self.tally))
     }
 
-    /// Refuses a state that is no longer finite.
+    /// Checks that the state is still finite. `allowed` is the allowed value in the error message.
     fn check_finite(&self, allowed: &str) -> Result<()> {
         let is_finite = |alarm: &Alarm| alarm.kind != AlarmKind::NotFinite;
         let found = "no longer finite";
         error::check(self.simulation.alarms().iter().all(is_finite), "state", found, allowed)
     }
 
-    /// A second run in the same state, without the recording.
+    /// Returns a second run in the same state, without the recording.
     pub(crate) fn copy(&self) -> Self {
         Self {
             scene: self.scene.clone(),
@@ -85,21 +85,21 @@ impl Run {
         }
     }
 
-    /// Starts to sum the forces of pairs.
+    /// Starts to sum the forces of pairs from the present state on.
     pub(crate) fn begin_pairs(&mut self) {
         let mut sums = ForceSums::default();
         sums.follow(&self.simulation);
         self.sums = Some(sums);
     }
 
-    /// Restarts the sums of pairs if bodies have been renumbered.
+    /// Starts the sums of pair forces again from zero after an edit, which may have changed the indices of bodies.
     pub(crate) fn edited(&mut self) {
         if let Some(sums) = &mut self.sums {
             sums.follow(&self.simulation);
         }
     }
 
-    /// Starts a recording from the present state on.
+    /// Starts a recording in `folder`, from the present state on.
     pub(crate) fn record(
         &mut self,
         folder: &Path,
@@ -118,27 +118,28 @@ impl Run {
         Ok(())
     }
 
-    /// Ends the recording, if there is one.
+    /// Ends the recording, if there is one, and waits until it is written.
     pub(crate) fn end_recording(&mut self) -> Result<()> {
         self.leave_recording_to_parent();
         self.recording.take().map_or(Ok(()), |(_, recording)| recording.finish())
     }
 
-    /// The folder of the recording, if there is one.
+    /// Returns the folder of the recording, if there is one.
     pub(crate) fn recording_folder(&mut self) -> Option<PathBuf> {
         self.leave_recording_to_parent();
         self.recording.as_ref().map(|(_, recording)| recording.folder().to_owned())
     }
 
-    /// Forgets a recording that another process began, from which this process was forked. The thread that writes
-    /// the recording exists in that process alone, and the folder is locked for it: not even a destructor may run here.
+    /// Drops a recording that belongs to another process, of which this process is a fork. The thread that writes the
+    /// recording exists only in the other process, and the folder is locked for that process. So not even a destructor
+    /// may run here.
     fn leave_recording_to_parent(&mut self) {
         if self.recording.as_ref().is_some_and(|(owner, _)| *owner != process::id()) {
             std::mem::forget(self.recording.take());
         }
     }
 
-    /// Takes steps for the time of a slice, at most `most` steps, and stops after a step at which `schedule` is due.
+    /// Takes at most `most` steps, for the time [`SLICE`], and stops after a step at which `schedule` is due.
     pub(crate) fn take(&mut self, most: u64, mut schedule: Option<&mut FrameSchedule>) -> Taken {
         let start = Instant::now();
         let mut taken = Taken { steps: 0, is_due: false, ended: Ok(()) };
@@ -156,8 +157,8 @@ impl Run {
         taken
     }
 
-    /// Adds the observables of a step to the history and the recording, and records its state if it is finite. As in
-    /// `observables.csv`, a step with a state that is not finite also gets a row.
+    /// Adds the observables of the last step to the history and to the recording, and records the state if it is
+    /// finite. As in `observables.csv`, a step whose state is not finite also gets a row.
     fn take_down(&mut self, is_finite: bool) -> Result<()> {
         let row = *self.simulation.observables();
         self.rows.push(row);
@@ -177,13 +178,13 @@ impl Run {
         taken
     }
 
-    /// All alarms so far, one sentence for each kind.
+    /// Returns one sentence for each alarm so far.
     pub(crate) fn alarms(&self) -> Vec<String> {
         let settings = self.simulation.settings();
         self.simulation.alarms().iter().map(|alarm| alarm.message(settings)).collect()
     }
 
-    /// Alarms since the last call, each with its kind and a sentence.
+    /// Returns the alarms since the last call, each with its kind and a sentence.
     pub(crate) fn new_alarms(&mut self) -> Vec<(AlarmKind, String)> {
         let settings = self.simulation.settings();
         let new = self.simulation.alarms().iter().skip(self.alarms_told);
@@ -195,7 +196,7 @@ impl Run {
 
 impl Drop for Run {
     fn drop(&mut self) {
-        // Writes the waiting rows if the recording was not ended. Errors are dropped; call `end_recording` to see them.
+        // Write the waiting rows if the recording was not ended. Errors are dropped here; `end_recording` reports them.
         let _ = self.end_recording();
     }
 }

@@ -1,4 +1,4 @@
-//! The Python class of a simulation: construction, steps, changes, recordings and grid fields.
+//! The Python class `Simulation`: construction, steps, changes, recordings and smoothed fields.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -41,7 +41,7 @@ use slump_data::interchange::problem_file_of;
 /// Every setting (`bond`, `dt`, …) is an attribute that you can read and change. A change takes effect at the next
 /// step. The same options give the trajectory of the command line, bit for bit. Arrays are read-only copies: they do
 /// not change while the simulation continues. Several threads may use one simulation, and many simulations run in
-/// parallel on threads, because steps are taken without Python's lock.
+/// parallel on threads, because Python's lock is released while steps are taken.
 ///
 /// Raises
 /// ------
@@ -61,7 +61,7 @@ impl Simulation {
 
     /// Locks the run, for a thread that does not have Python's lock.
     pub(crate) fn locked(&self) -> MutexGuard<'_, Run> {
-        // After a panic in a step, which was reported, the state can still be inspected.
+        // A panic in a step was already reported. The state can still be inspected after it.
         self.run.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -69,18 +69,18 @@ impl Simulation {
         self.run.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Number of grains.
+    /// Returns the number of grains.
     fn count(&self, py: Python<'_>) -> usize {
         self.run(py).simulation.world().grains.len()
     }
 
-    /// Alarms since the last call, each with its kind and a sentence.
+    /// Returns the alarms since the last call, each with its kind and a sentence.
     pub(crate) fn new_alarms(&self, py: Python<'_>) -> Vec<(AlarmKind, String)> {
         self.run(py).new_alarms()
     }
 }
 
-/// Restores the simulation from the bytes in a pickle.
+/// Restores a simulation from the bytes in a pickle.
 #[pyfunction]
 pub(crate) fn _restored(py: Python<'_>, saved: Vec<u8>) -> PyResult<Simulation> {
     let state = py.detach(|| SavedState::from_bytes(&saved, "pickle"));
@@ -133,12 +133,12 @@ impl Simulation {
         stepping::take_steps(this, count, callback, None)
     }
 
-    /// Runs until a simulated time, `run(until=0.2)` (s), or without `until` up to the scene's `duration`. To run for
-    /// 0.2 s, write `run(until=sim.time + 0.2)`.
+    /// Runs until the simulated time `until` (s), as in `run(until=0.2)`. Without `until`, runs up to the `duration` of
+    /// the scene. To run for 0.2 s, write `run(until=sim.time + 0.2)`.
     ///
-    /// `callback` is called with the simulation every `every` seconds of simulated time, after the steps at which
-    /// `record` with the same `every` takes frames. Without `every` it is called after each step. Interruption and
-    /// warnings are as in `step`.
+    /// `callback` is called with the simulation every `every` seconds of simulated time, after the steps at which a
+    /// recording with the same `every` takes frames. Without `every` it is called after each step. Ctrl-C and warnings
+    /// work as in `step`.
     #[pyo3(
         name = "run",
         signature = (*times, until=None, callback=None, every=None),
@@ -151,7 +151,7 @@ impl Simulation {
         callback: Option<&Bound<'_, PyAny>>,
         every: Option<f64>,
     ) -> PyResult<()> {
-        // A bare number could be the time at which the run ends or the time that it takes.
+        // A bare number is refused, because it could mean the end time or the duration of the run.
         if let Ok(time) = times.get_item(0) {
             let sentence = format!(
                 "run is given {time}, but must be given until={time} to end at t = {time} s, or \
@@ -173,7 +173,7 @@ impl Simulation {
         stepping::take_steps(this, steps, callback, schedule)
     }
 
-    /// Changes settings from the next step on. If one of them is not allowed, none is changed.
+    /// Changes settings from the next step on. If a value is not allowed, no setting changes.
     #[pyo3(signature = (**settings))]
     fn change(&self, py: Python<'_>, settings: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
         let mut given = options::GivenOptions::default();
@@ -185,14 +185,14 @@ impl Simulation {
         run.simulation.change(settings).map_err(exception)
     }
 
-    /// All settings for the next step.
+    /// All settings of the next step, as a dictionary.
     #[getter]
     fn settings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let settings = *self.run(py).simulation.settings();
         options::settings(py, &settings)
     }
 
-    /// A second, independent simulation in the same state; both continue in the same way.
+    /// Returns a second, independent simulation in the same state. Both continue in the same way.
     fn copy(&self, py: Python<'_>) -> Self {
         Self::of(self.run(py).copy())
     }
@@ -205,9 +205,9 @@ impl Simulation {
         self.copy(py)
     }
 
-    /// Saves the run to a file. The file is written completely or not at all. `Simulation(restart=path)` resumes it bit
-    /// for bit, as `--restart` of the command line does, and `Simulation(initial=path)` starts again with its grains.
-    /// Only the version that wrote a file can read it.
+    /// Saves the run to a file. The file is written completely or not at all. `Simulation(restart=path)` resumes the
+    /// run bit for bit, as `--restart` of the command line does. `Simulation(initial=path)` starts the scene again with
+    /// the saved grains. Only the version that wrote a file can read it.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| self.locked().saved()?.save(&path)).map_err(exception)
     }
@@ -216,9 +216,9 @@ impl Simulation {
     /// grains and contacts every `every` seconds of simulated time. An earlier recording of this simulation ends.
     ///
     /// `formats` is a list of parquet (the default), csv, vtk, ovito and fields. If the folder already contains a
-    /// recording, the call fails unless `overwrite` is true, which removes it. Files are written on a separate thread.
-    /// If that fails, the recording ends, and a later step or `end_recording` raises the error. Copies, pickles and
-    /// forked processes are not recorded.
+    /// recording, the call fails, unless `overwrite` is true: then the old recording is removed. Files are written on a
+    /// separate thread. If writing fails, the recording ends, and a later step or `end_recording` raises the error.
+    /// Copies, pickles and forked processes of this simulation do not record.
     #[pyo3(signature = (folder, every=0.04, formats=None, overwrite=false))]
     fn record(
         &self,
@@ -239,13 +239,13 @@ impl Simulation {
         recorded.map_err(exception)
     }
 
-    /// Ends the recording, if there is one, and waits until it is written. A simulation that is deleted also ends its
-    /// recording, but does not report errors.
+    /// Ends the recording, if there is one, and waits until all files are written. A simulation that is deleted also
+    /// ends its recording, but does not report errors.
     fn end_recording(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| self.locked().end_recording()).map_err(exception)
     }
 
-    /// The contact problem of the next step, as data that `solve` accepts.
+    /// Returns the contact problem of the next step, as data that `solve` accepts.
     fn next_problem<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let problem = problem_file_of(&self.run(py).simulation).map_err(exception)?;
         parsed(py, &problem.text())
@@ -266,21 +266,22 @@ impl Simulation {
         Ok((restored, (PyBytes::new(py, &bytes),)))
     }
 
-    /// Sets the centres of all grains, m, one row per grain. Velocities and the measurements of the last step do not
+    /// Sets the centres of all grains (m), one row per grain. Velocities and the measurements of the last step do not
     /// change.
     fn set_positions(&self, py: Python<'_>, positions: &Bound<'_, PyAny>) -> PyResult<()> {
         let positions: Vec<_> = vectors("positions", positions, self.count(py))?;
         self.run(py).simulation.set_positions(&positions).map_err(exception)
     }
 
-    /// Sets the velocities of all grains, m/s, one row per grain. The measurements of the last step do not change.
+    /// Sets the velocities of all grains (m/s), one row per grain. The measurements of the last step do not change.
     fn set_velocities(&self, py: Python<'_>, velocities: &Bound<'_, PyAny>) -> PyResult<()> {
         let velocities: Vec<_> = vectors("velocities", velocities, self.count(py))?;
         self.run(py).simulation.set_velocities(&velocities).map_err(exception)
     }
 
-    /// Adds a grain at x, y (m) with this radius (m) and velocity (m/s). It becomes the last grain, has the density of
-    /// the other grains, and gets an `id` that no other body has had. The place must be free.
+    /// Adds a grain at x, y (m) with this radius (m) and velocity (m/s). The grain becomes the last row of all arrays,
+    /// has the density of the other grains, and gets an `id` that no other body has had. Fails if its place is not
+    /// free.
     #[pyo3(signature = (x, y, radius, vx=0.0, vy=0.0))]
     fn add_grain(
         &self,
@@ -298,8 +299,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Removes grain i. The arrays of all grains lose its row. Every other grain keeps its `id` in tables and
-    /// recordings.
+    /// Removes the grain in row `i`. The arrays of all grains lose this row. Every other grain keeps its `id` in tables
+    /// and recordings.
     fn remove_grain(&self, py: Python<'_>, i: i64) -> PyResult<()> {
         let mut run = self.run(py);
         let count = run.simulation.world().grains.len();
@@ -310,9 +311,9 @@ impl Simulation {
         Ok(())
     }
 
-    /// Force on each grain in addition to gravity, N, one row per grain. Assign the whole array; the forces then act
-    /// from the next step on until you assign others. Their work is part of `gravity_work`. Saved runs, copies and
-    /// pickles keep the forces; recordings do not contain them.
+    /// Force on each grain in addition to gravity (N), one row per grain. Assign a whole array to change the forces.
+    /// They act from the next step on until you assign other forces. Their work is part of `gravity_work`. Saved runs,
+    /// copies and pickles keep the forces; recordings do not contain them.
     #[getter]
     fn body_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let run = self.run(py);
@@ -328,19 +329,19 @@ impl Simulation {
         self.run(py).simulation.set_body_forces(&forces).map_err(exception)
     }
 
-    /// Starts to sum the forces of all pairs. From now on `pairs` gives means over all steps since this call. Steps
-    /// then take longer.
+    /// Starts to sum the forces of all pairs. From now on `pairs` gives means over all steps since this call, and steps
+    /// take longer.
     fn begin_pairs(&self, py: Python<'_>) {
         self.run(py).begin_pairs();
     }
 
-    /// Fields of density, velocity and stress on a grid, smoothed with a kernel whose standard deviation along each
-    /// axis is `width` (m, default: the mean diameter; I. Goldhirsch, Granular Matter 12:239, 2010).
+    /// Returns fields of density, velocity and stress on a grid, smoothed with a kernel whose standard deviation along
+    /// each axis is `width` (m, default: the mean diameter; I. Goldhirsch, Granular Matter 12:239, 2010).
     ///
-    /// The first axis of an array runs over the heights `y`, the second over `x` (centres of cells, m), and any further
-    /// axes over the components of vectors and tensors: `density` (kg/m²), `momentum` (kg/(m s)), `velocity` (m/s, NaN
-    /// in empty cells), `kinetic_stress` and `contact_stress` (N/m, compression positive). Values are means over cells
-    /// of half a width, so that sums over all cells are exact.
+    /// The first axis of each array runs over the heights `y`, the second axis over `x` (centres of cells, m), and
+    /// further axes over the components of vectors and tensors. The arrays are `density` (kg/m²), `momentum` (kg/(m
+    /// s)), `velocity` (m/s, NaN in empty cells), `kinetic_stress` and `contact_stress` (N/m, compression positive).
+    /// Values are means over cells of half a width, so that sums over all cells are exact.
     #[pyo3(signature = (width=None))]
     fn fields<'py>(&self, py: Python<'py>, width: Option<f64>) -> PyResult<Bound<'py, PyDict>> {
         let (moment, diameter) = {

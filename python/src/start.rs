@@ -1,5 +1,5 @@
-//! The initial state of a simulation: a scene by name, from a file or as a dictionary; grains from arrays; or a saved
-//! run; with changes.
+//! Initial state of a simulation from Python: a scene by name, from a file or as a dictionary; grains from arrays; or a
+//! saved run. Options change the scene.
 
 use std::path::Path;
 
@@ -16,13 +16,13 @@ use slump_core::scene::{Scene, Settling};
 use slump_data::config::{BaseScene, Config, SavedState};
 use slump_data::data::{RecordedGrains, Values, grains_of};
 
-/// The expected form of a scene dictionary, for messages.
+/// The expected form of a scene dictionary, in words for messages.
 const FORM: &str = "a scene as slump.scene(name) gives it";
-/// Placeholder in messages for Python data, in place of the name or file of the command line.
+/// Name in messages for data given as a Python dictionary, in place of a name or file.
 const A_DICTIONARY: &str = "a dictionary";
 const A_TABLE: &str = "a table";
 
-/// A scene as a dictionary, with changes. `slump scene` prints the same data.
+/// Returns a scene as a dictionary, changed by the options. `slump scene` prints the same data.
 #[pyfunction(name = "scene")]
 #[pyo3(signature = (scene=None, *, initial=None, **options))]
 pub(crate) fn scene_as_data<'py>(
@@ -34,7 +34,7 @@ pub(crate) fn scene_as_data<'py>(
     data_of(py, &self::scene(py, scene, initial, options)?)
 }
 
-/// Makes the requested scene. If grains have to settle, this is done here; Ctrl-C stops it.
+/// Returns the requested scene. If grains have to settle, this function computes how they settle; Ctrl-C stops it.
 pub(crate) fn scene(
     py: Python<'_>,
     scene: Option<&Bound<'_, PyAny>>,
@@ -56,7 +56,7 @@ pub(crate) fn scene(
     settled(py, &config, base.map_err(exception)?)
 }
 
-/// Resumes a run from a saved state in a file, with the requested changes.
+/// Resumes a run from a file with a saved state, changed by the options.
 pub(crate) fn restarted(
     py: Python<'_>,
     file: &Path,
@@ -73,7 +73,7 @@ pub(crate) fn restarted(
     restarted.map_err(exception)
 }
 
-/// The request in the form of the command line.
+/// Returns the arguments as a configuration of the command line.
 fn config_of(
     scene: Option<&Bound<'_, PyAny>>,
     initial: Option<&Bound<'_, PyAny>>,
@@ -91,7 +91,7 @@ fn config_of(
     given.config()
 }
 
-/// True if the argument is data and not a name or path.
+/// True if the argument is data (a dictionary or a table), and not a name or a path.
 fn is_data(given: &Bound<'_, PyAny>) -> bool {
     !given.is_none()
         && !given.is_instance_of::<PyString>()
@@ -100,7 +100,7 @@ fn is_data(given: &Bound<'_, PyAny>) -> bool {
 
 fn described(data: &Bound<'_, PyAny>) -> PyResult<Scene> {
     serde_json::from_str(&text_of("scene", data)?).map_err(|error| {
-        // A dictionary has no line numbers.
+        // A dictionary has no line numbers, so they are removed from the message.
         let place = format!(" at line {} column {}", error.line(), error.column());
         let said = error.to_string();
         let said = with_allowed(said.strip_suffix(&place).unwrap_or(&said), FORM);
@@ -121,11 +121,11 @@ fn settled(py: Python<'_>, config: &Config, base: BaseScene) -> PyResult<Scene> 
     }
 }
 
-/// The name of an initial state in messages.
+/// Name of the initial state in messages.
 const INITIAL: &str = "initial";
 
-/// Discs of a table: a dictionary of arrays, or a data frame, with all columns of the table of grains or the first of
-/// them.
+/// Reads discs from a dictionary of arrays or a data frame. Its columns are all columns of a table of grains, or the
+/// first few of them.
 fn discs(table: &Bound<'_, PyAny>) -> PyResult<RecordedGrains> {
     let named = |name: String| {
         let values = values_of(&name, &table.get_item(&name)?)?;
@@ -135,7 +135,7 @@ fn discs(table: &Bound<'_, PyAny>) -> PyResult<RecordedGrains> {
     grains_of(Path::new(INITIAL), &columns).map_err(of_no_file)
 }
 
-/// Exception for a refused table, from an error that is worded for a file.
+/// Returns the exception for a refused table. The error was worded for a file.
 fn of_no_file(error: Error) -> PyErr {
     InputError::new_err(error.to_string())
 }
@@ -154,7 +154,7 @@ fn names_of(table: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
     })
 }
 
-/// Extracts all entries of a list as one type.
+/// Converts all entries of a list to one type.
 fn each_of<T: for<'a, 'py> FromPyObject<'a, 'py>>(list: &Bound<'_, PyAny>) -> PyResult<Vec<T>> {
     list.try_iter()?.map(|entry| entry?.extract().map_err(Into::into)).collect()
 }
@@ -173,7 +173,7 @@ fn values_of(name: &str, column: &Bound<'_, PyAny>) -> PyResult<Values> {
         "id" => {
             each_of(column).map(Values::Counts).map_err(|_| refuse("a list of whole numbers ≥ 0"))
         }
-        // The values of this column are not read; only its length counts.
+        // The values of this column are not used; only its length is checked.
         name if !RecordedGrains::NUMBERS.contains(&name) => {
             let rows = column.len().map_err(|_| refuse("a list"))?;
             Ok(Values::Flags(vec![None; rows]))

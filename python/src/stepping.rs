@@ -1,6 +1,7 @@
-//! Takes many steps without Python's lock, so that other threads run meanwhile, and checks for Ctrl-C. It also handles
-//! forks: `multiprocessing` may fork this process, but the threads of rayon's global pool do not exist in the child,
-//! and work given to that pool would wait for ever. A child therefore gets its own pool.
+//! Takes many steps without Python's lock, so that other Python threads run meanwhile, and checks for Ctrl-C. Also
+//! handles forked processes: `multiprocessing` may fork this process, but the child process lacks the threads of
+//! rayon's global pool, and work given to that pool would wait for ever. So a child process gets a thread pool of its
+//! own.
 
 use std::ffi::CString;
 use std::process;
@@ -18,15 +19,15 @@ use slump_data::data::{DataSettings, FrameSchedule, Times};
 
 /// Id of the process that loaded this module.
 static LOADED_IN: OnceLock<u32> = OnceLock::new();
-/// Thread pool of a forked process, with the process id.
+/// Thread pool of a forked process, with the id of that process.
 static FORKED: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
-/// Remembers the process that owns the global pool.
+/// Stores the id of this process, which owns rayon's global pool.
 pub(crate) fn remember_this_process() {
     LOADED_IN.get_or_init(process::id);
 }
 
-/// Does work that may use several threads.
+/// Does work that may use several threads, in the global pool or, in a forked process, in that process's own pool.
 pub(crate) fn shared_out<T: Send>(
     work: impl FnOnce() -> T + Send,
 ) -> Result<T, ThreadPoolBuildError> {
@@ -39,7 +40,8 @@ pub(crate) fn shared_out<T: Send>(
         Some((owner, pool)) if *owner == this => Arc::clone(pool),
         _ => {
             let pool = Arc::new(ThreadPoolBuilder::new().build()?);
-            // The parent's pool has no threads in this process; dropping it would wait for them.
+            // A pool of the parent process has no threads in this process. It is leaked, because dropping it would wait
+            // for them.
             std::mem::forget(forked.replace((this, Arc::clone(&pool))));
             pool
         }
@@ -48,8 +50,8 @@ pub(crate) fn shared_out<T: Send>(
     Ok(pool.install(work))
 }
 
-/// The schedule of a callback: the steps at which a recording with the same `every` (s) takes frames, or each step
-/// without `every`.
+/// Returns the schedule of a callback: the steps at which a recording with the same `every` (s) takes frames. Returns
+/// `None`, which stands for every step, without `every`.
 pub(crate) fn schedule_of(
     simulation: &Bound<'_, Simulation>,
     callback: Option<&Bound<'_, PyAny>>,
@@ -62,13 +64,13 @@ pub(crate) fn schedule_of(
     let settings = DataSettings { every_secs: every, ..DataSettings::default() };
     settings.validate("every").map_err(exception)?;
     let mut schedule = FrameSchedule::new(Times::of(&settings));
-    // A recording takes a frame of the present state, but a callback is called only after steps.
+    // A recording also takes a frame of the present state, but a callback is called only after steps: skip this frame.
     schedule.is_due(&simulation.get().run(simulation.py()).simulation);
     Ok(Some(schedule))
 }
 
-/// Takes `steps` steps and calls `callback` with the simulation after each step at which `schedule` is due, or after
-/// each step.
+/// Takes `steps` steps. Calls `callback` with the simulation after each step at which `schedule` is due, or after every
+/// step without a schedule.
 pub(crate) fn take_steps(
     simulation: &Bound<'_, Simulation>,
     steps: u64,
@@ -94,7 +96,7 @@ pub(crate) fn take_steps(
     Ok(())
 }
 
-/// Takes steps for the time of one slice.
+/// Takes steps without Python's lock for the time of one slice, at most `most` steps.
 fn take(
     simulation: &Bound<'_, Simulation>,
     most: u64,
@@ -105,12 +107,13 @@ fn take(
     done.map_err(|error| PyOSError::new_err(error.to_string()))
 }
 
-/// Raises a Python warning for each new alarm, and an exception if the state is no longer finite.
+/// Raises a Python warning for each new alarm, except the alarm that the state is no longer finite, which becomes an
+/// exception elsewhere.
 fn warn_of_alarms(simulation: &Bound<'_, Simulation>) -> PyResult<()> {
     let py = simulation.py();
     for (kind, message) in simulation.get().new_alarms(py) {
         if kind != AlarmKind::NotFinite {
-            // A message of the program contains no zero byte.
+            // Messages of the program contain no zero byte, so this conversion does not fail.
             let message = CString::new(message).unwrap_or_default();
             PyErr::warn(py, &py.get_type::<SlumpWarning>(), &message, 1)?;
         }

@@ -1,4 +1,4 @@
-//! Read-only views of a simulation. Arrays are read-only copies.
+//! Read-only properties of the Python class `Simulation`. Arrays are read-only copies.
 
 use std::path::PathBuf;
 
@@ -12,43 +12,43 @@ use slump_data::data::Table;
 
 #[pymethods]
 impl Simulation {
-    /// Measurements of the last step, or of the initial state.
+    /// Measurements after the last step, or of the initial state before the first step, as a dictionary.
     #[getter]
     fn observables<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let row = *self.run(py).simulation.observables();
         first_row(py, Table::of_steps(&[row]))
     }
 
-    /// Measurements of all steps, one row per step.
+    /// Measurements after each step since the start or since `forget_history()`, one row per step, as a table.
     #[getter]
     fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let rows = self.run(py).rows.clone();
         columns(py, Table::of_steps(&rows))
     }
 
-    /// The grains, followed by the fixed discs, as a table.
+    /// The grains, followed by the fixed discs, as a table with one row per body.
     #[getter]
     fn grains<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let moment = self.run(py).simulation.moment();
         columns(py, py.detach(|| Table::of_grains(&moment)))
     }
 
-    /// The contacts of the last step as a table.
+    /// The contacts of the last step, as a table with one row per contact.
     #[getter]
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let moment = self.run(py).simulation.moment();
         columns(py, Table::of_contacts(&moment))
     }
 
-    /// Walls and fixed discs, one row per rigid body: position, velocity, force, torque and work, as a table.
+    /// Walls and fixed discs, as a table with one row per rigid body: position, velocity, force, torque and work.
     #[getter]
     fn walls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let moment = self.run(py).simulation.moment();
         columns(py, Table::of_walls(&moment))
     }
 
-    /// All pairs that have transmitted a force since `begin_pairs()`, including pairs that have separated: means of N,
-    /// T and force over that time, as a table.
+    /// All pairs that have transmitted a force since `begin_pairs()`, including pairs that have separated, as a table.
+    /// Its forces are means over that time: the normal force N, the tangential force T, and the force vector.
     #[getter]
     fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let run = self.run(py);
@@ -58,35 +58,35 @@ impl Simulation {
         columns(py, Table::of_pairs(sums, &run.simulation.moment()))
     }
 
-    /// Measures of the whole pile: stress, fabric, coordination, solid fraction, forces, clusters.
+    /// Measures of the whole pile, as a dictionary: stress, fabric, coordination, solid fraction, forces, clusters.
     #[getter]
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let moment = self.run(py).simulation.moment();
         first_row(py, py.detach(|| Table::of_measures(&moment)))
     }
 
-    /// Histograms of forces, directions, contacts and overlaps, one row per bin, as a table.
+    /// Histograms of forces, directions, contacts and overlaps, as a table with one row per bin.
     #[getter]
     fn histograms<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let moment = self.run(py).simulation.moment();
         columns(py, py.detach(|| Table::of_histograms(&moment)))
     }
 
-    /// The force of each contact on its grain i, N.
+    /// Force of each contact on its grain i, N, one row per contact.
     #[getter]
     fn forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let moment = self.run(py).simulation.moment();
         rows(py, moment.contacts.iter().map(|contact| contact.force.into()))
     }
 
-    /// Centres of the grains, m.
+    /// Centres of the grains, m, one row per grain.
     #[getter]
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let run = self.run(py);
         rows(py, run.simulation.world().grains.positions.iter().map(|&place| place.into()))
     }
 
-    /// Velocities of the grains, m/s.
+    /// Velocities of the grains, m/s, one row per grain.
     #[getter]
     fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let run = self.run(py);
@@ -99,7 +99,7 @@ impl Simulation {
         list(py, self.run(py).simulation.world().grains.angles.iter().copied())
     }
 
-    /// Angular velocities of the grains, rad/s.
+    /// Angular velocities of the grains, rad/s, positive anticlockwise.
     #[getter]
     fn angular_velocities<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         list(py, self.run(py).simulation.world().grains.angular_velocities.iter().copied())
@@ -117,44 +117,45 @@ impl Simulation {
         list(py, self.run(py).simulation.world().grains.masses.iter().copied())
     }
 
-    /// The boundaries in their present positions, in the form of scene files.
+    /// The boundaries at their present positions, in the form of scene files.
     #[getter]
     fn boundaries<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let boundaries = self.run(py).simulation.world().boundaries.clone();
         data_of(py, &boundaries)
     }
 
-    /// The alarms so far, one sentence for each kind.
+    /// One sentence for each alarm (warning of a failure) so far.
     #[getter]
     fn alarms(&self, py: Python<'_>) -> Vec<String> {
         self.run(py).alarms()
     }
 
-    /// The folder of the recording, or `None`. A forked process does not record the simulations of its parent.
+    /// Folder of the recording; `None` without a recording. A forked process does not record the simulations of its
+    /// parent.
     #[getter]
     fn recording(&self, py: Python<'_>) -> Option<PathBuf> {
         self.run(py).recording_folder()
     }
 
-    /// The scene's name.
+    /// Name of the scene.
     #[getter]
     fn name(&self, py: Python<'_>) -> String {
         self.run(py).scene.name.clone()
     }
 
-    /// The scene's duration, s.
+    /// Duration of the scene, s.
     #[getter]
     fn duration(&self, py: Python<'_>) -> f64 {
         self.run(py).scene.duration_secs
     }
 
-    /// The mean diameter d, the unit of reported lengths, m.
+    /// Mean diameter d of the grains, m, the unit of reported lengths.
     #[getter]
     fn mean_diameter(&self, py: Python<'_>) -> f64 {
         self.run(py).scene.mean_diameter
     }
 
-    /// Magnitude g of gravity, m/s².
+    /// Gravitational acceleration g of the scene, m/s².
     #[getter]
     fn gravity(&self, py: Python<'_>) -> f64 {
         self.run(py).simulation.world().gravity.magnitude()

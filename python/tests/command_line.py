@@ -1,4 +1,4 @@
-"""The program itself, which the package is held against."""
+"""Runs the program `slump`, with which tests compare the package."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ ROOT = Path(__file__).parent.parent.parent
 
 
 def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-    """Runs `slump` with arguments."""
+    """Run `slump` with arguments, and return the finished process."""
     path = Path(os.environ.get("SLUMP_PROGRAM", ROOT / "target" / "release" / "slump"))
     assert path.exists(), f"{path} is to be built first: cargo build --release --no-default-features"
     return subprocess.run([str(path), *arguments], capture_output=True, text=True, timeout=300)
 
 
 def as_arguments(options: dict[str, Any]) -> list[str]:
-    """Keyword arguments as the command line writes them."""
+    """Return keyword arguments in the form of the command line."""
 
     def text(value: object) -> str:
         return str(value).lower() if isinstance(value, bool) else str(value)

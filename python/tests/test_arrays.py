@@ -1,4 +1,4 @@
-"""Arrays: their shapes and types, and whether they say the same as each other and as mechanics."""
+"""Tests of arrays: their shapes and types, and whether they agree with each other and with mechanics."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_forces_are_those_of_the_table_and_move_the_grains(sim: slump.Simulation
     other.step(1)
     contacts, forces = other.contacts, other.forces
     np.testing.assert_array_equal(forces, np.stack([contacts["fx"], contacts["fy"]], axis=1))
-    # m Δv/Δt = m g + Σ f, the contact forces being opposite on the grain j.
+    # Newton's law: m Δv/Δt = m g + Σ f. The contact force on grain j is the opposite of the force on grain i.
     total = other.masses[:, None] * [0.0, -other.gravity]
     np.add.at(total, contacts["id_i"], forces)
     between = contacts["kind_j"] == "grain"
@@ -183,7 +183,7 @@ def test_a_grain_comes_in_motion_and_goes(sim: slump.Simulation) -> None:
         with pytest.raises(slump.InputError, match=sentence):
             act()
     assert len(other.radii) == 138
-    # A row is gone, and every other grain keeps its number; a new one gets another than any body has had.
+    # After a removal every other grain keeps its id, and a new grain gets an id that no body has had.
     ids = other.grains["id"]
     others = ids.max()
     other.remove_grain(1)

@@ -1,4 +1,4 @@
-"""The same options give bit for bit the trajectory of the command line."""
+"""Tests that the same options give the trajectory of the command line, bit for bit."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ RUNS: list[dict[str, Any]] = [
 
 
 def rows(folder: Path, options: dict[str, Any], until: float) -> dict[str, list[str]]:
-    """What `observables.csv` has of a run of the command line."""
+    """Run the command line with these options. Return the columns of its file `observables.csv` as text."""
     pictures = ["--headless", "--frames", str(folder), "--times", str(until), "--size", "8x8", "--renderer", "cpu"]
     done = program(*pictures, *as_arguments(options))
     assert done.returncode == 0, done.stderr
@@ -53,7 +53,7 @@ def test_rows_are_those_of_the_command_line(tmp_path: Path, run: dict[str, Any])
     sim = slump.Simulation(**options)
     sim.run(until=run["until"])
     history = sim.history
-    # Files of observables leave out the columns of bonds where there are none.
+    # A file of observables without bonds lacks the columns of bonds.
     assert set(expected) == {name for name, column in history.items() if not np.isnan(column).all()} | {"residual"}
     for name, texts in expected.items():
         there = np.array([told(text) for text in texts])

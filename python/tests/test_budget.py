@@ -1,4 +1,4 @@
-"""Error budgets, held against the command line."""
+"""Tests that error budgets agree with the command line."""
 
 import json
 

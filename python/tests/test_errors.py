@@ -1,4 +1,4 @@
-"""What is refused is an exception, with the sentence of the command line."""
+"""Tests that a refused value or file raises an exception with the message of the command line."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def test_sentences_are_those_of_the_command_line(tmp_path: Path, options: dict[s
     assert done.returncode == 2, "refused"
     with pytest.raises(slump.Error) as refused:
         slump.Simulation(**options)
-    # Numbers are the same, if not their spelling.
+    # The two messages may only differ in how they write NaN.
     said = done.stderr.removeprefix("slump: ").strip().replace("is nan", "is NaN")
     assert str(refused.value) == said
     kind = OSError if "none." in str(options) and "seed" not in options else ValueError
@@ -127,7 +127,7 @@ def test_a_file_of_discs_that_is_none_is_refused_in_the_words_of_the_command_lin
             slump.Simulation(initial=path)
         assert sentence in str(refused.value)
         assert done.returncode == 2 and str(refused.value) == done.stderr.removeprefix("slump: ").strip()
-    # The program that this is held against may have been built without Parquet.
+    # The program `slump` may have been built without Parquet, so this message is not compared with it.
     with pytest.raises(slump.FileError, match="the columns are .*nx, ny.*, but must be such that x, y and radius are there"):
         slump.Simulation(initial=tmp_path / "data" / "contacts" / "part-00000.parquet")
     part = tmp_path / "data" / "grains" / "part-00000.parquet"
@@ -186,7 +186,7 @@ def test_a_state_that_is_no_longer_finite_is_told_and_left_for_looking_at() -> N
 
 
 def blown_up(way: str) -> slump.Simulation:
-    """A simulation that a NotFiniteError has left behind."""
+    """Return a simulation whose last step raised a NotFiniteError."""
     if way == "pulled apart":
         scene = slump.scene("column", stepper="dem", substeps=1, dt=1.0)
         scene["gravity"]["acceleration"] = [0.0, -1e150]

@@ -1,4 +1,4 @@
-"""The examples, and what the pages say, run."""
+"""Tests that the examples and the code on the documentation pages run."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_a_notebook_runs_and_is_kept_without_outputs(tmp_path: Path, notebook: P
     done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "text/html" in done.stdout and done.stdout.count("image/png") == 2
-    # Every number that is printed as a difference is rounding.
+    # Every difference that the notebook prints is due to rounding.
     rests = [float(rest) for rest in re.findall(r"^1 less .*: (\S+)$", done.stdout, re.MULTILINE)]
     assert len(rests) == 2 and max(map(abs, rests)) < 1e-11, done.stdout
 
@@ -52,7 +52,7 @@ def test_a_notebook_runs_and_is_kept_without_outputs(tmp_path: Path, notebook: P
 def test_what_a_page_says_runs(tmp_path: Path, page: Path) -> None:
     programs = re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)
     assert programs, "a page with a program"
-    # The recording that the pages read.
+    # Make the recording that the code on the pages reads.
     sim = slump.Simulation("pile", bond=50, dt=5e-4)
     sim.record(tmp_path / "run", every=0.01)
     sim.step(200)

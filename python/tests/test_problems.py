@@ -1,4 +1,4 @@
-"""Contact problems solved alone, here and by the command line."""
+"""Tests of single contact problems, solved by the package and by the command line."""
 
 from __future__ import annotations
 

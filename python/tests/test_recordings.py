@@ -1,4 +1,4 @@
-"""Recordings on disk, and starts from them."""
+"""Tests of recordings on disk, and of simulations that start from a recording."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ import slump
 
 
 def numbers(words: list[str]) -> list[Any]:
-    """What a column of a file says, to the last bit; its words where these are no numbers."""
+    """Return the values of a column of a file: exact numbers, truth values, or the words themselves."""
     if any(words) and set(words) <= {"", "true", "false"}:
         return [word == "true" for word in words]
     try:
@@ -31,14 +31,14 @@ def numbers(words: list[str]) -> list[Any]:
 
 
 def read(file: Path) -> pd.DataFrame:
-    """A table of a recording."""
+    """Read a CSV table of a recording."""
     lines = [line for line in file.read_text().splitlines() if not line.startswith("#")]
     names, *rows = csv.reader(lines)
     return pd.DataFrame({name: numbers(list(column)) for name, column in zip(names, zip(*rows))})
 
 
 def of_moments(table: pd.DataFrame) -> list[str]:
-    """The columns without the means over the time since the frame before, which a moment alone does not have."""
+    """Return the columns except means over the time since the previous frame, which a single moment lacks."""
     return [name for name in table if not name.startswith(("mean_stress", "mean_time"))]
 
 
@@ -86,7 +86,7 @@ def test_a_recording_is_a_start(tmp_path: Path, format: Any) -> None:
     about = json.loads((tmp_path / "data.json").read_text())["about"]
     assert float(about["parameters.bond"]) == 60, "what is in force"
     starts = [slump.Simulation(initial=tmp_path, initial_step=10)]
-    # The program that this is held against may have been built without the others.
+    # The program `slump` may have been built without the other formats.
     if format == "csv":
         of_program = tmp_path / "scene.toml"
         of_program.write_text(program("scene", f"--initial={tmp_path}", "--initial-step=10").stdout)
@@ -161,7 +161,7 @@ def test_a_recording_that_cannot_be_written_is_told_of_and_the_run_goes_on(tmp_p
     sim.step(5)
     sim.record(tmp_path / "other", every=1e-3, formats=["vtk"])
     frames = tmp_path / "other" / "frames.csv"
-    # Nothing is written while it goes.
+    # Wait until the first frame is written, so that no file is written while the folder is removed.
     while not frames.exists() or len(frames.read_text().splitlines()) < 2:
         time.sleep(0.01)
     shutil.rmtree(tmp_path / "other")

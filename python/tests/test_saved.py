@@ -1,4 +1,4 @@
-"""Runs that are saved, and go on."""
+"""Tests of runs that are saved and resumed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ RUNS = [
 
 
 def told(sim: slump.Simulation) -> list[object]:
-    """All that a run says of itself."""
+    """Return the names and bytes of all grains, contacts and observables of a simulation."""
     tables = [sim.grains, sim.contacts, {name: [value] for name, value in sim.observables.items()}]
     return [(name, np.asarray(column).tobytes()) for table in tables for name, column in table.items()]
 
@@ -58,7 +58,7 @@ def test_a_saved_run_is_that_of_the_command_line_in_both_directions(tmp_path: Pa
     assert of_program.steps == 60 and told(of_program) == told(sim)
     done = program("--headless", f"--save={whole}", "--duration=0.03", *as_arguments(options))
     assert done.returncode == 0, done.stderr
-    # Sums over all steps, too.
+    # The saved files are equal, so the statistics over all steps are equal, too.
     other = slump.Simulation(duration=0.03, **options)  # type: ignore[arg-type]
     other.run()
     other.save(here)

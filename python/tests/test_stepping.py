@@ -1,4 +1,4 @@
-"""Stepping in the background of Python: callbacks, Ctrl-C, threads and processes."""
+"""Tests of steps in the background of Python: callbacks, Ctrl-C, threads and processes."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def test_ctrl_c_ends_stepping_at_once_and_the_simulation_goes_on_as_if_it_had_ne
     timer.start()
     with pytest.raises(KeyboardInterrupt):
         sim.step(10**9)
-    # A step of this pile takes far less than a millisecond; the rest is room for a busy machine.
+    # A step of this pile takes much less than a millisecond. The limit is large because the machine may be busy.
     assert time.perf_counter() - pressed[0] < 0.5
     taken = sim.steps
     assert 0 < taken == len(sim.history["step"])
@@ -143,7 +143,7 @@ def test_threads_give_what_one_after_the_other_gives() -> None:
 
 
 def many_heaps(count: int) -> dict[str, Any]:
-    """Heaps side by side: as many contacts of one colour as are worth several threads to `nsgs-parallel`."""
+    """Return a scene of heaps with enough contacts of one colour for `nsgs-parallel` to use several threads."""
     scene = slump.scene("repose")
     heap = scene["grains"]
     apart = 50 * scene["mean_diameter"]
@@ -163,7 +163,7 @@ def energy_of_heaps(bond: float) -> float:
 def test_a_forked_process_steps_on_several_threads_too() -> None:
     here = energy_of_heaps(3.0)
     with warnings.catch_warnings():
-        # Python itself warns of forks beside threads, which is what is tested.
+        # Python warns of forks in a process with threads. This test makes such a fork on purpose.
         warnings.simplefilter("ignore", DeprecationWarning)
         with multiprocessing.get_context("fork").Pool(2) as processes:
             assert processes.map_async(energy_of_heaps, [3.0, 3.0]).get(timeout=60) == [here] * 2
@@ -194,7 +194,7 @@ def test_settings_are_attributes_and_count_from_the_next_step_on() -> None:
     assert (sim.bond, sim.max_sweeps, sim.warm_start) == (50, 300, False)
     sim.step(10)
     assert list(sim.history["time_step"]) == [1e-3] * 10 + [5e-4] * 10
-    # Rows of steps without bonds have their columns where others have some.
+    # Rows of steps without bonds contain NaN in the columns of bonds.
     assert np.isnan(sim.history["bond_energy"][:10]).all() and (sim.history["bond_energy"][10:] >= 0).all()
     sim.run(until=0.02)
     assert sim.time == pytest.approx(0.02) and sim.steps == 30

@@ -1,4 +1,4 @@
-"""The stubs say what the compiled part has, and the examples hold to them."""
+"""Tests that the type stubs agree with the compiled module, and that the examples follow the stubs."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def type_of(kind: str | list[str]) -> str:
 
 
 def section() -> str:
-    """What a stub has to say of the settings that there are."""
+    """Return the classes of the stub that list all settings."""
     kinds = {name: type_of(kind) for name, kind in _kinds().items()}
     lines = ["class _Settings(TypedDict):"]
     lines += [f"    {name}: {kind}" for name, kind in kinds.items()]
@@ -56,7 +56,7 @@ def test_the_stub_has_all_other_options() -> None:
 
 
 def allowed(give: Callable[[], object]) -> set[str]:
-    """The words that the refusal of a word lists."""
+    """Return the allowed words that the error message on an unknown word lists."""
     try:
         give()
     except slump.InputError as error:
@@ -126,7 +126,7 @@ slump.budget(Path("there.toml"), quantity="kinetic_energy", cost=0.01, begin=0, 
 
 
 def test_the_stub_allows_all_that_the_package_takes(tmp_path: Path) -> None:
-    """Every argument of every function, in each form that the pages name."""
+    """Check a program that uses every argument of every function, in each form that the documentation names."""
     program = tmp_path / "accepted.py"
     program.write_text(ACCEPTED)
     scene = ROOT / "assets" / "scenes" / "hourglass.toml"

@@ -1,15 +1,15 @@
-//! Axes of plots: their least range and the numbers along them.
+//! Axes of plots: their smallest range and the numbers along them.
 
 use egui::Ui;
 use egui_plot::{AxisHints, GridInput, GridMark, Plot};
 
 use crate::render::numbers::{decimal, ticks};
 
-/// Least range of a linear vertical axis, as a fraction of its largest value.
+/// Smallest range of a linear vertical axis, as a fraction of its largest value.
 const LEAST_SPAN: f64 = 1e-3;
-/// Least range of a logarithmic axis, in decades. With two decades, the axis always contains two powers of ten.
+/// Smallest range of a logarithmic axis, in decades. An axis of two decades always contains two powers of ten.
 const LEAST_DECADES: f64 = 2.0;
-/// A plot in the style that all plots share. The mouse wheel does not zoom it.
+/// Returns a plot in the style that all plots share. The mouse wheel does not zoom the plot.
 pub(super) fn bare_plot<'a>(
     ui: &Ui,
     id: impl std::hash::Hash + std::fmt::Debug,
@@ -18,14 +18,14 @@ pub(super) fn bare_plot<'a>(
     Plot::new(id)
         .height(height)
         .allow_scroll(false)
-        // egui would fill the background pixel by pixel (see `fill`).
+        // egui would fill the background on the processor, pixel by pixel; `fill` uses the GPU.
         .show_background(false)
         .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
 }
 
-/// A plot whose x axis has the unit `x_unit`. `log` says which axes (x, y) are logarithmic. Numbers along a
-/// logarithmic axis with a unit are written in full. Times along a linear axis are in seconds and written in
-/// milliseconds.
+/// Returns a plot with numbered axes; the x axis has the unit `x_unit`. `log` states which axes (x, y) are logarithmic.
+/// Along a logarithmic axis with a unit, the labels are decimal numbers; without a unit they are powers of ten. Times
+/// along a linear axis are in seconds, and their labels are in milliseconds.
 pub(super) fn plot_with_axes<'a>(
     ui: &Ui,
     id: impl std::hash::Hash + std::fmt::Debug,
@@ -43,14 +43,14 @@ pub(super) fn plot_with_axes<'a>(
         .custom_y_axes(vec![axis(y_hints, log[1], "")])
 }
 
-/// Makes a plot show at least the range `ends` of x and y.
+/// Makes a plot show at least the ranges `ends` of x and y.
 pub(super) fn with_least(plot: Plot<'_>, ends: [[f64; 2]; 2]) -> Plot<'_> {
     let [[left, right], [bottom, top]] = ends;
     plot.include_x(left).include_x(right).include_y(bottom).include_y(top)
 }
 
-/// Least range of an axis for these values, or for their logarithms. Around values that hardly differ it is larger
-/// than their rounding errors: a fraction of the largest value, or two decades.
+/// Returns the smallest range of an axis that contains these values, or their logarithms. If the values hardly differ,
+/// the range is larger than their rounding errors: a fraction of the largest value, or two decades.
 pub(super) fn with_room(values: impl Iterator<Item = f64>, log: bool) -> [f64; 2] {
     let ends = values.filter(|value| value.is_finite()).map(|value| [value, value]);
     let ends = ends.reduce(|ends, [value, _]| [ends[0].min(value), ends[1].max(value)]);
@@ -61,7 +61,7 @@ pub(super) fn with_room(values: impl Iterator<Item = f64>, log: bool) -> [f64; 2
     [low - room, high + room]
 }
 
-/// Two to five marks at round numbers, or at whole powers of ten.
+/// Returns two to five marks at round numbers, or at whole powers of ten.
 fn round_marks(grid: GridInput, log: bool) -> Vec<GridMark> {
     let (low, high) = grid.bounds;
     if log {
@@ -79,7 +79,7 @@ fn round_marks(grid: GridInput, log: bool) -> Vec<GridMark> {
     values.into_iter().map(|value| GridMark { value, step_size }).collect()
 }
 
-/// Labels of the marks: numbers, or powers of ten if the marks are logarithms.
+/// Returns the labels of the marks: numbers, or powers of ten if the marks are logarithms.
 fn axis(hints: AxisHints<'static>, log: bool, unit: &'static str) -> AxisHints<'static> {
     hints.label_spacing(10.0..=18.0).formatter(move |mark, _| {
         if log && unit.is_empty() {

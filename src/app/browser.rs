@@ -1,4 +1,4 @@
-//! The browser version: its counterparts of window, files and threads.
+//! The browser version: the parts that replace window, files and threads.
 
 use std::path::PathBuf;
 
@@ -17,19 +17,19 @@ use crate::live::{Live, LiveOptions, Post, RemoteEngine, StartSource};
 use crate::output::give_file;
 pub use crate::output::written_files;
 
-/// The engine that computes runs, in a web worker of the page. It sends its messages to `post`. While it makes an
-/// initial state it calls `gives_up` to ask whether the page cancelled it.
+/// Returns the engine that computes runs in a web worker. It sends its messages to `post`. While it makes an initial
+/// state, it calls `gives_up` to ask whether the user cancelled the loading.
 pub fn engine(post: Post, gives_up: fn() -> bool) -> RemoteEngine<Opening> {
     RemoteEngine::new(post, LiveOptions { gives_up: Box::new(gives_up), ..LiveOptions::default() })
 }
 
-/// Stores the texture format that callbacks draw into.
+/// Stores the texture format of the render target, which the paint callbacks need.
 pub fn prepare(resources: &mut CallbackResources, format: wgpu::TextureFormat) {
     resources.insert(TargetFormat(format));
 }
 
-/// Opens the browser version with its `stored` preferences: the run that its `address` names, otherwise the lessons or
-/// the last scene.
+/// Opens the browser version with its `stored` preferences. It shows the run that its `address` names, otherwise the
+/// lessons or the last scene.
 pub fn begin(live: Live, stored: &str, address: &str, context: &Context) -> AppState {
     let stored: StoredWindow = ron::from_str(stored).unwrap_or_default();
     context.memory_mut(|memory| *memory = stored.layout);
@@ -54,29 +54,29 @@ pub fn begin(live: Live, stored: &str, address: &str, context: &Context) -> AppS
     state
 }
 
-/// Text that the browser stores until the next visit.
+/// Returns the text that the browser stores until the next visit.
 pub fn stored(preferences: &Preferences, context: &Context) -> String {
     ron::to_string(&StoredWindow::of(preferences, context)).unwrap_or_default()
 }
 
-/// Opens a file that was dropped on the page.
+/// Opens a file that the user dropped on the page.
 pub fn open_file(state: &mut AppState, path: PathBuf, bytes: Vec<u8>) {
     let Some(opening) = opening_of(&path) else { return state.warn(refused_file(&path)) };
     give_file(path.clone(), bytes.clone());
     state.open(Opening::With { path, bytes, opening: Box::new(opening) });
 }
 
-/// Computes the first world of a link and returns the hash of its last state.
+/// Computes the first simulation of a link and returns the hash of its last state, for tests.
 ///
 /// # Errors
-/// Names the fault of the link.
+/// Names the invalid part of the link.
 pub fn state_of(link: &str) -> Result<String> {
     let start = Box::new(Opening::Link(link.to_owned())).make(&mut |_| true)?;
     let world = start.history.as_ref().and_then(|history| history.worlds().first());
     Ok(world.map_or(&start.simulation, |world| &world.simulation).snapshot().state_hash())
 }
 
-/// State of the page and its run as JSON, for tests.
+/// Returns the state of the page and its run as JSON, for tests.
 pub fn told(state: &AppState, size: [u32; 2], scale: f32) -> String {
     told::told(state, size, scale, 1).to_string()
 }

@@ -1,21 +1,21 @@
-//! Presets of the solver that the window offers, and hints on experiments.
+//! Presets of the solver that the window offers, and hints on experiments with Bond and Δt.
 
 use crate::sim::{Settings, Stepper, Surroundings};
 use crate::solver::{Method, SolverSettings};
 use crate::world::{FrictionCone, Parameters, Periodic};
 
-/// A named preset of the solver.
+/// A preset of the solver's settings with its name.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Budget {
     pub name: &'static str,
-    /// Cost of the preset, in time and in accuracy.
+    /// Description of the preset, with its computing time and its accuracy.
     pub hint: &'static str,
     pub settings: SolverSettings,
 }
 
 impl Budget {
-    /// Settings of the preset in these surroundings. If its solver supports no sheared borders, driven walls,
-    /// rolling friction or materials that are there, uses `nsgs`.
+    /// Returns the settings of the preset for a scene. If the scene has sheared periodic borders, driven walls, rolling
+    /// friction or materials that the preset's solver does not support, the settings use `nsgs`.
     pub(super) fn among(
         &self,
         surroundings: &Surroundings,
@@ -37,7 +37,7 @@ impl Budget {
     }
 }
 
-/// 40 sweeps on all cores.
+/// Preset of 40 sweeps per step on all cores.
 pub(super) const FAST: Budget = Budget {
     name: "Fast",
     hint: "40 sweeps per step on all cores, solved or not. Without cohesion, large piles slump nearly as in \
@@ -46,7 +46,7 @@ pub(super) const FAST: Budget = Budget {
     settings: SolverSettings::to_residual(Method::NsgsParallel, 1e-6, 40),
 };
 
-/// The paper's solver.
+/// Preset of the paper's solver.
 pub(super) const PAPER: Budget = Budget {
     name: "Paper",
     hint: "The paper's solver: Gauss-Seidel to a relative change of 1e-7. With a touch tolerance of 0 it gives the \
@@ -54,7 +54,7 @@ pub(super) const PAPER: Budget = Budget {
     settings: SolverSettings::PAPER,
 };
 
-/// The default.
+/// The default preset.
 pub(super) const SOLVED: Budget = Budget {
     name: "Solved",
     hint: "Newton's method tries to solve each step under Coulomb friction. If it does not solve a step of a \
@@ -65,15 +65,15 @@ pub(super) const SOLVED: Budget = Budget {
 /// All presets, in the order of their buttons.
 pub(super) const BUDGETS: [Budget; 3] = [FAST, SOLVED, PAPER];
 
-/// Largest Bond at which a larger Δt makes a pile with the shifted cone hold better (`docs/paper.md`, Fig. 5a).
-/// Stronger piles need not.
+/// Largest Bond number at which a larger Δt makes a pile with the shifted cone more stable (`docs/paper.md`, Fig. 5a).
+/// For stronger piles this need not be true.
 const WEAK: f64 = 50.0;
 
-/// Longest fall from rest in one step without a warning, in mean diameters. A smaller value warns at the end of the slider
-/// of Δt.
+/// Longest fall of a grain from rest in one step without a warning, in mean diameters. With a smaller value, the upper
+/// end of the Δt slider would cause a warning.
 const LONGEST_FALL: f64 = 0.2;
 
-/// A warning of a step in which a grain at rest falls by more than [`LONGEST_FALL`].
+/// Returns a warning if a grain at rest falls by more than [`LONGEST_FALL`] in one step.
 pub(super) fn too_long(
     settings: &Settings,
     surroundings: &Surroundings,
@@ -90,12 +90,13 @@ pub(super) fn too_long(
     })
 }
 
-/// Time step (s) from which the hint is a smaller one.
+/// Time step (s) from which on the hint suggests a smaller time step.
 const LONG_STEP_SECS: f64 = 5e-3;
-/// Touch tolerance, in mean diameters, above which the hint on Δt does not apply (`docs/theory.md`).
+/// Touch tolerance, in mean diameters, above which the hint on Δt is not valid (`docs/theory.md`).
 const LARGE_TOLERANCE: f64 = 1e-4;
 
-/// A hint: something to try and its effect; none if no effect is known for these settings.
+/// Returns a hint that suggests an experiment and states its effect; `None` if the effect is not known for these
+/// settings.
 pub(super) fn what_to_try(settings: &Settings) -> Option<&'static str> {
     let parameters = &settings.parameters;
     if parameters.bond == 0.0 {

@@ -1,14 +1,14 @@
-//! The visible part of the scene: the whole scene until the user pans or zooms.
+//! The visible part of the scene. It is the whole scene until the user pans or zooms.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::render::{Camera, Style};
 
-/// Narrowest and widest view, in multiples of the view that shows the whole scene.
+/// Smallest and largest width of the view, as multiples of the width that shows the whole scene.
 const ZOOM_LIMITS: [f64; 2] = [1e-3, 30.0];
 
-/// The view that all worlds of a window share.
+/// The view of the scene, which all simulations of a window share.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SceneCamera {
     framed: bool,
@@ -30,7 +30,8 @@ impl SceneCamera {
         self.framed = true;
     }
 
-    /// Camera of a picture of `size` pixels. `view` has the corners of the whole scene, m.
+    /// Returns the camera of a picture of `size` pixels. `view` is the lower left and upper right corner of the whole
+    /// scene, m.
     pub(crate) fn camera(
         &mut self,
         view: [DVec2; 2],
@@ -49,8 +50,8 @@ impl SceneCamera {
         Camera { centre: self.centre, metres_per_pixel }
     }
 
-    /// Camera of a picture whose size is not the window's. It shows at least the part of the scene that the window
-    /// shows on `window_points`.
+    /// Returns the camera of an exported picture, whose size differs from the window's. The picture shows at least the
+    /// part of the scene that the window shows on `window_points`, points.
     pub(crate) fn for_picture(
         &self,
         view: [DVec2; 2],
@@ -68,15 +69,15 @@ impl SceneCamera {
         Camera { centre: self.centre, metres_per_pixel }
     }
 
-    /// Moves the scene with the mouse. `moved` is in points, y down.
+    /// Moves the scene with the mouse, by `moved` points, y down.
     pub(crate) fn pan(&mut self, moved: egui::Vec2) {
         self.framed = false;
         let moved = DVec2::new(f64::from(moved.x), -f64::from(moved.y));
         self.centre -= moved * self.metres_per_point;
     }
 
-    /// Zooms by `factor`. The point of the scene that is `from_middle` (points, y down) away from the centre keeps its
-    /// place.
+    /// Zooms by `factor`. The point of the scene that is `from_middle` points (y down) away from the centre keeps its
+    /// position on the screen.
     pub(crate) fn zoom(&mut self, factor: f64, from_middle: egui::Vec2) {
         let [nearest, farthest] = ZOOM_LIMITS.map(|limit| limit * self.framed_metres_per_point);
         let scale = (self.metres_per_point / factor).clamp(nearest, farthest);

@@ -1,5 +1,5 @@
-//! egui on a graphics device: the window's screen, and a canvas without a window for pictures of plots and for
-//! measurements.
+//! Drawing of egui's user interface on a graphics device, in a window or in memory. Pictures of plots and measurements
+//! of the drawing time need no window.
 
 use egui::{ClippedPrimitive, TexturesDelta};
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::render::Gpu;
 use crate::render::gpu::{FORMAT, OffscreenTarget};
 
-/// Draws user interfaces into targets of one texture format.
+/// Draws user interfaces into render targets of one texture format.
 pub(super) struct Screen {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
@@ -25,14 +25,14 @@ impl Screen {
         queue: &wgpu::Queue,
         format: wgpu::TextureFormat,
     ) -> Self {
-        // Nothing drawn here has gradients that would show bands.
+        // Without dithering, because the user interface has no colour gradients that would show bands.
         let options = RendererOptions { dithering: false, ..RendererOptions::default() };
         let mut renderer = Renderer::new(device, format, options);
         renderer.callback_resources.insert(TargetFormat(format));
         Self { device: device.clone(), queue: queue.clone(), renderer }
     }
 
-    /// Draws egui's output into a target of `size` pixels and uploads its textures. `then` can record commands that
+    /// Uploads egui's textures and draws egui's shapes into a target of `size` pixels. `then` can record commands that
     /// run after the drawing.
     pub(super) fn draw(
         &mut self,
@@ -75,12 +75,12 @@ impl Screen {
     }
 }
 
-/// Pixels per point of a printed plot: large enough that words stay readable in print.
+/// Pixels per point in a picture of plots. The value is large enough that text is readable in print.
 const PIXELS_PER_POINT: f32 = 2.0;
-/// Passes of egui until the axes have settled to the width of their labels.
+/// Number of egui's passes after which the axes of plots have adapted to the width of their labels.
 const PASSES: usize = 4;
 
-/// A graphics device without a window.
+/// A graphics device that draws into memory.
 pub struct Canvas {
     gpu: Gpu,
     screen: Screen,
@@ -88,10 +88,10 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// Opens the device that draws pictures of scenes.
+    /// Opens a graphics device.
     ///
     /// # Errors
-    /// If there is no graphics device. The message says which packages provide one.
+    /// If there is no graphics device. The message names the packages that provide one.
     pub fn new() -> Result<Self> {
         let gpu = Gpu::any()?;
         let screen = Screen::new(&gpu.device, &gpu.queue, FORMAT);
@@ -103,11 +103,11 @@ impl Canvas {
         &self.gpu.name
     }
 
-    /// Runs one pass of a user interface and draws it on `size` pixels. With `read`, returns the picture; otherwise
-    /// waits until it is drawn.
+    /// Runs one pass of a user interface and draws it on a picture of `size` pixels. If `read` is true, returns the
+    /// picture; otherwise waits until the drawing is complete.
     ///
     /// # Errors
-    /// Names `size` if the device cannot draw a picture of that size, or passes on the device's error.
+    /// Names `size` if the device cannot draw a picture of that size; other errors have the message of the device.
     pub fn draw(
         &mut self,
         context: &egui::Context,
@@ -153,7 +153,7 @@ impl Canvas {
         Ok(image)
     }
 
-    /// Draws a picture of plots, in light colours on a dark ground if `dark`.
+    /// Draws a picture of plots. If `dark` is true, its lines and text are light on a dark ground.
     pub(super) fn print(
         &mut self,
         size: [u32; 2],

@@ -1,4 +1,5 @@
-//! The context that panels share, and their requests to the window, which carries them out once all panels are drawn.
+//! The context that panels share, and their requests to the window. The window performs the requests after all panels
+//! are drawn.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -17,31 +18,31 @@ use crate::config::Config;
 use crate::error::Result;
 use crate::live::PastRun;
 
-/// A request of a panel.
+/// A request of a panel to the window.
 pub(crate) enum Request {
-    /// Open a scene.
+    /// Open the scene of a configuration.
     Load(Box<Config>),
     /// Open the file of a saved run or of a session.
     LoadSaved(PathBuf),
-    /// Ask for a file to be opened.
+    /// Show a dialog in which the user chooses a file to be opened.
     ChooseFile,
-    /// Ask for the folder of saved files.
+    /// Show a dialog in which the user chooses the folder of saved files.
     ChooseFolder,
-    /// Show a lesson.
+    /// Open the lesson with this index.
     Visit(usize),
-    /// Forget the points of Fig. 5a.
+    /// Remove the points of the plot of slump against Δt (Fig. 5a of the paper).
     ForgetReleased,
     /// End the lessons.
     LeaveLessons,
-    /// Save the visible moment of the selected world.
+    /// Save the displayed state of the selected simulation.
     SaveState,
-    /// Save the session.
+    /// Save the session: all simulations with their history, and the arrangement of the window.
     SaveSession,
-    /// Copy a link to the present moment.
+    /// Copy a link that reproduces the displayed moment.
     CopyLink,
 }
 
-/// The state that panels share. Any other state that a panel keeps between two frames is its own.
+/// The state that panels share. All other state of a panel between two frames belongs to the panel itself.
 pub(crate) struct PanelContext<'a> {
     pub run: &'a mut WatchedRun,
     pub preferences: &'a mut Preferences,
@@ -51,7 +52,7 @@ pub(crate) struct PanelContext<'a> {
     pub exports: &'a mut Exports,
     pub notice: &'a mut Option<Notice>,
     pub controls: &'a mut BTreeMap<String, Rect>,
-    /// True in a lesson.
+    /// True while a lesson is open.
     pub touring: bool,
     pub requests: Vec<Request>,
 }
@@ -62,12 +63,12 @@ impl PanelContext<'_> {
         self.requests.push(request);
     }
 
-    /// Shows a failure in the status bar for a while.
+    /// Shows an error message in the status bar for a few seconds.
     pub(crate) fn warn(&mut self, text: impl Into<String>) {
         *self.notice = Some(Notice::new(text, true));
     }
 
-    /// Writes a file into the folder of the preferences on another thread. The job returns the path.
+    /// Writes a file into the folder of the preferences on another thread. `job` writes the file and returns its path.
     pub(crate) fn write(
         &mut self,
         context: &egui::Context,
@@ -77,12 +78,12 @@ impl PanelContext<'_> {
         self.exports.write(context, &self.preferences.folder, Vec::new(), job);
     }
 
-    /// Stores the place of a control.
+    /// Stores the rectangle of a control, points, for tests that control the window from outside.
     pub(crate) fn note_control(&mut self, name: &str, rect: Rect) {
         self.controls.insert(name.to_owned(), rect);
     }
 
-    /// The earlier run that is drawn behind the present one.
+    /// The earlier run that is drawn behind the present run, if the user wants to see it.
     pub(crate) fn ghost(&self) -> Option<&PastRun> {
         self.run.ghost().filter(|_| self.preferences.ghost)
     }

@@ -1,14 +1,14 @@
-//! Prepares a curve for a plot: thins it by simulated time and splits it into pieces at values that cannot be drawn.
+//! Preparation of a curve for a plot: it is thinned in time, and split into pieces at values that cannot be drawn.
 
 use crate::live::Curve;
 use crate::sim::Observables;
 
-/// Number of time intervals in which a long curve shows its extremes.
+/// Number of time intervals of a long curve. In each interval the curve is reduced to its extreme values.
 const BUCKETS: usize = 300;
 
-/// The curve up to a time, in pieces. Values that are not finite, such as the logarithm of 0, leave a gap between two
-/// pieces, unless it is too narrow to be seen. A long curve shows the first, last, least and largest value of every
-/// interval of time.
+/// Returns the pieces of the curve up to the time `until_secs`. Values that are not finite, such as the logarithm of 0,
+/// leave a gap between two pieces, unless the gap is too narrow to be visible. In each time interval, a long curve
+/// keeps only its first, last, smallest and largest value.
 pub(super) fn pieces(
     curve: &Curve,
     until_secs: f64,

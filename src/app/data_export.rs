@@ -1,5 +1,5 @@
-//! Recordings of a run that the window has computed. A thread of its own computes the run again and writes it, so that
-//! neither the window nor the run waits.
+//! Export of recordings (files of grains and contacts) of a run that the window has computed. A separate thread
+//! computes the run again and writes it, so that neither the window nor the run waits.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -21,17 +21,17 @@ use crate::number::millis_text;
 use crate::sim::{Edit, Pull, RunEnding, Simulation};
 use crate::world::Disc;
 
-/// How the window exports data.
+/// The user's choices for exported recordings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct DataChoices {
-    /// Folder of the recording. A relative path starts at the folder of all files.
+    /// Folder of the recording. A relative path starts at the folder of all exported files.
     pub folder: PathBuf,
-    /// Simulated time between frames, s.
+    /// Simulated time between frames of the recording, s.
     pub every_secs: f64,
-    /// True for a frame after each step; then `every_secs` is not used.
+    /// True if each step becomes a frame; `every_secs` then has no effect.
     pub each_step: bool,
-    /// Formats of the files.
+    /// File formats of the recording.
     pub formats: Vec<FormatName>,
 }
 
@@ -46,37 +46,38 @@ impl Default for DataChoices {
     }
 }
 
-/// State of the data panel.
+/// State of the panel that exports recordings.
 #[derive(Default)]
 pub(crate) struct DataPanel {
-    /// First and last simulated time of the export, s. `None` stands for the whole record.
+    /// First and last simulated time of the recording, s; `None` for the whole record.
     pub stretch: Option<[f64; 2]>,
     pub overwrite: bool,
     pub export: Option<Work<String>>,
     pub told: Option<Notice>,
-    /// Path of a saved run, as typed.
+    /// Path of a saved run to be opened, as the user typed it.
     pub saved_run: String,
 }
 
-/// A request for a recording.
+/// A request to export a recording.
 pub(crate) struct DataOrder {
     pub folder: PathBuf,
     pub overwrite: bool,
-    /// Formats and time between frames. `None` as time stands for a frame after each step.
+    /// File formats, and time between frames. If the time is `None`, each step becomes a frame.
     pub settings: DataSettings,
-    /// First and last simulated time, s. `None` stands for the whole record.
+    /// First and last simulated time of the recording, s; `None` for the whole record.
     pub stretch: Option<[f64; 2]>,
 }
 
 impl DataOrder {
-    /// Writes a run and returns a message for the user. `run` is `None` if the user cancelled before it arrived.
+    /// Writes the recording of a run and returns a message for the user. `run` is `None` if the user cancelled before
+    /// the run arrived.
     pub(crate) fn write(&self, run: Option<TakenRun>, reporter: &Reporter) -> Result<String> {
         let nothing = || Ok("Stopped before the first frame".to_owned());
         self.settings.validate("data-every")?;
         let Some(run) = run else { return nothing() };
         let record = &run.world.record;
         let stretch = self.stretch_of(record)?;
-        // The folder is held here until the recording begins, at the first moment of the interval.
+        // The folder is locked now, but the recording begins later, at the first moment of the interval.
         let mut folder = Some(RecordingFolder::of(&self.folder, self.overwrite)?);
         let mut recording: Option<Recording> = None;
         let start = record.start().observables();
@@ -98,7 +99,7 @@ impl DataOrder {
                 });
             }
             let Some(recording) = &mut recording else { return Ok(ControlFlow::Continue(())) };
-            // The first moment of a run is not the result of a step.
+            // The initial state of a run is not the result of a step, so the table of steps has no row for it.
             if simulation.observables().step > start.step {
                 recording.add_step(simulation.observables())?;
             }
@@ -114,7 +115,7 @@ impl DataOrder {
         })
     }
 
-    /// First and last simulated time to be written, s. Infinite if the whole record was asked for.
+    /// Returns the first and last simulated time of the recording, s; infinite if the user chose the whole record.
     fn stretch_of(&self, record: &WorldRecord) -> Result<[f64; 2]> {
         let Some([from, to]) = self.stretch else { return Ok([f64::NEG_INFINITY, f64::INFINITY]) };
         let (first, last) = (record.start().time_secs(), record.end_secs());
@@ -133,7 +134,7 @@ impl DataOrder {
     }
 }
 
-/// Facts about a recording that begins at this moment: the scene, its settings, and later changes.
+/// Returns the facts to be stored in a recording that begins at this state: the scene, its settings, and later changes.
 fn facts(run: &TakenRun, simulation: &Simulation, until_secs: f64) -> Result<RunFacts> {
     let record = &run.world.record;
     let mut scene = run.start.scene.clone();
@@ -159,7 +160,7 @@ fn facts(run: &TakenRun, simulation: &Simulation, until_secs: f64) -> Result<Run
     Ok(about)
 }
 
-/// Sentences on the grains that the mouse pulled, with the steps.
+/// Returns phrases for the recording that state which grains the user pulled with the mouse, and in which steps.
 fn pulls(mut pull: Option<Pull>, first_step: u64, changes: &[&ControlsChange]) -> Vec<String> {
     let mut told = Vec::new();
     let mut since = first_step;
@@ -178,7 +179,7 @@ fn pulls(mut pull: Option<Pull>, first_step: u64, changes: &[&ControlsChange]) -
     told
 }
 
-/// Sentences on the changes that the mouse made, with the steps.
+/// Returns phrases for the recording that state the edits that the user made with the mouse, and after which steps.
 fn edits(all: &[HandEdit]) -> Vec<String> {
     let told = |HandEdit { after_step, edit }: &HandEdit| {
         let told = match edit {

@@ -1,4 +1,5 @@
-//! Dialogs of the desktop that choose a file or a folder. They run on a thread of their own, so that the run continues.
+//! Dialogs of the desktop in which the user chooses a file or a folder. They run on a separate thread, so that the
+//! simulation continues.
 
 use std::path::{Path, PathBuf};
 
@@ -13,19 +14,19 @@ pub(crate) enum Chosen {
     Folder(PathBuf),
 }
 
-/// The dialog that waits for an answer; there is at most one.
+/// The open dialog; at most one dialog is open.
 #[derive(Default)]
 pub(crate) struct FileDialog {
     waiting: Option<Work<Option<Chosen>>>,
 }
 
 impl FileDialog {
-    /// Asks for a file to be opened. The dialog begins in `folder`.
+    /// Shows a dialog in which the user chooses a file to be opened. The dialog begins in `folder`.
     pub(super) fn ask_for_file(&mut self, context: &egui::Context, folder: &Path) {
         self.ask(context, folder, true);
     }
 
-    /// Asks for the folder of saved files. The dialog begins in `folder`.
+    /// Shows a dialog in which the user chooses the folder of saved files. The dialog begins in `folder`.
     pub(super) fn ask_for_folder(&mut self, context: &egui::Context, folder: &Path) {
         self.ask(context, folder, false);
     }
@@ -39,13 +40,13 @@ impl FileDialog {
         self.waiting = Some(Work::start(context, runs, move |_, _| choose(&folder, for_file)));
     }
 
-    /// The answer of a dialog that has ended; nothing if it was cancelled.
+    /// Returns the choice of the user if a dialog has ended; `None` if the user cancelled it.
     pub(super) fn answer(&mut self) -> Option<Result<Chosen>> {
         outcome_of_ended(&mut self.waiting)?.transpose()
     }
 }
 
-/// A browser has no such dialogs: files are dropped on the page, and saved files are downloads.
+/// The browser version has no such dialogs: the user drops files on the page, and saved files are downloads.
 #[cfg(target_arch = "wasm32")]
 fn choose(_: &Path, _: bool) -> Result<Option<Chosen>> {
     Ok(None)
@@ -55,7 +56,8 @@ fn choose(_: &Path, _: bool) -> Result<Option<Chosen>> {
 fn choose(folder: &Path, for_file: bool) -> Result<Option<Chosen>> {
     use super::file_names::{SESSION_ENDING, STATE_ENDING};
 
-    // A dialog that ends sooner was not shown: nobody reads it and cancels in this time.
+    // If a dialog ends within this time, the system has not shown it, because nobody reads and cancels a dialog so
+    // quickly.
     const SHORTEST: std::time::Duration = std::time::Duration::from_millis(100);
     let began = crate::Instant::now();
     let dialog = rfd::FileDialog::new().set_directory(folder);

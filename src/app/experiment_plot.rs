@@ -1,4 +1,5 @@
-//! The quantity that an experiment is about, over simulated time: a value of each frame that the window has shown.
+//! The plot of an experiment's main quantity against simulated time. It has one value for each frame that the window
+//! has shown.
 
 use std::collections::BTreeMap;
 
@@ -13,12 +14,12 @@ use crate::scene::Scene;
 use crate::sim::Snapshot;
 use crate::world::MotionCourse;
 
-/// The quantity of an experiment.
+/// The main quantity of an experiment, such as the angle of the surface in a drum.
 struct ExperimentQuantity {
     scene: &'static str,
     /// Title of the plot, with the unit.
     title: &'static str,
-    /// Value of a moment, given the start.
+    /// Function that returns the value at a snapshot, given the initial scene.
     of: fn(&Scene, &Snapshot) -> f64,
     /// True if the plot shows the change of the value per second.
     is_rate: bool,
@@ -60,8 +61,8 @@ const QUANTITIES: [ExperimentQuantity; 8] = [
     }),
 ];
 
-/// Angle of the filling of a drum whose axis is at the origin: the centre of mass of a filling with a plane surface lies
-/// on the line through the axis at right angles to the surface.
+/// Returns the angle of the surface in a rotating drum whose axis is at the origin, degrees. The centre of mass of a
+/// filling with a plane surface lies on the line through the axis that is perpendicular to the surface.
 fn surface_degrees(now: &Snapshot) -> f64 {
     let weighted = now.grains.iter().map(|grain| grain.radius.powi(2) * grain.position);
     let centre: DVec2 = weighted.sum();
@@ -79,7 +80,8 @@ fn shear_ratio(now: &Snapshot) -> f64 {
     xy.abs() / yy
 }
 
-/// σxx, mean of σxy and σyx, and σyy of all contacts, times the area, J (Love and Weber, compression positive).
+/// Returns σxx, the mean of σxy and σyx, and σyy of all contacts, each multiplied by the area, J (Love and Weber,
+/// compression positive).
 fn stress(now: &Snapshot) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for contact in &now.contacts {
@@ -93,7 +95,7 @@ fn stress(now: &Snapshot) -> [f64; 3] {
     sum
 }
 
-/// True if the scene has a quantity of its own.
+/// True if the scene has a main quantity.
 pub(super) fn has_quantity(frame: &LiveFrame) -> bool {
     frame.start.as_ref().is_some_and(|start| quantity_of(start).is_some())
 }
@@ -102,7 +104,7 @@ fn quantity_of(start: &LiveStart) -> Option<&'static ExperimentQuantity> {
     QUANTITIES.iter().find(|quantity| quantity.scene == start.scene.name)
 }
 
-/// Times at which walls change their velocity, s.
+/// Returns the times at which walls change their velocity, s.
 pub(super) fn events(scene: &Scene) -> Vec<f64> {
     let mut times: Vec<f64> = Vec::new();
     for motion in &scene.motions {
@@ -118,21 +120,22 @@ pub(super) fn events(scene: &Scene) -> Vec<f64> {
     times
 }
 
-/// Simulated time over which a rate is taken, s.
+/// Simulated time over which the change per second is averaged, s.
 const RATE_SECS: f64 = 0.1;
-/// Most points that are drawn of a curve.
+/// Largest number of points of a drawn curve.
 const MOST_POINTS: usize = 2_000;
 
-/// Values of the moments that were shown of each world, by step.
+/// Values of the frames that were shown, for each simulation and by number of step.
 #[derive(Debug, Default)]
 pub(crate) struct ExperimentSeries {
-    /// Numbers of the load and of the last earlier run, and the number of worlds: other values begin again.
+    /// Number of the loaded initial state, number of the last earlier run, and number of simulations. If one of these
+    /// numbers changes, all values are discarded.
     run: (u64, Option<u64>, usize),
     worlds: Vec<BTreeMap<u64, [f64; 2]>>,
 }
 
 impl ExperimentSeries {
-    /// Adds the moments of a frame.
+    /// Adds the values of a frame.
     pub(super) fn follow(&mut self, frame: &LiveFrame) {
         let quantity = frame.start.as_ref().and_then(|start| Some((start, quantity_of(start)?)));
         let Some((start, quantity)) = quantity else { return *self = Self::default() };
@@ -151,7 +154,7 @@ impl ExperimentSeries {
         }
     }
 
-    /// The points of a world, as its plot shows them.
+    /// Returns the points of a simulation's curve in the plot.
     fn points(&self, start: &LiveStart, world: usize) -> Vec<[f64; 2]> {
         let Some(values) = self.worlds.get(world) else { return Vec::new() };
         let values: Vec<[f64; 2]> = values.values().copied().collect();
@@ -171,7 +174,7 @@ impl ExperimentSeries {
         values.iter().step_by(stride).map(point).filter(|[_, value]| value.is_finite()).collect()
     }
 
-    /// Draws the plot into the space that is left; nothing if the scene has no quantity of its own.
+    /// Draws the plot into the remaining space. Draws nothing if the scene has no main quantity.
     pub(crate) fn draw(&self, ui: &mut Ui, frame: &LiveFrame) {
         let start = frame.start.as_ref();
         let Some((start, quantity)) = start.and_then(|start| Some((start, quantity_of(start)?)))

@@ -1,4 +1,4 @@
-//! Writes files on threads of their own, so that the window never waits for a file.
+//! Export of files on separate threads, so that the window never waits for a file.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use crate::output::{Texts, check_writable, write_file};
 use crate::render::{Renderer, RendererChoice};
 use crate::sim::Observables;
 
-/// All files and links that are being made. The window does not wait for them.
+/// All files and links that are being made in the background.
 #[derive(Default)]
 pub(crate) struct Exports {
     /// Files to be written, one after another.
@@ -27,7 +27,7 @@ pub(crate) struct Exports {
     printers: Arc<Mutex<Printers>>,
     pub data: DataPanel,
     pub film: Option<(FilmFormat, Work<String>)>,
-    /// A link to be copied. The flag is true if changes by hand are not in the link.
+    /// A link to be copied. The flag is true if the user edited the run, which the link cannot express.
     link: Option<Work<(String, bool)>>,
 }
 
@@ -41,7 +41,7 @@ impl Drop for Exports {
 
 /// Message for a link that describes the whole run.
 const COPIED: &str = "The link is copied: paste it into a window, or pass it to slump --open.";
-/// Message for a link that lacks changes by hand.
+/// Message for a link of a run with edits by the user, which the link does not contain.
 const PULLED: &str = "The link is copied. It lacks changes by hand (grains that were pulled by hand, added or \
                       removed, walls that were moved), so it makes another run. A session keeps these changes.";
 
@@ -51,8 +51,8 @@ impl Exports {
         !self.files.is_empty() || self.data.export.is_some() || self.film.is_some()
     }
 
-    /// Writes a file into a folder on another thread. The job waits for earlier files and for its `runs`, and returns
-    /// the path.
+    /// Writes a file into a folder on another thread. `job` starts when earlier files are written and its `runs` have
+    /// arrived, and returns the path of the file.
     pub(super) fn write<R: Send + 'static>(
         &mut self,
         context: &egui::Context,
@@ -68,21 +68,22 @@ impl Exports {
         }));
     }
 
-    /// Copies the link of these runs.
+    /// Copies a link that reproduces these runs.
     pub(super) fn copy_link(&mut self, context: &egui::Context, runs: Vec<Receiver<TakenRun>>) {
         self.link = Some(Work::start(context, runs, |runs, _| link_of(&runs)));
     }
 
-    /// Returns a notice of the last export that has ended.
+    /// Returns a notice of an export that has ended, if one has.
     pub(super) fn follow(&mut self, context: &egui::Context) -> Option<Notice> {
         let mut notice = None;
         if let Some(outcome) = self.files.front().and_then(Work::outcome) {
             self.files.pop_front();
-            // The run that was just saved is the one that the user is likely to open.
+            // The user is likely to open the run that was just saved, so the field for opening contains its path.
             if let Some(path) = outcome.as_ref().ok().filter(|path| is_saved_run(path)) {
                 self.data.saved_run = path.display().to_string();
             }
-            // The user may not look in the folder in which the program was started, so the path is absolute.
+            // The path in the message is absolute, because the user may not know the folder in which the program was
+            // started.
             let whole = |path: PathBuf| std::path::absolute(&path).unwrap_or(path);
             notice = Some(outcome.map(|path| format!("Saved {}", whole(path).display())).into());
         }
@@ -107,7 +108,8 @@ impl Exports {
     }
 }
 
-/// Renderers of pictures, opened when the first picture needs them: opening a device takes longer than drawing.
+/// Renderers of exported pictures. Each is opened for the first picture and kept, because opening a device takes longer
+/// than drawing.
 #[derive(Default)]
 pub(crate) struct Printers {
     renderer: Option<Renderer>,
@@ -115,7 +117,7 @@ pub(crate) struct Printers {
 }
 
 impl Printers {
-    /// Renderer of scenes.
+    /// Returns the renderer of scenes.
     pub(super) fn renderer(&mut self) -> Result<&mut Renderer> {
         match &mut self.renderer {
             Some(renderer) => Ok(renderer),
@@ -123,7 +125,7 @@ impl Printers {
         }
     }
 
-    /// Canvas of plots.
+    /// Returns the canvas on which plots are drawn.
     pub(super) fn canvas(&mut self) -> Result<&mut Canvas> {
         match &mut self.canvas {
             Some(canvas) => Ok(canvas),
@@ -132,14 +134,14 @@ impl Printers {
     }
 }
 
-/// Writes the observables of all worlds as a table, and their description to a second file: other lines in a CSV file
-/// would be read as data.
+/// Writes the observables of all simulations as a CSV table, and their description to a second file, because text lines
+/// in a CSV file would be read as data.
 pub(super) fn write_table(path: &Path, curves: &[Curve], texts: &Texts) -> Result<()> {
     write_file(&path.with_extension("csv.txt"), texts.lines().as_bytes())?;
     write_curves(path, curves)
 }
 
-/// Writes all rows of all curves, each with the number of its world in the first column.
+/// Writes all rows of all curves to a table whose first column is the number of the simulation.
 fn write_curves(path: &Path, curves: &[Curve]) -> Result<()> {
     let has_more = curves.iter().flat_map(Curve::rows).any(Observables::has_further_columns);
     let cells = |row: Observables| if has_more { row.with_further_columns() } else { row };

@@ -6,13 +6,14 @@ use super::number_text::written;
 use crate::sim::Settings;
 use crate::world::Parameters;
 
-/// Extension of files with saved runs.
+/// Ending of files with saved runs.
 pub(crate) const STATE_ENDING: &str = "slump";
 
-/// Extension of files with sessions.
+/// Ending of files with sessions.
 pub(crate) const SESSION_ENDING: &str = "session";
 
-/// First part of the names of files that show a moment of a scene. With one world it contains Bond and Δt.
+/// Returns the first part of the names of files that show a moment of a scene. It contains Bond and Δt if there is one
+/// simulation, or the number of simulations.
 pub(crate) fn stem(scene: &str, settings: &[Settings], time_secs: f64) -> String {
     let name: String = scene.chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
     let which = match settings {
@@ -25,7 +26,7 @@ pub(crate) fn stem(scene: &str, settings: &[Settings], time_secs: f64) -> String
     format!("slump-{name}-{which}-{time_secs:.4}s")
 }
 
-/// Path of `stem.ending` in `folder`, with a number if this file exists.
+/// Returns the path of `stem.ending` in `folder`. If this file exists, a number is added to the name.
 pub(super) fn free_path(folder: &Path, stem: &str, ending: &str) -> PathBuf {
     let numbered = |number: u32| folder.join(format!("{stem}-{number}.{ending}"));
     let plain = folder.join(format!("{stem}.{ending}"));
@@ -36,7 +37,7 @@ pub(super) fn free_path(folder: &Path, stem: &str, ending: &str) -> PathBuf {
     (2..).map(numbered).find(|path| !path.exists()).unwrap_or(plain)
 }
 
-/// Message for a file that the window cannot open.
+/// Returns the message for a file that the window cannot open.
 pub(super) fn refused_file(path: &Path) -> String {
     let name = path.display();
     format!(
@@ -49,7 +50,7 @@ pub(super) fn is_session(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == SESSION_ENDING)
 }
 
-/// True if the name is that of a saved run or a session.
+/// True if the ending is that of a saved run or a session.
 pub(super) fn is_saved_run(path: &Path) -> bool {
     is_session(path) || path.extension().is_some_and(|ending| ending == STATE_ENDING)
 }

@@ -1,5 +1,5 @@
-//! Videos and animations of a recorded run. A thread of its own computes the run again, bit for bit, and draws it at
-//! equal intervals of time.
+//! Videos and GIF animations of a recorded run. A separate thread computes the run again, with the same bits, and draws
+//! it at equal intervals of simulated time.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -17,12 +17,12 @@ use crate::output::{check_writable, counted};
 use crate::render::{Renderer, RendererChoice, speed_reference};
 use crate::sim::{RunEnding, Settings, Simulation};
 
-/// File format of a film.
+/// File format of an exported film.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum FilmFormat {
-    /// MP4.
+    /// An MP4 video.
     Video,
-    /// An animation that repeats, with at most 256 colours a picture.
+    /// A GIF animation, which repeats and has at most 256 colours per picture.
     Gif,
 }
 
@@ -36,33 +36,33 @@ impl FilmFormat {
     }
 }
 
-/// Fraction of the work that computes the moments. Drawing and encoding are the rest.
+/// Fraction of the progress bar for computing the states. The rest is for drawing and encoding.
 const PART_OF_MOMENTS: f64 = 0.3;
-/// Largest number of pictures in a film. More are probably a mistake.
+/// Largest number of pictures in a film. A larger number is probably a mistake of the user.
 const MOST_PICTURES: f64 = 1e5;
 
-/// For each world and picture: index of the stored state, and the settings of that moment.
+/// For each simulation and each picture, the index of the stored state and the settings at that moment.
 type Moments = Vec<Vec<(usize, Settings)>>;
 
-/// A request for a video or an animation.
+/// A request to export a video or an animation.
 pub(crate) struct FilmOrder {
     pub format: FilmFormat,
-    /// Look of all pictures. Its moments are replaced by those of each picture.
+    /// Style and arrangement of all pictures. Its states are replaced by the states of each picture.
     pub picture: ScenePicture,
     pub slumps: bool,
-    /// Pictures per second that the format can express.
+    /// Pictures per second of the film, a rate that the format can express.
     pub rate_hz: f64,
     /// Simulated seconds per second of the film.
     pub speed: f64,
-    /// First and last simulated time, s. `None` stands for the whole record.
+    /// First and last simulated time of the film, s; `None` for the whole record.
     pub stretch: Option<[f64; 2]>,
     pub folder: PathBuf,
     pub stem: String,
 }
 
 impl FilmOrder {
-    /// Makes the film from one run per world and returns a message for the user. If the user cancels before all runs
-    /// have arrived, makes no film.
+    /// Makes the film from one run per simulation and returns a message for the user. If the user cancelled before all
+    /// runs arrived, no film is made.
     pub(crate) fn make(self, runs: &[TakenRun], reporter: &Reporter) -> Result<String> {
         let (format, count) = (self.format, self.picture.worlds.len());
         let made = if runs.len() == count { self.write(runs, reporter)? } else { None };
@@ -73,11 +73,12 @@ impl FilmOrder {
         Ok(format!("Saved {} of {}", whole.display(), counted(pictures as u64, "picture")))
     }
 
-    /// Writes the film. Returns the file and its number of pictures, or `None` if the user cancels.
+    /// Writes the film. Returns the path of the file and its number of pictures, or `None` if the user cancels.
     fn write(self, runs: &[TakenRun], reporter: &Reporter) -> Result<Option<(PathBuf, usize)>> {
         check_writable("folder", &self.folder)?;
         let times = self.times(runs)?;
-        // The states wait on disk because all pictures share one colour scale, which is known only at the end.
+        // The states wait in a file, because all pictures have the same colour scale, which is known only after all
+        // states are computed.
         let mut states = WaitingStates::start(&self.folder)?;
         let Some((shown, fastest)) = self.moments(runs, &times, &mut states, reporter)? else {
             return Ok(None);
@@ -99,7 +100,7 @@ impl FilmOrder {
                 return Ok(None);
             }
             for (world, shown) in picture.worlds.iter_mut().zip(&shown) {
-                // A world that has already ended shows its last moment.
+                // A world that has already ended shows its last state.
                 let moment = shown.get(number).or(shown.last()).copied();
                 let (index, settings) = moment.unwrap_or((0, world.settings));
                 world.settings = settings;
@@ -117,7 +118,7 @@ impl FilmOrder {
         Ok(Some((path, count)))
     }
 
-    /// The simulated times of the pictures, s.
+    /// Returns the simulated times of the pictures, s.
     fn times(&self, runs: &[TakenRun]) -> Result<Vec<f64>> {
         let records = || runs.iter().map(|run| &run.world.record);
         let first =
@@ -138,7 +139,7 @@ impl FilmOrder {
         Ok((0..=count as u64).map(|number| from.max(first) + number as f64 * each).collect())
     }
 
-    /// Computes the moments of the film and the speed of the fastest grain, m/s. Returns `None` if the user cancels.
+    /// Computes the states of the film and the speed of the fastest grain, m/s. Returns `None` if the user cancels.
     fn moments(
         &self,
         runs: &[TakenRun],
@@ -163,7 +164,8 @@ impl FilmOrder {
                     fastest = fastest.max(speed_reference(style, &snapshot));
                     let index = states.len();
                     states.add(style, index, snapshot)?;
-                    // Pictures can be closer in time than steps.
+                    // The interval between pictures can be shorter than a step, so several pictures can show the same
+                    // state.
                     while due.next_if(|&&time| is_nearest(simulation, time)).is_some() {
                         shown[world].push((index, *simulation.settings()));
                     }
@@ -178,7 +180,7 @@ impl FilmOrder {
     }
 }
 
-/// True if the present step is the nearest to `time_secs`, or a later one.
+/// True if the present state is the nearest to the simulated time `time_secs`, or a later one.
 fn is_nearest(simulation: &Simulation, time_secs: f64) -> bool {
     let half_a_step = 0.5 * simulation.settings().parameters.time_step_secs;
     simulation.time_secs() + half_a_step > time_secs

@@ -1,5 +1,5 @@
-//! Definitions of the terms of the field, for hover texts. They come from the glossary of the documentation and from the
-//! help texts of settings.
+//! Definitions of technical terms for hover texts. They come from the glossary of the documentation and from the help
+//! texts of settings.
 
 use std::sync::OnceLock;
 
@@ -8,12 +8,12 @@ use egui::Response;
 use crate::sim::{Settings, Stepper};
 use crate::solver::METHODS;
 
-/// The page with the glossary: the rows of its last table.
+/// The page with the glossary, which is the last table of the page.
 const PAGE: &str = include_str!("../../docs/theory.md");
-/// Entries that are also common words or letters.
+/// Terms of the glossary that are also common words or letters, and therefore get no hover text.
 const COMMON: [&str; 2] = ["d", "stop"];
 
-/// Shows the definitions of all terms in a text to whoever points at the text.
+/// Shows the definitions of all terms in `text` when the user points at the response.
 pub(super) fn explained(response: Response, text: &str) -> Response {
     if !response.hovered() {
         return response;
@@ -22,7 +22,7 @@ pub(super) fn explained(response: Response, text: &str) -> Response {
     if found.is_empty() { response } else { response.on_hover_text(found) }
 }
 
-/// The definitions of all terms in a text, one per line; each term is defined once.
+/// Returns the definitions of all terms in a text, one per line. Each term is defined once.
 fn definitions_in(text: &str) -> String {
     let mut found: Vec<&str> = Vec::new();
     for (term, definition) in terms() {
@@ -33,7 +33,7 @@ fn definitions_in(text: &str) -> String {
     found.join("\n")
 }
 
-/// All terms, each with the line that defines it.
+/// Returns all terms, each with a line that defines the term.
 fn terms() -> &'static [(String, String)] {
     static TERMS: OnceLock<Vec<(String, String)>> = OnceLock::new();
     TERMS.get_or_init(|| {
@@ -59,7 +59,7 @@ fn terms() -> &'static [(String, String)] {
             |(name, _): &(String, String)| !name.is_empty() && !COMMON.contains(&name.as_str());
         let mut terms: Vec<(String, String)> = Vec::new();
         for (name, line) in glossary.chain(declared).filter(is_term) {
-            // The glossary comes first.
+            // If a term occurs twice, the definition in the glossary is used, because it comes first.
             if terms.iter().all(|(other, _)| *other != name) {
                 terms.push((name, line));
             }
@@ -68,7 +68,7 @@ fn terms() -> &'static [(String, String)] {
     })
 }
 
-/// True if a text has a word, also in the plural or at the beginning of a sentence.
+/// True if a text contains a word, also in the plural or at the beginning of a sentence.
 fn has_word(text: &str, word: &str) -> bool {
     let (text, word) = (text.to_lowercase(), word.to_lowercase());
     text.match_indices(&word).any(|(at, _)| {

@@ -1,5 +1,5 @@
-//! The lessons: each shows one thing, with worlds side by side and a sentence or two on what to watch.
-//! What their sentences say is checked by `tests/window/lessons.rs`, over many starts.
+//! The lessons of the window. Each lesson demonstrates one effect, with simulations side by side and a few sentences on
+//! what to watch. `tests/window/lessons.rs` checks these sentences over many initial states.
 
 use glam::DVec2;
 
@@ -15,40 +15,40 @@ use crate::sim::{Settings, Stepper};
 use crate::solver::{Method, SolverSettings};
 use crate::world::FrictionCone;
 
-/// What one lesson shows.
+/// A lesson: its texts, its scene, and the settings of the window.
 #[derive(Debug)]
 pub struct Lesson {
-    /// What it is about.
+    /// Title of the lesson.
     pub title: &'static str,
-    /// What to do, and what to watch.
+    /// Text that tells the user what to do and what to watch.
     pub watch: &'static str,
-    /// The question before the pile is released.
+    /// The question that the user answers before the run starts; `None` for a lesson without a question.
     pub question: Option<Question>,
-    /// What the lesson showed, in a sentence.
+    /// The result of the lesson in a sentence, for the end of the lesson.
     pub learnt: &'static str,
-    /// The sliders that the lesson uses, by the names of their settings.
+    /// Names of the settings whose sliders the lesson shows.
     pub sliders: &'static [&'static str],
-    /// Its scene.
+    /// Name of the scene.
     pub scene: &'static str,
-    /// What is seen of it, lower left and upper right, in mean diameters; none is all of it.
+    /// Lower left and upper right corner of the view, in mean diameters; `None` shows the whole scene.
     pub view: Option<[DVec2; 2]>,
-    /// Its worlds, made of the settings that the window gives that scene.
+    /// Returns the settings of the simulations side by side, made from the settings that the window uses for the scene.
     pub worlds: fn(Settings) -> Vec<Settings>,
-    /// Simulated time per time on the wall.
+    /// Speed of playing: simulated time per wall-clock time.
     pub speed: f64,
-    /// The quantities that are plotted.
+    /// Names of the plotted quantities.
     pub plots: &'static [&'static str],
-    /// The page that is opened for it.
+    /// Page of the sidebar that the lesson opens.
     pub page: Option<Page>,
-    /// True if a slider starts the run again.
+    /// True if moving a slider restarts the run from its initial state.
     pub starts_again: bool,
-    /// True of settings whose change its sentences ask for, or leave true.
+    /// Returns true for the name of a setting that the user may change without making the texts of the lesson wrong.
     pub leaves_free: fn(&str) -> bool,
-    /// The controls that it asks for next, which are lit, by the names that the window notes their places by.
+    /// Returns the names of the controls that the user should use next. The window highlights these controls.
     pub asks_for: fn(&WatchedRun, &Preferences) -> &'static [&'static str],
 }
 
-/// A pile of the paper, slow enough to be followed.
+/// Defaults of a lesson on the pile of the paper. The run is slow enough to be watched.
 const PILE: Lesson = Lesson {
     title: "",
     watch: "",
@@ -67,7 +67,7 @@ const PILE: Lesson = Lesson {
     asks_for: |run, preferences| if waits_at_start(run) { first_step(preferences) } else { &[] },
 };
 
-/// The controls that a lesson lights before its pile is released: a prediction comes first.
+/// Returns the controls that a lesson highlights before its run starts. The prediction comes first.
 fn first_step(preferences: &Preferences) -> &'static [&'static str] {
     let LessonPlace { at, predictions, .. } = &preferences.lesson;
     let is_asked = lesson(*at).question.is_some() && !predictions.contains_key(at);
@@ -78,17 +78,17 @@ fn waits_at_start(run: &WatchedRun) -> bool {
     run.frame.at_start() && !run.frame.playing
 }
 
-/// The seed of the lessons' pile, which slumps in the middle half of sixteen others in all of them; the shipped pile, which
-/// was chosen for the paper's pattern, does not.
+/// Seed of the lessons' pile. In all lessons the slump of this pile is within the interquartile range of sixteen other
+/// piles. The slump of the built-in pile is not, because that pile was chosen to show the paper's pattern.
 const SEED: u64 = 15;
-/// Its grains at rest, which rain for seconds.
+/// Grains at rest of the pile made from [`SEED`]. They are stored because their deposition takes seconds.
 const GRAINS: &str = include_str!("../../assets/pile_138_seed15.csv");
 
 impl Lesson {
-    /// What makes its scene, and the scene.
+    /// Returns the configuration of the lesson's scene, and the scene.
     ///
     /// # Errors
-    /// Where a scene is no longer there.
+    /// If the scene no longer exists.
     pub fn scene(&self) -> Result<(Config, Scene)> {
         let mut config = Config::of_scene(self.scene);
         if self.scene != Config::DEFAULT_SCENE {
@@ -104,7 +104,8 @@ fn two_time_steps(base: Settings, bond: f64) -> Vec<Settings> {
     [1e-4, 5e-3].map(|secs| base.with_bond(bond).over(secs)).into()
 }
 
-/// That many sweeps of Gauss-Seidel a step on Coulomb's law, solved or not.
+/// Returns the settings for `count` sweeps of Gauss-Seidel per step under Coulomb friction, whether or not the step is
+/// then solved.
 fn sweeps(base: Settings, count: u32) -> Settings {
     Settings { solver: SolverSettings::to_residual(Method::Nsgs, 1e-6, count), ..base }
 }
@@ -114,7 +115,7 @@ fn in_cone(mut settings: Settings, cone: FrictionCone) -> Settings {
     settings
 }
 
-/// All of them, in their order.
+/// All lessons, in their order.
 pub const LESSONS: [Lesson; 7] = [
     Lesson {
         title: "Two time steps",
@@ -261,11 +262,11 @@ pub const LESSONS: [Lesson; 7] = [
 
 /// Bond number at which the piles of lesson 4 slump under both laws.
 const LESSON_4_BOND: f64 = 8.0;
-/// The time step of the lesson on bonds, s.
+/// Time step of the lesson on bonds at rest, s.
 const LONG_STEP_SECS: f64 = 5e-3;
 
 impl Lesson {
-    /// The choices that the lesson makes in place of the user.
+    /// Returns the preferences that the lesson sets while it is open.
     pub(super) fn choices(&self) -> Choices {
         Choices {
             quantities: self.plots.iter().map(|name| (*name).to_owned()).collect(),
@@ -279,7 +280,7 @@ impl Lesson {
     }
 }
 
-/// The lesson of that number from 0, or the last one if there are not so many.
+/// Returns the lesson with the index `at`, or the last lesson if `at` is too large.
 pub(super) fn lesson(at: usize) -> &'static Lesson {
     &LESSONS[at.min(LESSONS.len() - 1)]
 }

@@ -1,11 +1,11 @@
-//! Links. A link is a line of text that opens a run again. It contains the origin of the scene and, for each world,
-//! the settings, their changes and the number of steps.
+//! Links. A link is a line of text from which a run can be computed again. It contains the origin of the scene and, for
+//! each simulation, the settings, their changes and the number of steps.
 //!
 //! > slump://run?scene=pile&bond=20&from=120&bond=5&to=300
 //!
-//! Names are those of the command line. `from` begins settings that apply after that step. `to` ends a world and gives
-//! its number of steps; the next world follows. Settings that are left out keep the value of the scene or the previous
-//! value.
+//! The names are those of the command line. `from` is the number of a step; the settings behind it apply after that
+//! step. `to` is the number of steps of a simulation and ends the simulation; the next simulation follows. A setting
+//! that is left out keeps the value of the scene or its previous value.
 
 use std::sync::OnceLock;
 
@@ -16,19 +16,19 @@ use crate::live::WorldPlan;
 use crate::scene::SceneInfo;
 use crate::sim::Settings;
 
-/// Scheme of links for a window.
+/// Scheme of links that open in a window.
 pub(crate) const LINK_START: &str = "slump://";
 const HEAD: &str = "slump://run?";
-/// First part of links in a browser: the address of the page.
+/// First part of links that open in a browser: the address of the page.
 static PAGE: OnceLock<String> = OnceLock::new();
 
-/// Makes links begin with the address of a page.
+/// Sets the address of the page with which links begin.
 #[cfg(target_arch = "wasm32")]
 pub(super) fn set_link_start(start: String) {
     let _ = PAGE.set(start);
 }
 
-/// True if the text can be a link, of a window or of a browser version.
+/// True if the text can be a link, for a window or for the browser version.
 pub(super) fn is_link(text: &str) -> bool {
     let text = text.trim_start();
     text.starts_with(LINK_START) || (text.starts_with("http") && text.contains("?scene="))
@@ -36,20 +36,20 @@ pub(super) fn is_link(text: &str) -> bool {
 
 /// Expected form of a link, for messages.
 const FORM: &str = "a line that Copy link gave: slump://run?…&to=STEP";
-/// Largest number of characters of a link that a message shows.
+/// Largest number of characters of a link that an error message shows.
 const MOST_SHOWN: usize = 60;
 
-/// A run, described by the settings that the user asked for.
+/// The contents of a link: the origin of a scene, and the simulations with the settings that the user chose.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RunLink {
     pub source: SceneSource,
     worlds: Vec<LinkedWorld>,
 }
 
-/// One world of a link.
+/// One world (simulation) of a link.
 #[derive(Clone, Debug, PartialEq)]
 struct LinkedWorld {
-    /// Settings that apply after a step, in order of steps. The first step is 0.
+    /// Settings, each with the number of the step after which they apply, in order of steps. The first number is 0.
     changes: Vec<(u64, Config)>,
     steps: u64,
 }
@@ -61,10 +61,11 @@ fn append(query: &mut form_urlencoded::Serializer<'_, String>, words: &[String])
     }
 }
 
-/// Link of these worlds. The flag is true if a change by hand, which a link cannot express, was made in one of them.
+/// Returns the link of these simulations. The flag is true if the user edited one of the simulations, because a link
+/// cannot express edits.
 ///
 /// # Errors
-/// If the run continued from a file, or its scene no longer exists.
+/// If the run continued from a file, or if its scene no longer exists.
 pub(super) fn link_of(runs: &[TakenRun]) -> Result<(String, bool)> {
     let source = runs.first().map(|run| run.start.config.source.clone()).unwrap_or_default();
     check_names_no_file(&source)?;
@@ -147,12 +148,12 @@ impl RunLink {
         check_names_no_file(&link.source).map(|()| link)
     }
 
-    /// Configuration that makes the scene.
+    /// Returns the configuration from which the scene can be built.
     pub(crate) fn config(&self) -> Config {
         Config { source: self.source.clone(), ..Config::default() }
     }
 
-    /// Checks the link as far as possible without making a pile.
+    /// Checks the link as far as this is possible without making a pile.
     pub(crate) fn check(&self) -> Result<()> {
         let base = self.config().without_settling()?.settings();
         let mut settings = self.plans(&base).into_iter().flat_map(|plan| {
@@ -162,7 +163,7 @@ impl RunLink {
         settings.try_for_each(|settings| settings.validate())
     }
 
-    /// Plans of the worlds, starting from the settings of the scene.
+    /// Returns the plans of the simulations, which begin with the settings `base` of the scene.
     pub(crate) fn plans(&self, base: &Settings) -> Vec<WorldPlan> {
         let plan = |world: &LinkedWorld| {
             let mut settings = *base;
@@ -177,7 +178,8 @@ impl RunLink {
     }
 }
 
-/// Refuses a scene or an initial state from a file: the sender of a link must not choose which file is opened here.
+/// Refuses a scene or an initial state from a file, because the sender of a link must not choose which file is opened
+/// on the receiver's machine.
 fn check_names_no_file(source: &SceneSource) -> Result<()> {
     let SceneSource { scene, initial, .. } = source;
     match (scene, initial) {

@@ -1,11 +1,10 @@
-//! The window: panels, the scene, plots, and the thread that computes them.
+//! The window: panels, the scene, plots, and background tasks.
 //!
-//! `ui` is a function of [`AppState`] alone and knows neither window nor GPU; the private module
-//! `window` runs it on a screen. The simulation itself runs on the thread of
-//! [`crate::live`].
+//! The function `ui` depends only on [`AppState`], and not on a window or a GPU; the private module `window` shows it
+//! on a screen. The simulation runs on the thread of [`crate::live`].
 //!
-//! [`WatchedRun`] is the run that is shown. `panels` draw it: each panel has its own state, and all of them share a
-//! `context::PanelContext`. [`AppState`] composes the panels and carries out their requests once they are drawn.
+//! [`WatchedRun`] is the displayed run. The modules in `panels` draw it. Each panel has its own state, and all panels
+//! share a `context::PanelContext`. [`AppState`] contains the panels and performs their requests after they are drawn.
 
 mod axes;
 #[cfg(target_arch = "wasm32")]
@@ -52,7 +51,7 @@ mod watched_run;
 mod window;
 mod work;
 
-/// True in a browser, where there are no files, threads or other programs.
+/// True in a browser, where the program cannot use files, threads or other programs.
 const IN_BROWSER: bool = cfg!(target_arch = "wasm32");
 
 pub use canvas::Canvas;

@@ -1,24 +1,26 @@
-//! Numbers and times as the window writes and reads them. Times are in milliseconds; files and command lines have
+//! The text of numbers and times in the window. The window shows times in milliseconds; files and command lines contain
 //! seconds.
 
 use egui::DragValue;
 
-/// Units of time that a field understands, and their powers of ten in seconds. A number without a unit is in ms.
+/// Units of time that a text field accepts, each with its power of ten in seconds. A number without a unit is in
+/// milliseconds.
 const UNITS: [(&str, i32); 5] = [("ms", -3), ("us", -6), ("µs", -6), ("μs", -6), ("s", 0)];
 
-/// A time in seconds from a text such as "2 ms", "200 us", "1e-3 s" or "2"; `None` if it is not a time.
+/// Converts a text such as "2 ms", "200 us", "1e-3 s" or "2" to a time in seconds; `None` if the text is not a time.
 pub(super) fn read_secs(text: &str) -> Option<f64> {
     let with_unit = UNITS.iter().find_map(|(unit, power)| Some((text.strip_suffix(unit)?, *power)));
     let (number, power) = with_unit.unwrap_or((text, -3));
     shifted(number.trim(), power)
 }
 
-/// A time (s) in milliseconds. The decimal digits are the same, so that [`read_secs`] gives the same time.
+/// Converts a time (s) to milliseconds. The decimal digits stay the same, so that [`read_secs`] returns the same time.
 pub(super) fn millis(secs: f64) -> f64 {
     shifted(&format!("{secs:e}"), 3).unwrap_or(1e3 * secs)
 }
 
-/// A simulated time (s) on a clock, to 0.1 ms. A time of hours is short, too.
+/// Returns the text of a simulated time (s) for display, in milliseconds with one decimal. Very long times are written
+/// as powers of ten.
 pub(super) fn clock_text(secs: f64) -> String {
     let millis = 1e3 * secs;
     if millis < 1e7 { format!("{millis:.1} ms") } else { format!("{millis:.3e} ms") }
@@ -37,7 +39,7 @@ pub(super) fn time_field(secs: &mut f64) -> DragValue<'_> {
         .suffix(" ms")
 }
 
-/// Formats a number as people type it: short, and exact when it is read back.
+/// Formats a number as people type it: short, and so that reading the text returns the same number.
 pub(super) fn written(value: f64) -> String {
     if value == 0.0 || (1e-2..1e5).contains(&value.abs()) {
         value.to_string()
@@ -46,7 +48,7 @@ pub(super) fn written(value: f64) -> String {
     }
 }
 
-/// A decimal number times a power of ten.
+/// Returns the decimal number `text` times ten to the given power.
 fn shifted(text: &str, power: i32) -> Option<f64> {
     let (digits, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
     let exponent = exponent.parse::<i32>().ok()?.checked_add(power)?;

@@ -1,4 +1,5 @@
-//! Requests to open something. The thread that computes the run turns a request into a [`LiveStart`].
+//! Requests to open a scene, a lesson, a link or a saved run. The thread that computes the run converts such a request
+//! to a [`LiveStart`], the initial state of a run.
 
 use std::path::{Path, PathBuf};
 
@@ -15,31 +16,31 @@ use crate::error::Result;
 use crate::live::{LiveStart, RunHistory, StartSource, Tell, as_json, to_bytes};
 use crate::scene::Scene;
 
-/// Source of a [`LiveStart`]. It is plain data, so that it can be sent to the thread or web worker that computes the
-/// run.
+/// Request to open an initial state. It is plain data, so that it can be sent to the thread or web worker that computes
+/// the run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Opening {
-    /// A scene.
+    /// The scene of a configuration.
     Scene(#[serde(with = "as_json")] Box<Config>),
-    /// A lesson by its index, with its worlds side by side.
+    /// A lesson by its index. Its worlds (simulations) start side by side.
     Lesson(usize),
-    /// The text of a link. Its worlds are computed up to their last steps. The window's own choice of settings is not
-    /// used.
+    /// The text of a link. The simulations of the link are computed up to their last steps. Settings that the user
+    /// changed in the window are not used.
     Link(String),
     /// A saved run, to be continued.
     Run(Box<SavedState>),
-    /// A session with the arrangement of its window.
+    /// A saved session: a run with its history and the arrangement of its window.
     Session(Box<LiveStart>),
     /// The file of a saved run or of a session.
     File(PathBuf),
-    /// Another opening, with the content of the file that it names.
+    /// Another request together with the content of the file that it names, because a web worker cannot read files.
     #[cfg(target_arch = "wasm32")]
     With {
         /// Name of the file.
         path: PathBuf,
         /// Content of the file.
         bytes: Vec<u8>,
-        /// The opening that names the file.
+        /// The request that names the file.
         opening: Box<Opening>,
     },
 }
@@ -85,13 +86,14 @@ impl StartSource for Opening {
     }
 }
 
-/// Makes the scene. If a new pile has to settle first, shows it and reports progress.
+/// Returns the scene of a configuration. If a new pile must settle first, its grains are shown and the progress is
+/// reported.
 fn settled(config: &Config, tell: Tell<'_>) -> Result<Scene> {
     let mut making = SettlingProgress::new();
     config.scene(|settling| tell(making.look(&settling)))
 }
 
-/// Opening of a file, chosen by its name.
+/// Returns the request to open a file, chosen by the ending of its name; `None` if the ending is unknown.
 pub(super) fn opening_of(path: &Path) -> Option<Opening> {
     if is_saved_run(path) {
         return Some(Opening::File(path.to_owned()));
@@ -99,7 +101,7 @@ pub(super) fn opening_of(path: &Path) -> Option<Opening> {
     Some(Opening::Scene(Box::new(dropped_scene(path)?)))
 }
 
-/// Configuration of a file that, by its name, is a scene or a list of discs.
+/// Returns the configuration for a scene file (`.toml`) or a list of discs (`.csv`); `None` for other endings.
 fn dropped_scene(path: &Path) -> Option<Config> {
     match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
         "toml" => path.to_str().map(Config::of_scene),

@@ -2,18 +2,18 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A page of the sidebar. At most one is open.
+/// A page of the sidebar. At most one page is open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Page {
-    /// The scene, its grains, and changes by hand.
+    /// The scene, its grains, and edits of the grains by the user.
     Pile,
     /// The contact law and the solver.
     Solver,
-    /// Worlds and earlier runs side by side, and their measures.
+    /// Worlds (simulations side by side) and earlier runs, with their results.
     Compare,
-    /// Colours and other choices of drawing.
+    /// Colours and other drawing options.
     Look,
-    /// Files that can be saved.
+    /// Files that the user can save.
     Save,
 }
 

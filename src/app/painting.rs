@@ -1,4 +1,4 @@
-//! Shapes that are painted inside egui's pass by Slump's own pipelines: the scene, large areas, and the legend.
+//! Shapes that Slump's own GPU pipelines paint inside egui's render pass: the scene, filled areas, and the legend.
 
 use std::collections::HashMap;
 
@@ -9,33 +9,35 @@ use egui_wgpu::{Callback, CallbackResources, CallbackTrait, ScreenDescriptor};
 
 use crate::render::{Legend, Painter, Picture, PictureArea};
 
-/// Texture format of the target that callbacks draw into. The owner of an egui renderer stores it among the callback
-/// resources.
+/// Texture format of the render target. The owner of an egui renderer must store it among the resources of the paint
+/// callbacks.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TargetFormat(pub wgpu::TextureFormat);
 
-/// One painter per place in the window. Its instance buffers must live until the pass has drawn them.
+/// One painter for each scene that the window shows, by its number. A painter's instance buffers must exist until the
+/// render pass has drawn them.
 #[derive(Default)]
 struct Painters(HashMap<usize, Painter>);
 
-/// One pipeline per colour that was ever filled. A theme has few colours.
+/// One pipeline for each colour with which an area was filled. A theme has few colours.
 #[derive(Default)]
 struct Fills(HashMap<Color32, wgpu::RenderPipeline>);
 
-/// Shape that a callback draws.
+/// Shape that a paint callback draws.
 enum Painting {
-    /// A picture in a rectangle (points). The number identifies the place in the window.
+    /// A picture in a rectangle (points). The number identifies the scene in the window.
     Scene(usize, Rect, Picture),
     /// An area of one colour.
     Fill(Color32),
 }
 
-/// A shape that draws `picture` in `rect` (points). Pictures are in physical pixels.
+/// Returns a paint callback that draws `picture` in `rect` (points). The coordinates of the picture are physical
+/// pixels. `place` is the number of the scene in the window.
 pub(super) fn scene_callback(place: usize, rect: Rect, picture: Picture) -> PaintCallback {
     Callback::new_paint_callback(rect, Painting::Scene(place, rect, picture))
 }
 
-/// Fills a rectangle (points) with an opaque colour, beneath what is painted later.
+/// Fills a rectangle (points) with an opaque colour. Shapes that are painted later cover it.
 pub(super) fn fill(ui: &Ui, rect: Rect, colour: Color32) {
     ui.painter().add(Callback::new_paint_callback(rect, Painting::Fill(colour)));
 }
@@ -49,7 +51,7 @@ impl CallbackTrait for Painting {
         _encoder: &mut wgpu::CommandEncoder,
         resources: &mut CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
-        // Tests set no format and draw into the one that egui recommends.
+        // Tests store no format, and draw into the format that egui recommends.
         let told = resources.get::<TargetFormat>();
         let format = told.map_or(wgpu::TextureFormat::Rgba8Unorm, |TargetFormat(format)| *format);
         match self {
@@ -102,7 +104,7 @@ impl CallbackTrait for Painting {
     }
 }
 
-/// A pipeline that fills the viewport.
+/// Returns a pipeline that fills the viewport with one colour.
 fn fill_pipeline(
     device: &wgpu::Device,
     format: wgpu::TextureFormat,
@@ -140,12 +142,12 @@ fn fill_pipeline(
     })
 }
 
-/// The legend that was drawn last, and its size in pixels.
+/// Texture of the legend that was drawn last, with the legend and its size in pixels.
 #[derive(Default)]
 pub(crate) struct LegendCache(Option<(Legend, [u32; 2], TextureHandle)>);
 
 impl LegendCache {
-    /// Paints a legend into `rect`, `size` pixels.
+    /// Paints a legend of `size` pixels into `rect` (points).
     pub(super) fn paint(&mut self, ui: &Ui, rect: Rect, legend: Legend, size: [u32; 2]) {
         let last = self.0.take().filter(|(old, at, _)| *old == legend && *at == size);
         let (.., texture) = self.0.insert(last.unwrap_or_else(|| {

@@ -16,16 +16,16 @@ use crate::live::Curve;
 use crate::render::numbers::si_prefix;
 use crate::sim::{Beside, Observables, Quantity};
 
-/// Least width of a plot, points. In a narrower window a row has fewer plots.
+/// Smallest width of a plot, points. In a narrower window a row has fewer plots.
 pub(super) const LEAST_WIDTH: f32 = 150.0;
-/// Least range of an axis of slump. It is the same for most runs, so that they can be compared by eye.
+/// Smallest range of a slump axis. It is the same for most runs, so that they can be compared by eye.
 pub(super) const LEAST_SLUMP: f64 = 0.4;
-/// The quantity that is plotted for other initial states.
+/// Name of the quantity that is also plotted for other initial states.
 const OTHERS: &str = "slump";
-/// Strength of the colour of single other piles.
+/// Factor of the colour strength of the lines of other initial states.
 const OTHERS_STRENGTH: f32 = 0.45;
 
-/// Line styles of a quantity's companion values.
+/// Line styles of the further values that a quantity's plot shows.
 const BESIDE: [LineStyle; 2] =
     [LineStyle::Dashed { length: 6.0 }, LineStyle::Dotted { spacing: 4.0 }];
 
@@ -33,17 +33,17 @@ const BESIDE: [LineStyle; 2] =
 #[derive(Clone, Debug)]
 pub(crate) struct PlotData {
     pub worlds: Vec<WorldCurve>,
-    /// The worlds of the earlier run, drawn behind the others.
+    /// The simulations of the earlier run, drawn behind the present simulations.
     pub ghosts: Vec<WorldCurve>,
     pub quantities: Vec<&'static Quantity<Observables>>,
     pub chosen: ChosenPlot,
-    /// The visible moment, s.
+    /// The displayed simulated time, s.
     pub now_secs: f64,
-    /// Least end of the time axis, s.
+    /// Smallest end of the time axis, s.
     pub until_secs: f64,
 }
 
-/// Draws plots for a picture, below a key of the colours if there are several worlds.
+/// Draws plots for a picture. If there are several simulations, a key of their colours is above the plots.
 pub(super) fn draw_with_key(ui: &mut Ui, data: &PlotData) {
     if data.worlds.len() > 1 {
         ui.horizontal_wrapped(|ui| {
@@ -56,9 +56,9 @@ pub(super) fn draw_with_key(ui: &mut Ui, data: &PlotData) {
     draw(ui, data);
 }
 
-/// Draws the plots into the remaining space. Returns the time that was clicked, s.
+/// Draws the plots into the remaining space. Returns the time at which the user clicked, s.
 pub(super) fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
-    // If the plots left space, their panel would shrink from frame to frame.
+    // If the plots left space, their panel would become smaller from frame to frame.
     ui.set_min_size(ui.available_size());
     let has_chosen = data.chosen.on && data.chosen.title().is_some();
     let mut all: Vec<Option<_>> = data.quantities.iter().copied().map(Some).collect();
@@ -70,7 +70,7 @@ pub(super) fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
     }
     let spacing = ui.spacing().item_spacing;
     let fitting = ((ui.available_width() + spacing.x) / (LEAST_WIDTH + spacing.x)).floor();
-    // Plots read best when they are wider than high; a high area has two rows of them.
+    // Plots are easiest to read if they are wider than high, so a high area has two rows of plots.
     let high = ui.available_height() > 0.45 * ui.available_width();
     let most = if high { count.div_ceil(2) } else { count };
     let columns = most.min((fitting as usize).max(1));
@@ -147,18 +147,19 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
     response.response.clicked().then_some(response.inner.map(|at| at.x)).flatten()
 }
 
-/// End of the time axis, s. The ghost of a longer run does not stretch the axis.
+/// Returns the end of the time axis, s. The earlier run (ghost) may be longer; it does not extend the axis.
 fn end_secs(data: &PlotData) -> f64 {
     let ends = data.worlds.iter().filter_map(|world| world.curve.last());
     ends.map(|row| row.time_secs).fold(data.until_secs, f64::max)
 }
 
-/// The part of a curve up to the visible moment: a pile that is not released yet must not reveal its end.
+/// Returns a curve up to the displayed moment, so that the curves of other initial states do not reveal the future.
 fn until_now(points: &[[f64; 2]], now_secs: f64) -> PlotPoints<'static> {
     points.iter().copied().take_while(|point| point[0] <= now_secs).collect()
 }
 
-/// Lines of a world's other piles up to the visible moment: a thin line per pile and a dashed line for their mean.
+/// Returns the lines of a simulation's other initial states up to the displayed moment: a thin line per run, and their
+/// mean as a dashed line.
 fn others(world: &WorldCurve, now_secs: f64) -> Vec<Line<'static>> {
     let Some(band) = world.others.as_ref().filter(|band| band.count > 0) else {
         return Vec::new();
@@ -175,7 +176,7 @@ fn others(world: &WorldCurve, now_secs: f64) -> Vec<Line<'static>> {
     band.runs.iter().map(run).chain([mean.style(style).width(1.2)]).collect()
 }
 
-/// Least range of a vertical axis.
+/// Returns the smallest range of a vertical axis.
 fn least_span(data: &PlotData, quantity: &Quantity<Observables>, factor: f64) -> [f64; 2] {
     let value = |row: &Observables| (quantity.value)(row);
     let scaled = |value: f64| if quantity.logarithmic { value.log10() } else { value / factor };
@@ -185,7 +186,7 @@ fn least_span(data: &PlotData, quantity: &Quantity<Observables>, factor: f64) ->
     with_room(values.chain(always.iter().copied()), quantity.logarithmic)
 }
 
-/// Companion values of a quantity that occur in this curve.
+/// Returns the further values of a quantity that occur in this curve.
 fn beside(
     curve: &Curve,
     quantity: &Quantity<Observables>,
@@ -194,7 +195,7 @@ fn beside(
     quantity.beside.iter().copied().filter(has)
 }
 
-/// Title of a plot, and the factor that belongs to the prefix of its unit. Values are divided by this factor.
+/// Returns the title of a plot, and the factor of its unit's prefix, by which the values are divided.
 fn title(data: &PlotData, quantity: &Quantity<Observables>) -> (String, f64) {
     let mut title = quantity.title.to_owned();
     let mut factor = 1.0;
@@ -227,34 +228,34 @@ fn hover_text(position: &HoverPosition<'_>, log: bool) -> Option<String> {
     Some(format!("{name}\n{}\n{value}", clock_text(at.x)))
 }
 
-/// The value on the axis: on a logarithmic axis, its logarithm.
+/// Returns the value on the axis; on a logarithmic axis it is the decimal logarithm.
 fn scaled(value: f64, log: bool) -> f64 {
     if log { value.log10() } else { value }
 }
 
-/// Curves of one world.
+/// Curves of one simulation.
 #[derive(Clone, Debug)]
 pub(crate) struct WorldCurve {
-    /// Title that distinguishes the world from the others.
+    /// Title that distinguishes the simulation from the others.
     pub name: String,
     pub colour: Color32,
     pub curve: Curve,
-    /// Slumps of other piles with the same settings.
+    /// Slumps of other initial states with the same settings.
     pub others: Option<Arc<Band>>,
 }
 
 /// Largest number of points of a curve.
 const MOST_POINTS: usize = 2_000;
 
-/// Plot of one quantity against another, chosen by the user.
+/// Plot of one quantity against another, which the user chooses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ChosenPlot {
     /// True if the plot is visible.
     pub on: bool,
-    /// Names of the quantities along x and y, as in tables.
+    /// Names of the quantities along x and y, as in output tables.
     pub axes: [String; 2],
-    /// True for logarithmic axes: x and y.
+    /// True for a logarithmic axis: x, then y.
     pub logarithmic: [bool; 2],
 }
 
@@ -266,7 +267,7 @@ impl Default for ChosenPlot {
 }
 
 impl ChosenPlot {
-    /// Shows the two lists and two buttons that choose the plot.
+    /// Shows the two lists of quantities and the two buttons for logarithmic axes.
     pub(super) fn choose(&mut self, ui: &mut Ui) {
         for (axis, name) in [(1, "y"), (0, "x")] {
             let shown = ComboBox::from_id_salt(("axis", axis)).width(118.0);
@@ -295,7 +296,7 @@ impl ChosenPlot {
         Some(format!("{} against {}", y?.title(), x?.title()))
     }
 
-    /// Coordinates of rows in the plot.
+    /// Returns the coordinates of rows in the plot.
     fn points<'a>(&self, rows: impl Iterator<Item = &'a Observables>) -> Vec<[f64; 2]> {
         let [Some(x), Some(y)] = self.axes.each_ref().map(|name| Observed::named(name)) else {
             return Vec::new();
@@ -308,7 +309,7 @@ impl ChosenPlot {
         rows.filter_map(place).collect()
     }
 
-    /// Draws the plot, with a dot at the visible moment.
+    /// Draws the plot, with a dot at the displayed moment.
     pub(super) fn draw(&self, ui: &mut Ui, worlds: &[WorldCurve], now_secs: f64) {
         let title = RichText::new(self.title().unwrap_or_default()).small();
         ui.add(Label::new(title).truncate());
@@ -358,7 +359,7 @@ mod tests {
         plot.logarithmic = [false, true];
         assert_eq!(plot.points(rows.iter()), [[0.0, 0.0], [0.1, 1.0]]);
         assert_eq!(plot.title().unwrap(), "kinetic energy (J) against slump");
-        // A quantity that only some laws have is missing under others.
+        // A quantity that only some contact laws define is missing under other laws.
         plot.axes[1] = "bond_energy".into();
         assert!(plot.points(rows.iter()).is_empty());
         plot.axes[1] = "of another version".into();
@@ -425,11 +426,11 @@ mod tests {
         assert!(others(&alone, 1.0).is_empty());
     }
 
-    /// Numbers along x and along y of a plot that is painted by itself.
+    /// Counts the numbers along x and along y of a plot.
     fn painted_numbers(data: &PlotData) -> [usize; 2] {
         let context = egui::Context::default();
         let mut painted = Vec::new();
-        // Plots find their size in the first frames.
+        // Plots adapt their size during the first frames.
         for _ in 0..4 {
             let size = egui::vec2(500.0, 260.0);
             let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size));

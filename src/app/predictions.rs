@@ -1,4 +1,5 @@
-//! Predictions: the question of a lesson before its pile is released, and the result of the run in numbers.
+//! Predictions in the lessons: the question that the user answers before the run starts, and the result of the run in
+//! numbers.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,16 +7,17 @@ use crate::live::LiveFrame;
 use crate::number::millis_text;
 use crate::sim::Observables;
 
-/// The question of a lesson.
+/// The question of a lesson, with its answers and its evaluation.
 #[derive(Debug)]
 pub struct Question {
-    /// The question.
+    /// Text of the question.
     pub text: &'static str,
     /// Its two answers.
     pub answers: [&'static str; 2],
-    /// The rows of the run that decide; nothing while the run has not come so far.
+    /// Returns the observables that decide the question; `None` while the run has not reached the time at which it is
+    /// decided.
     pub rows: fn(&LiveFrame) -> Option<Vec<Observables>>,
-    /// The index of the right answer and the result of the run in a sentence, from those rows.
+    /// Returns the index of the right answer and a sentence on the result, given the rows that [`Self::rows`] returned.
     pub result: fn(&[Observables]) -> Option<(usize, String)>,
 }
 
@@ -24,19 +26,20 @@ pub struct Question {
 pub struct Prediction {
     /// Index of the answer.
     pub answer: usize,
-    /// True if the run agreed; nothing before it ended.
+    /// True if the run confirmed the prediction; `None` before the run has decided the question.
     pub was_right: Option<bool>,
 }
 
-/// Difference of slumps up to which two piles slump alike: an eighth of the axis of the plot, hardly visible. A smaller
-/// value calls nearly every pair of piles different.
+/// Largest difference of two slumps at which the piles count as slumping alike. The value is an eighth of the axis of
+/// the plot, which is hardly visible. With a smaller value nearly every pair of piles would count as different.
 const ALIKE: f64 = 0.05;
-/// Overlap above which a disc does not carry its load, in mean diameters: the limit of `slump stability`.
+/// Overlap above which a disc counts as not carrying its load, in mean diameters. The value is the limit of `slump
+/// stability`.
 const SQUEEZED: f64 = 0.01;
-/// Simulated time for which a pile is watched after a change of Δt, s.
+/// Simulated time after a change of Δt for which the pile is watched, s.
 const WATCHED_SECS: f64 = 0.3;
 
-/// The last rows of all worlds, once all of them have reached the end of the scene.
+/// Returns the last observables of all simulations, if all simulations have reached the end of the scene.
 pub(super) fn last_rows(frame: &LiveFrame) -> Option<Vec<Observables>> {
     let duration_secs = frame.start.as_ref()?.scene.duration_secs;
     let last = frame.worlds.iter().map(|world| world.curve.last().copied());
@@ -44,8 +47,8 @@ pub(super) fn last_rows(frame: &LiveFrame) -> Option<Vec<Observables>> {
     last.map(|row| row.filter(ended)).collect()
 }
 
-/// The last row with the longest Δt and the last row of all, once the pile was watched with a shorter Δt. While a slider is
-/// dragged, a few steps have a Δt between the two.
+/// Returns the last observables with the longest Δt and the last observables of the run, if the pile was watched for
+/// [`WATCHED_SECS`] with a shorter Δt. While a slider is dragged, a few steps have a Δt between the two.
 pub(super) fn rows_around_change(frame: &LiveFrame) -> Option<Vec<Observables>> {
     let curve = &frame.worlds.first()?.curve;
     let last = *curve.last()?;
@@ -58,7 +61,7 @@ pub(super) fn rows_around_change(frame: &LiveFrame) -> Option<Vec<Observables>> 
     (last.time_secs >= before.time_secs + WATCHED_SECS).then(|| vec![before, last])
 }
 
-/// Lesson 1: do two time steps make the pile slump alike?
+/// Evaluates the question of lesson 1: does the pile slump alike with two time steps?
 pub(super) fn two_time_steps(rows: &[Observables]) -> Option<(usize, String)> {
     let [short, long] = rows else { return None };
     let text = format!(
@@ -71,7 +74,7 @@ pub(super) fn two_time_steps(rows: &[Observables]) -> Option<(usize, String)> {
     Some((usize::from((short.slump - long.slump).abs() > ALIKE), text))
 }
 
-/// Lesson 2: does a shorter Δt move a pile at rest?
+/// Evaluates the question of lesson 2: does a shorter Δt make a pile at rest move?
 pub(super) fn shorter_at_rest(rows: &[Observables]) -> Option<(usize, String)> {
     let [before, after] = rows else { return None };
     let text = format!(
@@ -86,7 +89,7 @@ pub(super) fn shorter_at_rest(rows: &[Observables]) -> Option<(usize, String)> {
     Some((usize::from((before.slump - after.slump).abs() <= ALIKE), text))
 }
 
-/// Lesson 3: do unsolved steps hold the pile better?
+/// Evaluates the question of lesson 3: do unsolved steps make the pile more stable?
 pub(super) fn unsolved_steps(rows: &[Observables]) -> Option<(usize, String)> {
     let [few, some, solved] = rows else { return None };
     let text = format!(
@@ -96,7 +99,7 @@ pub(super) fn unsolved_steps(rows: &[Observables]) -> Option<(usize, String)> {
     Some((usize::from(few.slump > solved.slump), text))
 }
 
-/// Lesson 4: does Δt change the slump as much if bonds have a length?
+/// Evaluates the question of lesson 4: does Δt change the slump by the same amount if bonds have a length?
 pub(super) fn two_laws(rows: &[Observables]) -> Option<(usize, String)> {
     let [short, long, range_short, range_long] = rows else { return None };
     let [rigid, range] = [short.slump - long.slump, range_short.slump - range_long.slump];
@@ -108,7 +111,7 @@ pub(super) fn two_laws(rows: &[Observables]) -> Option<(usize, String)> {
     Some((usize::from(range.abs() < 0.5 * rigid.abs()), text))
 }
 
-/// Lesson 5: which law of friction lets a strong pile slump?
+/// Evaluates the question of lesson 5: under which friction law does a strong pile slump more?
 pub(super) fn two_cones(rows: &[Observables]) -> Option<(usize, String)> {
     let [shifted, compressive] = rows else { return None };
     let [left, right] = [shifted.slump, compressive.slump];
@@ -116,7 +119,7 @@ pub(super) fn two_cones(rows: &[Observables]) -> Option<(usize, String)> {
     Some((usize::from(right > left), text))
 }
 
-/// Lesson 6: do ten sweeps carry a heavy disc?
+/// Evaluates the question of lesson 6: do ten sweeps per step carry a heavy disc?
 pub(super) fn ten_sweeps(rows: &[Observables]) -> Option<(usize, String)> {
     let [few, solved] = rows else { return None };
     let text = format!(

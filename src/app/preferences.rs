@@ -1,4 +1,4 @@
-//! Choices that the window remembers between starts.
+//! Preferences: the user's choices in the window, which the program stores between starts.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -19,54 +19,54 @@ use crate::render::Style;
 #[cfg(feature = "window")]
 use crate::render::Theme;
 
-/// Choices that outlive the window.
+/// The user's choices in the window, which the program stores between starts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
-    /// Light, dark, or the theme of the desktop.
+    /// Light theme, dark theme, or the theme of the desktop.
     pub theme: egui::ThemePreference,
-    /// Style of the scene; its theme follows the window's.
+    /// Style of the drawn scene, except that its colours of ground and text follow the theme of the window.
     pub style: Style,
-    /// The page that is open beside the scene.
+    /// The page of the sidebar that is open.
     pub page: Option<Page>,
     /// True if the bars above and below the scene are hidden.
     pub folded: bool,
-    /// True if moving a main slider starts the run again.
+    /// True if moving one of the main sliders restarts the run from its initial state.
     pub starts_again: bool,
-    /// True if the earlier run is drawn behind the present one.
+    /// True if outlines of the earlier run are drawn behind the present run.
     pub ghost: bool,
     /// True if idle cores compute the mean over other initial states.
     #[serde(rename = "other_piles")]
     pub ensemble: bool,
-    /// True while the plots are open.
+    /// True if the plots are open.
     pub plots: bool,
     /// Names of the plotted quantities.
     pub quantities: Vec<String>,
-    /// Axes of the plot of two quantities.
+    /// The two quantities on the axes of the plot of one quantity against another.
     pub chosen_plot: ChosenPlot,
-    /// Name of the visible histogram, as in files.
+    /// Name of the displayed histogram, as in output files.
     pub histogram: String,
-    /// True if an arrow always shows the direction of gravity.
+    /// True if an arrow in the scene always shows the direction of gravity.
     pub gravity: bool,
-    /// Size of the window, points; `None` before the first window.
+    /// Size of the window, points; `None` if no window has been opened yet.
     pub window_points: Option<[f64; 2]>,
-    /// Simulated time per wall-clock time, for films as well.
+    /// Speed of playing: simulated time per wall-clock time. It also applies to exported animations.
     pub speed: f64,
-    /// True to compute as fast as the machine can; then `speed` is not used.
+    /// True if the run is computed as fast as the machine can; `speed` then has no effect.
     pub full_speed: bool,
     /// Size of exported pictures, pixels.
     pub picture_size: [u32; 2],
     /// Pictures per second of exported videos.
     pub video_rate_hz: f64,
-    /// Diameter of grains that the mouse adds, in mean diameters.
+    /// Diameter of grains that the user adds with the mouse, in mean diameters.
     pub new_grain_diameters: f64,
     /// Folder of exported files.
     pub folder: PathBuf,
-    /// Settings of exported recordings.
+    /// Choices for exported recordings of grains and contacts.
     pub data: DataChoices,
-    /// The scene that was open last.
+    /// Configuration of the scene that was open last.
     pub scene: Config,
-    /// Progress in the lessons.
+    /// The user's progress in the lessons.
     pub lesson: LessonPlace,
 }
 
@@ -100,7 +100,7 @@ impl Default for Preferences {
 }
 
 impl Preferences {
-    /// Takes over the picture options of the command line.
+    /// Applies the picture options of the command line to the preferences.
     #[cfg(feature = "window")]
     pub(crate) fn follow(&mut self, pictures: &HeadlessOptions) -> Result<()> {
         if pictures.size.is_some() {
@@ -127,7 +127,7 @@ impl Preferences {
         Ok(())
     }
 
-    /// Pace that the preferences ask for.
+    /// Returns the speed of playing, as a command to the solver's thread needs it.
     pub(crate) fn pace(&self) -> Pace {
         if self.full_speed { Pace::Max } else { Pace::RealTime(self.speed) }
     }
@@ -137,13 +137,13 @@ impl Preferences {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct LessonPlace {
-    /// Index of the lesson.
+    /// Index of the present lesson.
     pub at: usize,
-    /// True if a window without options opens the lessons.
+    /// True if the lessons open when the program starts without options.
     pub on: bool,
-    /// The predictions, by lesson.
+    /// The user's predictions, by the index of the lesson.
     pub predictions: BTreeMap<usize, Prediction>,
-    /// The user's choices before the lessons, restored after them.
+    /// The user's choices before the first lesson, which are restored after the lessons.
     pub(super) before: Option<Choices>,
 }
 
@@ -153,7 +153,7 @@ impl Default for LessonPlace {
     }
 }
 
-/// Preferences that a lesson sets in place of the user.
+/// Choices that a lesson replaces while it is open.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Choices {
     pub quantities: Vec<String>,
@@ -166,7 +166,7 @@ pub(super) struct Choices {
 }
 
 impl Choices {
-    /// Applies these choices and returns the previous ones.
+    /// Applies these choices and returns the previous choices.
     fn swap(self, preferences: &mut Preferences) -> Self {
         Self {
             quantities: std::mem::replace(&mut preferences.quantities, self.quantities),
@@ -180,7 +180,7 @@ impl Choices {
 }
 
 impl Preferences {
-    /// Begins a lesson with its choices.
+    /// Begins the lesson with the index `at`, and sets the preferences that the lesson needs.
     pub(super) fn begin_lesson(&mut self, at: usize, choices: Choices) {
         let replaced = choices.swap(self);
         let before = self.lesson.before.take().unwrap_or(replaced);
@@ -188,7 +188,7 @@ impl Preferences {
         self.lesson = LessonPlace { at, on: true, predictions, before: Some(before) };
     }
 
-    /// Restores the choices from before the lessons.
+    /// Restores the choices that the user had before the lessons.
     pub(super) fn put_lesson_away(&mut self) {
         if let Some(before) = self.lesson.before.take() {
             before.swap(self);
@@ -196,7 +196,7 @@ impl Preferences {
     }
 }
 
-/// Everything that the window stores between starts.
+/// All data that the window stores between starts.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub(crate) struct StoredWindow {
@@ -205,7 +205,7 @@ pub(crate) struct StoredWindow {
 }
 
 impl StoredWindow {
-    /// The present preferences and layout.
+    /// Returns the present preferences and layout for storage.
     pub(super) fn of(preferences: &Preferences, context: &egui::Context) -> Self {
         Self { preferences: preferences.clone(), layout: context.memory(Clone::clone) }
     }
@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn what_is_kept_reads_back() {
-        // The context must have drawn something, otherwise it has no layout to store.
+        // The context must have drawn a frame, because it has no layout to store before.
         let context = egui::Context::default();
         for _ in 0..2 {
             let _ = context.run_ui(egui::RawInput::default(), |ui| {

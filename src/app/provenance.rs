@@ -1,30 +1,31 @@
-//! Origin of a run: its command line, and the texts in its files.
+//! Provenance of a run: the command line that reproduces it, and the texts that its files contain.
 
 use super::watched_run::WatchedRun;
 use crate::config::{Config, Provenance, asked_time_secs, joined, words_up_to};
 use crate::output::Texts;
 
-/// Text in files of a run that no command line reproduces.
+/// Text in the files of a run that no command line reproduces.
 pub(super) const CHANGED: &str = "the run had other settings before, or was changed by hand: the command line and \
                                   the settings of the visible moment make another run";
 
 impl WatchedRun {
-    /// Command line that computes the selected world from its initial state with the present settings, bit for bit and
-    /// without a window. It lacks later changes of settings and changes by hand. `None` if the scene no longer exists.
+    /// Returns the command line that computes the selected simulation from its initial state with the present settings,
+    /// with the same bits and without a window. The command does not include later changes of settings and edits by the
+    /// user. `None` if the scene no longer exists.
     pub fn command_line(&self) -> Option<String> {
         let run = self.provenance(self.selected, self.config())?;
         let command = ["slump".to_owned(), "--headless".to_owned()];
         Some(joined(&[&command[..], &run.words].concat()))
     }
 
-    /// Origin of a world. `None` if its scene no longer exists.
+    /// Returns the provenance of a simulation. `None` if its scene no longer exists.
     fn provenance(&self, world: usize, config: Config) -> Option<Provenance> {
         let settings = self.wanted.get(world)?.settings;
         let scene = self.frame.start.as_ref()?.scene.name.clone();
         Some(Provenance { scene, settings, words: config.words(&settings).ok()? })
     }
 
-    /// Texts for a file that shows all worlds, at one moment or at all their steps.
+    /// Returns the texts for a file that shows all simulations, either at one moment or at all their steps.
     pub(crate) fn texts(&self, is_of_a_moment: bool) -> Texts {
         if !self.compares() {
             return self.texts_of_world(0, is_of_a_moment);
@@ -39,7 +40,8 @@ impl WatchedRun {
     }
 
     fn texts_of_world(&self, world: usize, is_of_a_moment: bool) -> Texts {
-        // The end of the run is that of the visible or recorded time, not the duration that was asked for.
+        // The run of the command ends at the visible or recorded time, and not at the duration that the configuration
+        // states.
         let mut config = self.config();
         config.source.duration = None;
         let run = self.provenance(world, config);

@@ -1,4 +1,4 @@
-//! A picture of all worlds.
+//! A picture of all worlds (simulations side by side).
 
 use std::sync::Arc;
 
@@ -11,22 +11,22 @@ use crate::output::Texts;
 use crate::render::{Camera, Renderer, Style, WorldPanel, draw_worlds};
 use crate::sim::{Settings, Snapshot};
 
-/// A world of a picture.
+/// A simulation in a picture.
 pub(crate) struct PicturedWorld {
     pub snapshot: Arc<Snapshot>,
-    /// The settings at that moment.
+    /// The settings at the moment of the snapshot.
     pub settings: Settings,
-    /// Text below the world.
+    /// Text in the lower right corner of the simulation.
     pub note: String,
 }
 
-/// A picture of all worlds, arranged as in the window.
+/// A picture of all simulations, arranged as in the window.
 pub(crate) struct ScenePicture {
     pub worlds: Vec<PicturedWorld>,
-    /// Number of worlds in a row.
+    /// Number of simulations in a row.
     pub columns: usize,
     pub style: Style,
-    /// Camera of each world.
+    /// Camera of each simulation.
     pub camera: Camera,
     pub size: [u32; 2],
     pub texts: Texts,

@@ -1,4 +1,4 @@
-//! Prepares a scene or a saved run for the window.
+//! Preparation of a scene or a saved run as the initial state of a live run.
 
 use glam::DVec2;
 
@@ -9,17 +9,17 @@ use crate::scene::Scene;
 use crate::sim::{Simulation, Tally};
 use crate::world::{Boundary, Disc, Gravity};
 
-/// Height of the walls that are drawn around a pile, in heights of the pile.
+/// Height of the walls that are drawn around a pile, as a multiple of the pile's height.
 const WALL_HEIGHTS: f64 = 1.1;
 
-/// Prepares a saved run, which continues from its time.
+/// Returns the initial state for a saved run, which continues from its simulated time.
 pub(super) fn start_of_run(state: SavedState) -> LiveStart {
     let SavedState { scene, simulation, tally, .. } = state;
     let config = Config::of_scene(&scene.name);
     start_with(&scene, config, simulation, tally, Vec::new())
 }
 
-/// Prepares a scene. `config` is the configuration that opens it.
+/// Returns the initial state for a scene. `config` is the configuration from which the scene can be built again.
 pub(super) fn start(scene: &Scene, config: Config) -> Result<LiveStart> {
     Ok(start_with(scene, config, scene.simulation()?, Tally::default(), walls(scene)))
 }
@@ -46,11 +46,11 @@ fn start_with(
     }
 }
 
-/// Least number of grains of a heap. Two discs that touch are not a heap.
+/// Smallest number of grains in a heap. For example, two discs that touch are not a heap.
 const LEAST_OF_HEAP: usize = 10;
 
-/// True if the grains lie on fixed, level ground and can spread. In other scenes Δy_G, which uses heights above y = 0,
-/// means nothing; nor does it for grains that hang from a fixed disc.
+/// True if the grains lie on fixed, level ground and can spread. In other scenes the slump Δy_G, which uses heights
+/// above y = 0, has no meaning, and also if the grains hang from a fixed disc.
 fn slumps(scene: &Scene) -> bool {
     let is_down =
         matches!(&scene.gravity, Gravity::Uniform { acceleration: g } if g.x == 0.0 && g.y < 0.0);
@@ -67,8 +67,8 @@ fn slumps(scene: &Scene) -> bool {
         && scene.boundaries.iter().all(is_level)
 }
 
-/// Walls of a pile that has not been released. The pile is at rest without them, but they show what the release will
-/// do.
+/// Returns the walls around a pile before time begins. The pile is at rest without them, but they show that it will
+/// spread when they are removed.
 fn walls(scene: &Scene) -> Vec<Boundary> {
     if scene.name != Config::DEFAULT_SCENE || !scene.boundaries.is_empty() {
         return Vec::new();

@@ -1,8 +1,8 @@
-//! Files of sessions (all worlds with their history and the arrangement of the window) and of saved runs.
+//! Files of sessions (all simulations with their history and the arrangement of the window) and of saved runs.
 //!
-//! A session stores runs as the live history stores them: the initial state, some later moments, all changes of
-//! settings, and the visible moment. It therefore opens at once. Moments in between are computed again, bit for bit,
-//! when the timeline asks for them.
+//! A session stores runs as the live history does: the initial state, some later states (keyframes), all changes of
+//! settings, and the displayed state. It therefore opens without computing. States between the keyframes are computed
+//! again, with the same bits, when the user moves to them on the timeline.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ use crate::error::{Error, Result};
 use crate::live::LiveStart;
 use crate::output::{Seal, write_file};
 
-/// First bytes of a session file.
+/// First bytes of a session file, by which the program recognises such a file.
 const SEAL: Seal = Seal {
     magic: "slump-session ",
     format: 8,
@@ -46,7 +46,7 @@ pub(super) fn open_session(path: &Path) -> Result<LiveStart> {
     Ok(start)
 }
 
-/// Arrangement of the window that a session contains. `None` if `start` is not from a session.
+/// Returns the arrangement of the window that a session contains; `None` if `start` is not from a session.
 pub(super) fn arrangement_of(start: &LiveStart) -> Option<Arrangement> {
     ron::from_str(start.window.as_ref()?).ok()
 }
@@ -70,7 +70,7 @@ pub(super) fn write_session(
     Ok(path)
 }
 
-/// Writes the state that a run had when it was handed out. The run may continue meanwhile.
+/// Writes the state that a run had when it was copied from the solver's thread. The run itself may continue meanwhile.
 pub(super) fn write_state(folder: &Path, run: TakenRun) -> Result<PathBuf> {
     let TakenRun { start, world } = run;
     if world.failure.is_some() {
@@ -83,7 +83,7 @@ pub(super) fn write_state(folder: &Path, run: TakenRun) -> Result<PathBuf> {
     Ok(path)
 }
 
-/// Error for saving a run that has failed.
+/// Returns the error for saving a run whose state is no longer finite.
 fn not_finite() -> Error {
     Error::value("state", "no longer finite", "an earlier one: drag the timeline back")
 }

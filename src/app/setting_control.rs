@@ -1,5 +1,5 @@
-//! Controls of settings, made from their declarations. A number can be dragged, typed and reset; a value out of range
-//! is refused.
+//! Controls of settings, built from the declarations of the settings. The user can drag, type and reset a number; a
+//! value out of range is refused.
 
 use egui::{
     Align, ComboBox, Rect, Response, RichText, Role, Slider, SliderClamping, TextEdit, Ui,
@@ -14,8 +14,8 @@ use crate::number::millis_text;
 use crate::setting::{About, Control, Kind, Value};
 use crate::sim::Settings;
 
-/// Shows the control of a setting, if it has one, and changes the setting. A double click on the field sets the value
-/// of `start`. Returns the place of the slider or box.
+/// Shows the control of a setting, if the setting has a control, and changes the setting. A double click on the field
+/// sets the value that `start` has. Returns the rectangle of the slider or box.
 pub(super) fn show(
     ui: &mut Ui,
     about: &About,
@@ -25,7 +25,7 @@ pub(super) fn show(
     about.control.and_then(|control| show_as(ui, about, &control, settings, start))
 }
 
-/// Like [`show`], with `control` in place of the declared control.
+/// Shows the control of a setting as [`show`] does, with `control` instead of the declared control.
 pub(super) fn show_as(
     ui: &mut Ui,
     about: &About,
@@ -81,13 +81,13 @@ fn of_number(kind: Kind, number: f64) -> Option<Value> {
     }
 }
 
-/// Short name of a setting: its symbol if it has one.
+/// Returns the short name of a setting: its symbol, or its name if it has no symbol.
 pub(super) fn called(about: &About) -> &'static str {
     let symbol = about.control.map_or("", |control| control.symbol);
     if symbol.is_empty() { about.name } else { symbol }
 }
 
-/// Reason why a typed number is refused.
+/// Returns the reason why a typed number is refused; `None` if it is accepted.
 fn refusal(about: &About, control: &Control, settings: &Settings, number: f64) -> Option<String> {
     let is_time = is_time(control);
     let refused = |allowed| {
@@ -116,13 +116,13 @@ fn refusal(about: &About, control: &Control, settings: &Settings, number: f64) -
     }
 }
 
-/// Significant digits of a value from a slider; the mouse is not more precise.
+/// Number of significant digits of a value from a slider; the mouse is not more precise.
 const SLIDER_DIGITS: usize = 3;
 /// Width of the field, points.
 const FIELD_WIDTH: f32 = 76.0;
 
-/// Shows a number as a labelled field above a slider. Returns the new value, if there is one, and the place of the
-/// slider. A double click on the field sets `default`; `refuse` gives the reason why a typed value is refused.
+/// Shows a number as a labelled field above a slider. Returns the new value, if there is one, and the rectangle of the
+/// slider. A double click on the field sets `default`. `refuse` returns the reason why a typed value is refused.
 fn number(
     ui: &mut Ui,
     control: &Control,
@@ -130,7 +130,8 @@ fn number(
     refuse: impl Fn(f64) -> Option<String>,
     value: f64,
 ) -> (Option<f64>, Rect) {
-    // The text that is being typed or was refused. Field and message are in different places of the layout.
+    // The text that the user is typing, or that was refused. It is stored by name, because the field and the message
+    // are in different parts of the layout.
     let draft_id = egui::Id::unique(("draft of", control.label));
     let draft = ui.data(|data| data.get_temp::<String>(draft_id));
     let (mut edited, mut refused) = (None, None);
@@ -184,7 +185,7 @@ fn number(
     (edited.filter(|edited| *edited != value), response.rect)
 }
 
-/// Shows the field of a number.
+/// Shows the text field of a number.
 fn field(ui: &mut Ui, id: egui::Id, label: &str, text: &mut String, is_refused: bool) -> Response {
     let mut edit = TextEdit::singleline(text)
         .id(id)
@@ -204,7 +205,7 @@ fn field(ui: &mut Ui, id: egui::Id, label: &str, text: &mut String, is_refused: 
     response
 }
 
-/// The typed number, or the reason why it is refused.
+/// Returns the typed number, or the reason why it is refused.
 fn typed(
     control: &Control,
     text: &str,
@@ -221,7 +222,8 @@ fn typed(
     refusal.map_or(Ok(number), Err)
 }
 
-/// Shows a refusal over the controls below the slider. As a line of its own it would move them under the mouse.
+/// Shows a refusal as a layer over the controls below the slider. A separate line would move these controls under the
+/// mouse.
 fn show_refusal(ui: &Ui, id: egui::Id, slider: Rect, refusal: String) {
     let colour = theme::warning(ui.visuals().dark_mode);
     egui::Area::new(id)
@@ -236,12 +238,12 @@ fn show_refusal(ui: &Ui, id: egui::Id, slider: Rect, refusal: String) {
         });
 }
 
-/// True if the window shows a setting in milliseconds, which is declared in seconds.
+/// True if a setting is a time: it is declared in seconds, and the window shows it in milliseconds.
 fn is_time(control: &Control) -> bool {
     control.unit == "s"
 }
 
-/// The value of a setting as its field shows it.
+/// Returns the text that the field of a setting shows for a value.
 fn shown(control: &Control, value: f64) -> String {
     written(if is_time(control) { millis(value) } else { value })
 }

@@ -1,4 +1,4 @@
-//! Progress of a pile that is being deposited.
+//! Progress of the deposition of a pile, in which the grains fall into a box and come to rest.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -10,11 +10,11 @@ use crate::live::{LoadingProgress, Preview};
 use crate::scene::Settling;
 use crate::sim::{GrainView, Snapshot};
 
-/// Orders of magnitude by which the fastest grain slows down until a pile is at rest.
+/// Orders of magnitude by which the speed of the fastest grain decreases until a pile is at rest.
 const ORDERS_OF_SETTLING: f64 = 3.5;
-/// Least time between two pictures of the pile. More frequent pictures would not be noticed.
+/// Least time between two displayed pictures of the pile. Users would not notice more frequent pictures.
 const INTERVAL: Duration = Duration::from_millis(30);
-/// Least finished fraction from which the remaining time is estimated.
+/// Finished fraction from which on the remaining time is estimated.
 const PART_THAT_TELLS: f64 = 0.05;
 
 /// Progress of one deposition.
@@ -26,7 +26,7 @@ pub(super) struct SettlingProgress {
 }
 
 impl SettlingProgress {
-    /// Progress that begins now.
+    /// Returns the progress of a deposition that begins now.
     pub(super) fn new() -> Self {
         Self { begun: Instant::now(), looked: None, preview: None, part: 0.0 }
     }
@@ -53,7 +53,7 @@ impl SettlingProgress {
         LoadingProgress { part: self.part as f32, text, preview: self.preview.clone() }
     }
 
-    /// Text with the estimated remaining time. Empty if it is too early for an estimate.
+    /// Returns a text with the estimated remaining time; empty if it is too early for an estimate.
     fn left(&self, elapsed_secs: f64) -> String {
         if self.part < PART_THAT_TELLS {
             return String::new();
@@ -67,8 +67,8 @@ impl SettlingProgress {
     }
 }
 
-/// Finished fraction of a deposition, 0 … 1. Rain takes at most a quarter of the time limit; afterwards the fastest
-/// grain's speed measures the progress.
+/// Returns the finished fraction of a deposition, 0 to 1. Grains fall for at most a quarter of the time limit; after
+/// that, the fraction depends on the speed of the fastest grain.
 pub(super) fn settled_part(settling: &Settling) -> f64 {
     let rained = match settling.rains {
         true => (4.0 * settling.time_secs / settling.limit_secs).min(1.0),
@@ -78,7 +78,8 @@ pub(super) fn settled_part(settling: &Settling) -> f64 {
     0.5 * rained * (1.0 + slowed.clamp(0.0, 1.0))
 }
 
-/// Corners of the area with all grains, the box and the base. It shrinks as the grains come down.
+/// Returns the corners of the area with all grains, the box and the base, m. The area becomes smaller as the grains
+/// fall.
 fn view_of(snapshot: &Snapshot) -> [DVec2; 2] {
     let diameter = snapshot.surroundings.mean_diameter;
     let ends = |side: DVec2| {
@@ -101,7 +102,7 @@ mod tests {
         let (mut parts, mut tops) = (Vec::new(), Vec::new());
         let mut diameter = 0.0;
         settle(&pile, |settling| {
-            // Forget the last picture, so that each call makes a new one.
+            // The time of the last picture is deleted, so that each call makes a new picture.
             making.looked = None;
             let told = making.look(&settling);
             let preview = told.preview.expect("something to see");
@@ -115,8 +116,8 @@ mod tests {
         })
         .expect("a pile");
         assert!(parts.is_sorted() && parts[0] < 0.1 && parts[parts.len() - 1] > 0.9, "{parts:?}");
-        // Five rows of eight grains fit into the box, with an error of about one; the view ends a diameter above the
-        // highest.
+        // Five rows of eight grains fit into the box, with an error of about one row. The view ends one diameter above
+        // the highest grain.
         let rows = 40.0 / 8.0;
         let top = tops[tops.len() - 1] / diameter;
         assert!((rows..rows + 3.0).contains(&top), "the view ends above the pile: {top} d");

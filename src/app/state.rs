@@ -1,4 +1,4 @@
-//! The whole state of the user interface, and actions that change several of its parts. It does not depend on a window
+//! The state of the whole user interface, and actions that change several of its parts. It does not depend on a window
 //! or a GPU.
 
 use std::collections::BTreeMap;
@@ -30,19 +30,19 @@ use crate::live::{Command, Live, LiveFrame, LiveStart};
 pub struct AppState {
     /// The visible run.
     pub run: WatchedRun,
-    /// Choices that outlive the window.
+    /// The user's choices, which the program stores between starts.
     pub preferences: Preferences,
-    /// The visible part of the scene.
+    /// The part of the scene that is visible.
     pub camera: SceneCamera,
-    /// True in a lesson.
+    /// True while a lesson is open.
     pub touring: bool,
     /// Runs of other initial states with the present settings.
     pub ensemble: Ensemble,
-    /// The quantity of an experiment over time.
+    /// The measured quantity of an experiment against time, for its plot.
     pub(crate) experiment: ExperimentSeries,
-    /// Places of controls, points, for tests that drive the window from outside.
+    /// Positions of controls, points, for tests that control the window from outside.
     pub controls: BTreeMap<String, Rect>,
-    /// The panels and their own state.
+    /// The panels of the window with their own state.
     pub panels: Panels,
     /// True if the window must open its graphics device again.
     pub(crate) restart_graphics: bool,
@@ -56,14 +56,14 @@ pub struct AppState {
 }
 
 impl AppState {
-    /// Makes the state at the start of the program and begins to load `config`.
+    /// Returns the state at the start of the program, and begins to load `config`.
     pub fn new(live: Live, config: Config, preferences: Preferences) -> Self {
         let mut state = Self::idle(live, preferences);
         state.load(config);
         state
     }
 
-    /// Makes the state at the start of the program, with nothing loaded.
+    /// Returns the state at the start of the program, without a scene.
     pub(crate) fn idle(live: Live, preferences: Preferences) -> Self {
         let mut state = Self {
             run: WatchedRun::new(live),
@@ -82,13 +82,14 @@ impl AppState {
             seen_loads: 0,
             seen_refusal: None,
         };
-        // The window may have been closed in a lesson: if it opens something else, the user's own choices apply again.
+        // If the window was closed in a lesson, the lesson's choices were stored. The user's own choices are restored
+        // before something else is opened.
         state.preferences.put_lesson_away();
         state.set_pace();
         state
     }
 
-    /// The context that the panels share, and the panels.
+    /// Returns the context that the panels share, and the panels.
     pub(super) fn split(&mut self) -> (PanelContext<'_>, &mut Panels) {
         let context = PanelContext {
             run: &mut self.run,
@@ -105,7 +106,7 @@ impl AppState {
         (context, &mut self.panels)
     }
 
-    /// Carries out the request of a panel.
+    /// Performs the action that a panel requests.
     pub(super) fn carry_out(&mut self, context: &Context, request: Request) {
         match request {
             Request::Load(config) => self.load(*config),
@@ -126,16 +127,18 @@ impl AppState {
         self.exports.is_writing()
     }
 
-    /// Fetches the newest frame. The controls follow it unless a change of theirs is under way.
+    /// Fetches the newest frame from the solver's thread. The controls show its settings, unless the user is changing a
+    /// setting.
     pub(super) fn refresh(&mut self, context: &Context) {
         self.run.frame = self.run.live.latest().clone();
         self.follow_loads();
         let LiveFrame { acknowledged, start, .. } = &self.run.frame;
         if start.is_none() && *acknowledged == self.run.live.sent() {
-            // The first load was cancelled or failed. The default scene needs no deposition.
+            // The first load was cancelled or failed. The default scene is loaded instead, because its grains need no
+            // deposition.
             self.load(Config::default());
         }
-        // Each refusal is a new allocation, so equal text at another address is a new refusal.
+        // Each error message is a new allocation, so an equal text at another address is a new error.
         let address = |refusal: &Option<Arc<str>>| refusal.as_ref().map(Arc::as_ptr);
         if address(&self.run.frame.refusal) != address(&self.seen_refusal) {
             self.seen_refusal.clone_from(&self.run.frame.refusal);
@@ -161,7 +164,7 @@ impl AppState {
         self.ensemble.follow(context, &self.run.frame, self.preferences.ensemble);
     }
 
-    /// Resets view and selection when a new scene was loaded.
+    /// Resets the view and the selection if a new scene was loaded.
     fn follow_loads(&mut self) {
         if self.run.frame.loads == self.seen_loads {
             return;
@@ -177,12 +180,12 @@ impl AppState {
         }
     }
 
-    /// Shows a failure in the status bar for a while.
+    /// Shows an error message in the status bar for a few seconds.
     pub(crate) fn warn(&mut self, text: impl Into<String>) {
         self.notice = Some(Notice::new(text, true));
     }
 
-    /// The notice of the status bar and its remaining time, s.
+    /// The notice in the status bar and its remaining time, s.
     pub fn notice(&self) -> Option<(&Notice, f32)> {
         let notice = self.notice.as_ref()?;
         Some((notice, notice.left_secs()?))
@@ -192,7 +195,7 @@ impl AppState {
         self.run.live.send(Command::SetPace(self.preferences.pace()));
     }
 
-    /// Opens a scene.
+    /// Opens the scene of a configuration.
     pub fn load(&mut self, config: Config) {
         self.open(Opening::Scene(Box::new(config)));
     }
@@ -208,7 +211,7 @@ impl AppState {
         self.open(Opening::File(path.to_owned()));
     }
 
-    /// Opens a file of any kind that can be opened.
+    /// Opens a file of any supported kind.
     pub(super) fn open_file(&mut self, path: &Path) {
         match opening_of(path) {
             Some(Opening::File(path)) => self.load_saved(&path),
@@ -217,7 +220,7 @@ impl AppState {
         }
     }
 
-    /// Sends the opening to the solver thread. Leaves the lessons unless a lesson is opened.
+    /// Sends the request to the solver's thread. Ends the lessons, unless the request opens a lesson.
     pub(crate) fn open(&mut self, opening: Opening) {
         if !matches!(opening, Opening::Lesson(_)) {
             self.leave_lessons();
@@ -225,7 +228,7 @@ impl AppState {
         self.run.live.send(Command::Load(Box::new(opening)));
     }
 
-    /// Shows a lesson, or the last one if `at` is too large.
+    /// Opens the lesson with the index `at`, or the last lesson if `at` is too large.
     pub fn visit(&mut self, at: usize) {
         let at = at.min(LESSONS.len() - 1);
         self.preferences.begin_lesson(at, LESSONS[at].choices());
@@ -236,7 +239,7 @@ impl AppState {
         self.open(Opening::Lesson(at));
     }
 
-    /// Ends the lessons and keeps their worlds.
+    /// Ends the lessons. Their worlds (simulations) stay open.
     fn leave_lessons(&mut self) {
         if std::mem::take(&mut self.touring) {
             self.preferences.put_lesson_away();
@@ -245,7 +248,7 @@ impl AppState {
         }
     }
 
-    /// Saves the visible moment of the selected world.
+    /// Saves the displayed state of the selected simulation.
     fn save_state(&mut self, context: &Context) {
         let run = self.run.take(self.run.selected);
         self.exports.write(context, &self.preferences.folder, vec![run], |folder, _, runs| {
@@ -253,7 +256,7 @@ impl AppState {
         });
     }
 
-    /// Saves all worlds with their history and the arrangement of the window.
+    /// Saves all simulations with their history, and the arrangement of the window.
     pub(super) fn save_session(&mut self, context: &Context) {
         if self.run.frame.worlds.is_empty() {
             return;
@@ -263,7 +266,7 @@ impl AppState {
         let arrangement = Arrangement { stored, touring, selected, camera };
         let (sender, run) = channel();
         let hand_on = move |start: LiveStart| {
-            // The receiver may be gone.
+            // The receiver may no longer exist.
             let _ = sender.send(start);
         };
         self.run.live.send(Command::TakeAll(Box::new(hand_on)));
@@ -275,7 +278,7 @@ impl AppState {
         });
     }
 
-    /// Copies a link to the present moment of all worlds.
+    /// Copies a link that reproduces the displayed state of all simulations.
     pub fn copy_link(&mut self, context: &Context) {
         self.exports.copy_link(context, self.run.take_all());
     }
@@ -290,7 +293,7 @@ impl AppState {
         self.set_pace();
     }
 
-    /// Restores the places of the panels from a session.
+    /// Restores the positions of the panels from a session.
     pub(super) fn restore_layout(&mut self, context: &Context) {
         if let Some(layout) = self.layout.take() {
             context.memory_mut(|memory| memory.data = layout.data);

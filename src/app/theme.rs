@@ -14,7 +14,7 @@ const BOLD_FONT: &[u8] = include_bytes!("../../assets/fonts/DejaVuSansCondensed-
 /// Name of the font family of headings.
 const BOLD: &str = "bold";
 
-/// The family of headings.
+/// Returns the font family of headings.
 pub(crate) fn bold() -> FontFamily {
     FontFamily::Name(BOLD.into())
 }
@@ -25,22 +25,22 @@ pub(crate) fn color32(colour: Colour) -> Color32 {
     Color32::from_rgba_unmultiplied(red, green, blue, alpha)
 }
 
-/// Accent colour: the release button, the present time in plots.
+/// Accent colour of the play button and of the present time in plots.
 pub(crate) fn accent(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(0x4d, 0xa3, 0xd9) } else { Color32::from_rgb(0x00, 0x6c, 0xa8) }
 }
 
-/// Colour of words on the accent colour.
+/// Colour of text on the accent colour.
 pub(crate) fn on_accent(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(0x12, 0x15, 0x1a) } else { Color32::WHITE }
 }
 
-/// Colour of failures.
+/// Colour of error messages and warnings.
 pub(crate) fn warning(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(0xf0, 0x8a, 0x4a) } else { Color32::from_rgb(0xb8, 0x46, 0x00) }
 }
 
-/// Colour of successes.
+/// Colour of messages of success.
 pub(crate) fn good(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(0x5c, 0xc9, 0x8a) } else { Color32::from_rgb(0x0a, 0x7d, 0x46) }
 }
@@ -125,7 +125,7 @@ fn fonts() -> FontDefinitions {
 mod tests {
     use super::*;
 
-    /// Relative luminance (WCAG 2.2).
+    /// Relative luminance of a colour (WCAG 2.2).
     fn luminance(colour: Color32) -> f64 {
         let [red, green, blue] = [colour.r(), colour.g(), colour.b()].map(|channel| {
             let part = f64::from(channel) / 255.0;
@@ -142,14 +142,14 @@ mod tests {
     #[test]
     fn contrast_is_that_of_the_guidelines() {
         assert!((contrast(Color32::BLACK, Color32::WHITE) - 21.0).abs() < 1e-9);
-        // The guidelines' example: #777777 on white is just below 4.5.
+        // Example of the guidelines (WCAG): the contrast of #777777 on white is just below 4.5.
         let grey = contrast(Color32::from_gray(0x77), Color32::WHITE);
         assert!((4.47..4.49).contains(&grey), "{grey}");
     }
 
     #[test]
     fn words_can_be_read_on_every_ground() {
-        /// Least contrast of level AA, for words of any size.
+        /// Smallest contrast of level AA for text of any size.
         const LEAST: f64 = 4.5;
         let context = egui::Context::default();
         install(&context);

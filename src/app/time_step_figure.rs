@@ -1,4 +1,5 @@
-//! Fig. 5a by hand: mean slump against Δt, with one point per released pile.
+//! The plot of mean slump against Δt, as in Fig. 5a of the paper, with one point for each run that the user has
+//! started.
 
 use egui::{Color32, Label, RichText, Ui};
 use egui_plot::{HoverPosition, Line, Points};
@@ -15,27 +16,27 @@ use crate::sim::Settings;
 
 /// Title of the plot.
 const TITLE: &str = "slump against Δt";
-/// Hover text: meaning of a point.
+/// Hover text of the title, which explains a point of the plot.
 const HINT: &str = "One point per released pile: the mean slump of its other piles at the end of the scene, with \
                     its 95 % interval.";
-/// Least range of the time step axis, ms.
+/// Smallest range of the time step axis, ms.
 const LEAST_MILLIS: [f64; 2] = [0.1, 10.0];
-/// Half the width of the caps of an error bar, decades.
+/// Half of the width of an error bar's caps, decades.
 const CAP: f64 = 0.03;
 
-/// One point: the mean slump at the end of the scene.
+/// A point of the plot: the mean slump of other initial states at the end of the scene.
 #[derive(Clone, Debug, PartialEq)]
 struct FigurePoint {
     time_step_secs: f64,
     mean: f64,
-    /// Half the width of the 95 % interval of the mean.
+    /// Half-width of the 95 % confidence interval of the mean.
     half: f64,
-    /// Number of piles.
+    /// Number of initial states.
     count: usize,
 }
 
 impl FigurePoint {
-    /// Coordinate along the Δt axis: the decimal logarithm of milliseconds.
+    /// Returns the coordinate along the Δt axis: the decimal logarithm of milliseconds.
     fn decades(&self) -> f64 {
         (1e3 * self.time_step_secs).log10()
     }
@@ -50,7 +51,7 @@ struct FigureSeries {
     points: Vec<FigurePoint>,
 }
 
-/// The figure.
+/// The plot of mean slump against Δt.
 #[derive(Clone, Debug)]
 pub(super) struct TimeStepFigure(Vec<FigureSeries>);
 
@@ -101,7 +102,7 @@ impl TimeStepFigure {
         (!series.is_empty()).then_some(Self(series))
     }
 
-    /// Draws the figure into the remaining space. `head` adds to its title line.
+    /// Draws the plot into the remaining space. `head` adds to its title line.
     pub(super) fn draw(&self, ui: &mut Ui, head: impl FnOnce(&mut Ui)) {
         ui.horizontal(|ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -143,7 +144,7 @@ impl TimeStepFigure {
         });
     }
 
-    /// The points as CSV.
+    /// Returns the points as CSV text.
     pub(super) fn table(&self) -> String {
         let mut text = "series,bond,time_step,slump,half_interval,piles\n".to_owned();
         for FigureSeries { name, bond, points, .. } in &self.0 {
@@ -156,7 +157,7 @@ impl TimeStepFigure {
 }
 
 /// Settings with the default Δt: the settings that a series shares.
-fn without_time_step(settings: &Settings) -> Settings {
+pub(super) fn without_time_step(settings: &Settings) -> Settings {
     settings.over(Settings::default().parameters.time_step_secs)
 }
 

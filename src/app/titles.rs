@@ -1,4 +1,5 @@
-//! Titles of compared worlds. Each names the settings in which its world differs from the others.
+//! Titles of worlds (simulations side by side). Each title names the settings in which its world differs from the
+//! others.
 
 use super::budget::BUDGETS;
 use super::number_text::{clock_text, written};
@@ -8,12 +9,13 @@ use crate::number::millis_text;
 use crate::setting::Value;
 use crate::sim::Settings;
 
-/// Settings that follow from other settings; a title omits them.
+/// Settings that other settings determine; a title omits them.
 const FOLLOWING: [&str; 2] = ["stop", "tolerance"];
-/// Settings that follow from the solver; a title that names the solver omits them.
+/// Settings that the solver determines; a title that names the solver omits them.
 const FOLLOWING_METHOD: [&str; 2] = ["friction-model", "model-solves"];
 
-/// Title of a world: each setting in which any two worlds differ. If none differs, Bond and Δt.
+/// Returns the title of a simulation: all settings in which any two simulations differ, with the values of this
+/// simulation. If the simulations do not differ, the title is Bond and Δt.
 pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
     let Some(&Controls { settings, .. }) = worlds.get(index) else {
         return String::new();
@@ -32,7 +34,7 @@ pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
         (true, Some(_)) => names().collect(),
         (true, None) => vec!["bond", "dt"],
     };
-    // A solver with the settings of a preset is called by the preset's name.
+    // A solver whose settings are those of a preset has the name of the preset.
     let named =
         BUDGETS.iter().find(|budget| differs_in_method && budget.settings == settings.solver);
     let is_told = |name: &&str| named.is_none() || !["solver", "max-sweeps"].contains(name);
@@ -42,7 +44,8 @@ pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
     all.join(", ")
 }
 
-/// Caption of a world in a picture: its number if there are several worlds, its title, Bond, Δt and the time.
+/// Returns the caption of a simulation in a picture: its number if there are several simulations, its title, Bond, Δt
+/// and the simulated time.
 pub(super) fn caption(worlds: &[Controls], index: usize, time_secs: f64) -> String {
     let Some(world) = worlds.get(index) else { return String::new() };
     let mut text = title_among(worlds, index);
@@ -55,12 +58,12 @@ pub(super) fn caption(worlds: &[Controls], index: usize, time_secs: f64) -> Stri
     format!("{number}{text}, t = {}", clock_text(time_secs))
 }
 
-/// The settings in which a run differs from another.
+/// Returns the settings in which a run differs from another run.
 pub(super) fn title_against(one: &Settings, other: &Settings) -> String {
     title_among(&[one, other].map(|&settings| Controls { settings, pull: None }), 0)
 }
 
-/// A change of settings: "Bond 20 → 50".
+/// Returns the text of a change of settings, such as "Bond 20 → 50".
 pub(super) fn change_text(before: &Settings, after: &Settings) -> String {
     let (from, to) = (title_against(before, after), title_against(after, before));
     let symbol = from.split_inclusive(' ').next().unwrap_or_default();
@@ -68,13 +71,13 @@ pub(super) fn change_text(before: &Settings, after: &Settings) -> String {
     format!("{from} → {}", to.strip_prefix(symbol).filter(|_| is_one).unwrap_or(&to))
 }
 
-/// The values of these settings.
+/// Returns the names and values of some settings.
 pub(super) fn settings_text(settings: &Settings, names: &[&str]) -> String {
     let all: Vec<String> = names.iter().filter_map(|name| said(settings, name)).collect();
     all.join(", ")
 }
 
-/// A setting in a title.
+/// Returns the name and value of a setting for a title, such as "Bond 20".
 fn said(settings: &Settings, name: &str) -> Option<String> {
     let about = Settings::about().find(|about| about.name == name)?;
     let (symbol, unit) = (called(about), about.control.map_or("", |control| control.unit));

@@ -1,4 +1,4 @@
-//! The window as a function of its state: the panels, the keys that work everywhere, and dropped files.
+//! The contents of the window as a function of the state: the panels, the keys that work everywhere, and dropped files.
 
 use egui::{Context, Event, Key, Modifiers, Ui};
 
@@ -9,7 +9,7 @@ use super::panels::{front, see};
 use super::state::AppState;
 use crate::live::Command;
 
-/// The whole window.
+/// Draws the whole window and handles its input.
 pub fn ui(ui: &mut Ui, state: &mut AppState) {
     let context = ui.ctx().clone();
     state.refresh(&context);
@@ -25,14 +25,15 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
     requests.into_iter().for_each(|request| state.carry_out(&context, request));
 }
 
-/// Opens the last file that was dropped in this frame. A browser has to wait for the content of the file.
+/// Opens the last file that the user dropped in this frame. The browser version opens files elsewhere, because it must
+/// wait for their content.
 fn take_dropped_files(context: &Context, state: &mut AppState) {
     let dropped = context.input(|input| input.raw.dropped_files.last().cloned());
     let Some(file) = dropped.filter(|_| !IN_BROWSER) else { return };
     state.open_file(file.path());
 }
 
-/// Acts on the keys of this frame.
+/// Handles the keys of this frame.
 fn act_on_keys(context: &Context, state: &mut AppState) {
     if context.input(|input| input.key_pressed(Key::Escape)) {
         state.panels.help = false;
@@ -48,7 +49,7 @@ fn act_on_keys(context: &Context, state: &mut AppState) {
     if pressed(Modifiers::COMMAND, Key::Q) {
         context.send_viewport_cmd(egui::ViewportCommand::Close);
     }
-    // The longer combination comes first: the shorter one also matches it.
+    // The longer key combination is checked first, because the shorter combination also matches it.
     let redo = [(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z), (Modifiers::COMMAND, Key::Y)];
     if redo.into_iter().any(|(modifiers, key)| pressed(modifiers, key)) {
         state.run.redo();
@@ -62,7 +63,7 @@ fn act_on_keys(context: &Context, state: &mut AppState) {
     take_link(context, state);
     let pressed = |key| pressed(Modifiers::NONE, key);
     let asked = [Key::Space, Key::ArrowRight, Key::ArrowLeft, Key::R].map(pressed);
-    // While a scene is being loaded the earlier run must wait: the load may be cancelled.
+    // While a scene is being loaded, the keys do not change the earlier run, because the user may cancel the load.
     if let (None, [space, right, left, reset]) = (&state.run.frame.loading, asked) {
         if space {
             state.run.toggle_play();
@@ -99,7 +100,7 @@ fn act_on_keys(context: &Context, state: &mut AppState) {
     }
 }
 
-/// Opens a link that is pasted outside of a text field.
+/// Opens a link that the user pastes outside a text field.
 fn take_link(context: &Context, state: &mut AppState) {
     let pasted = context.input(|input| {
         input.events.iter().rev().find_map(|event| match event {

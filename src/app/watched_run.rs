@@ -1,4 +1,5 @@
-//! The run that the window shows: the live run, its newest frame, the wanted settings and the selection.
+//! The run that the window shows: the live run, its newest frame, the settings that the controls show, and the selected
+//! simulation.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
@@ -14,39 +15,40 @@ use crate::live::{
 };
 use crate::sim::Settings;
 
-/// A grain of one of the worlds.
+/// A grain of one of the worlds (simulations side by side).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GrainRef {
-    /// Index of the world.
+    /// Index of the simulation.
     pub world: usize,
-    /// Index of the grain.
+    /// Index of the grain in its simulation.
     pub grain: usize,
 }
 
 /// The run that the window shows.
 pub struct WatchedRun {
-    /// Handle of the solver thread.
+    /// Handle of the solver's thread.
     pub live: Live,
-    /// Newest frame of the solver thread.
+    /// Newest frame of the solver's thread.
     pub frame: LiveFrame,
-    /// Settings that the controls show, one entry per world. They are ahead of the frame while a command is under way.
+    /// Settings that the controls show, one entry per simulation. While the solver's thread has not yet handled a
+    /// change, they are newer than the settings in the frame.
     pub(crate) wanted: Vec<Controls>,
-    /// World and settings while a main slider is dragged.
+    /// Index of a simulation and its new settings while the user drags a main slider.
     pub(crate) draft: Option<(usize, Settings)>,
-    /// The world that the controls change.
+    /// Index of the simulation that the controls change.
     pub(crate) selected: usize,
     /// The grain whose contacts are listed.
     pub pinned: Option<GrainRef>,
 }
 
-/// A run that was handed out to be written to a file.
+/// A copy of a run's history from the solver's thread, to be written to a file.
 pub(crate) struct TakenRun {
     pub start: Arc<LiveStart>,
     pub world: WorldHistory,
 }
 
 impl WatchedRun {
-    /// A run with nothing loaded.
+    /// Returns a run without an initial state.
     pub(super) fn new(live: Live) -> Self {
         Self {
             live,
@@ -58,7 +60,8 @@ impl WatchedRun {
         }
     }
 
-    /// Follows the newest frame, unless a change of the controls is under way.
+    /// Sets the settings of the controls to those of the newest frame, unless the solver's thread has not yet handled a
+    /// change.
     pub(super) fn follow_frame(&mut self) {
         let in_step = self.frame.acknowledged == self.live.sent() && !self.frame.seeking;
         if in_step || self.wanted.len() != self.frame.worlds.len() {
@@ -79,37 +82,38 @@ impl WatchedRun {
         world.is_some_and(|world| grain < world.snapshot.grains.len())
     }
 
-    /// The world that the controls change, once there is one.
+    /// The simulation that the controls change; `None` before the first load.
     pub fn world(&self) -> Option<&WorldFrame> {
         self.frame.worlds.get(self.selected)
     }
 
-    /// Wanted settings of the selected world.
+    /// Settings that the controls show for the selected simulation.
     pub(crate) fn wanted_settings(&self) -> Option<Settings> {
         self.wanted.get(self.selected).map(|wanted| wanted.settings)
     }
 
-    /// Wanted settings of the selected world, and the initial state, which has their defaults.
+    /// Settings that the controls show for the selected simulation, and the initial state, whose settings are the
+    /// defaults of the controls.
     pub(crate) fn wanted_and_start(&self) -> Option<(Settings, Arc<LiveStart>)> {
         Some((self.wanted_settings()?, self.frame.start.clone()?))
     }
 
-    /// Configuration of the visible run. A load that is cancelled or fails does not change it.
+    /// Configuration of the visible run. If a load is cancelled or fails, the configuration does not change.
     pub(crate) fn config(&self) -> Config {
         self.frame.start.as_ref().map_or_else(Config::default, |start| start.config.clone())
     }
 
-    /// True if the scene is a heap, whose slump has a meaning.
+    /// True if the scene is a heap, so that its slump (relative drop of the mean height) is meaningful.
     pub(crate) fn slumps(&self) -> bool {
         self.frame.start.as_ref().is_some_and(|start| start.slumps)
     }
 
-    /// True if there are several worlds.
+    /// True if the window compares several simulations.
     pub(crate) fn compares(&self) -> bool {
         self.frame.worlds.len() > 1
     }
 
-    /// True if there are worlds and nothing is being loaded.
+    /// True if there are simulations and no initial state is being loaded.
     pub(crate) fn is_ready(&self) -> bool {
         !self.frame.worlds.is_empty() && self.frame.loading.is_none()
     }
@@ -119,7 +123,7 @@ impl WatchedRun {
         self.frame.start.as_ref().map_or([DVec2::ZERO, DVec2::ONE], |start| start.view)
     }
 
-    /// Duration of the scene, s of simulated time.
+    /// Duration of the scene, simulated seconds.
     pub(crate) fn duration_secs(&self) -> f64 {
         self.frame.start.as_ref().map_or(1.0, |start| start.scene.duration_secs)
     }
@@ -135,12 +139,12 @@ impl WatchedRun {
         title_among(&self.wanted, world)
     }
 
-    /// Title of a world with its number in front.
+    /// Returns the title of a simulation with its number in front.
     pub(crate) fn numbered_title(&self, world: usize) -> String {
         format!("{}: {}", world + 1, self.title(world))
     }
 
-    /// Slump of a world as text, if the scene is a heap.
+    /// Returns the slump of a simulation as text; empty if the scene is not a heap.
     pub(crate) fn slump_text(&self, world: usize) -> String {
         let world = self.frame.worlds.get(world).filter(|_| self.slumps());
         world.map_or_else(String::new, |world| slump_text(world.snapshot.observables.slump))
@@ -154,8 +158,9 @@ impl WatchedRun {
         stem(name, &settings, self.frame.time_secs())
     }
 
-    /// The last earlier run, if at most one of its worlds had settings other than now. The ghost of another comparison
-    /// would appear next to numbers of unrelated runs.
+    /// Returns the last earlier run for comparison with the present run (the "ghost"), if the settings of at most one
+    /// simulation differ. The ghost of a run with other simulations is not shown, because its numbers could not be
+    /// compared.
     pub(crate) fn ghost(&self) -> Option<&PastRun> {
         let (last, worlds) = (self.undo_target()?, &self.frame.worlds);
         let others = last.worlds.iter().zip(worlds.iter());
@@ -163,12 +168,12 @@ impl WatchedRun {
         (last.worlds.len() == worlds.len() && others.count() <= 1).then_some(last)
     }
 
-    /// Goes back to the run before.
+    /// Goes back to the previous run.
     pub(crate) fn undo(&mut self) {
         self.go_to(self.undo_target().map(|run| run.number));
     }
 
-    /// Returns to the run that Undo left.
+    /// Returns to the run that the user left with Undo.
     pub(crate) fn redo(&mut self) {
         self.go_to(self.redo_target().map(|run| run.number));
     }
@@ -180,17 +185,17 @@ impl WatchedRun {
         }
     }
 
-    /// The run that Undo goes back to.
+    /// The run to which Undo goes back.
     fn undo_target(&self) -> Option<&PastRun> {
         self.frame.past.iter().rfind(|run| !run.is_undone)
     }
 
-    /// The run that Redo returns to.
+    /// The run to which Redo returns.
     fn redo_target(&self) -> Option<&PastRun> {
         self.frame.past.iter().find(|run| run.is_undone)
     }
 
-    /// Changes the settings of a world.
+    /// Changes the settings of a simulation.
     pub fn change(&mut self, world: usize, settings: Settings) {
         if let Some(wanted) = self.wanted.get_mut(world) {
             wanted.settings = settings;
@@ -198,7 +203,7 @@ impl WatchedRun {
         }
     }
 
-    /// Starts again with the settings that a slider was dragged to.
+    /// Restarts from the initial state with the settings that the user chose with a slider, and plays.
     pub(crate) fn start_again_with_draft(&mut self) {
         let Some((world, settings)) = self.draft.take() else { return };
         let Some(wanted) = self.wanted.get_mut(world) else { return };
@@ -208,7 +213,7 @@ impl WatchedRun {
         self.live.send(Command::Play);
     }
 
-    /// Releases the pile, plays or pauses.
+    /// Plays or pauses the run. The first play removes the walls of a pile.
     pub(crate) fn toggle_play(&mut self) {
         let command = if self.frame.playing { Command::Pause } else { Command::Play };
         self.live.send(command);
@@ -219,26 +224,26 @@ impl WatchedRun {
         self.live.send(Command::Step);
     }
 
-    /// Goes back one step in the recording.
+    /// Goes back by one recorded step.
     pub(crate) fn step_back(&mut self) {
         let steps = self.frame.worlds.iter().map(|world| world.snapshot.observables.time_step_secs);
         let time_secs = self.frame.time_secs() - steps.fold(0.0, f64::max);
         self.live.send(Command::Seek(time_secs.max(0.0)));
     }
 
-    /// Asks the solver thread for a world's run, which it hands out between two steps. The channel stays empty if that
-    /// world no longer exists.
+    /// Requests a copy of a simulation's history from the solver's thread, which sends it between two steps. If the
+    /// simulation no longer exists, the channel stays empty.
     pub(crate) fn take(&mut self, world: usize) -> Receiver<TakenRun> {
         let (sender, receiver) = channel();
         let hand_on = move |start, world| {
-            // The receiver may be gone.
+            // The receiver may no longer exist.
             let _ = sender.send(TakenRun { start, world });
         };
         self.live.send(Command::Take(world, Box::new(hand_on)));
         receiver
     }
 
-    /// Asks the solver thread for the runs of all worlds.
+    /// Requests copies of the histories of all simulations from the solver's thread.
     pub(crate) fn take_all(&mut self) -> Vec<Receiver<TakenRun>> {
         (0..self.frame.worlds.len()).map(|world| self.take(world)).collect()
     }

@@ -1,4 +1,4 @@
-//! Long work on a thread of its own, with a progress bar and a button that stops it.
+//! Long tasks on a separate thread, such as exports, with a progress bar and a button that stops the task.
 
 #[cfg(target_arch = "wasm32")]
 use std::cell::RefCell;
@@ -18,42 +18,43 @@ use crate::live::receive_within;
 /// Time between two checks for a cancellation, and least time between two updates of the progress bar.
 const INTERVAL: Duration = Duration::from_millis(50);
 
-/// Bound on closures that another thread can run.
+/// Trait of closures that can run on another thread.
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) trait MaySend: Send {}
 #[cfg(not(target_arch = "wasm32"))]
 impl<T: Send> MaySend for T {}
-/// Bound on closures that another thread could run. The browser version has no threads, so it is empty here.
+/// Trait of closures that would run on another thread. The browser version has no threads, so the trait requires
+/// nothing.
 #[cfg(target_arch = "wasm32")]
 pub(crate) trait MaySend {}
 #[cfg(target_arch = "wasm32")]
 impl<T> MaySend for T {}
 
-/// Work in progress. Dropping it cancels it.
+/// A task in progress. Dropping this value cancels the task.
 pub(crate) struct Work<T> {
     shared: Arc<WorkState>,
     doer: Doer<T>,
 }
 
-/// The place where the work is done.
+/// The place where the task runs.
 enum Doer<T> {
-    /// On a thread.
+    /// A separate thread.
     #[cfg(not(target_arch = "wasm32"))]
     Thread { outcome: Receiver<Result<T>>, thread: Option<JoinHandle<()>> },
-    /// In the caller of [`Work::outcome`], because the browser version cannot start threads.
+    /// The caller of [`Work::outcome`], because the browser version cannot start threads.
     #[cfg(target_arch = "wasm32")]
     Asker(RefCell<Box<dyn FnMut() -> Option<Result<T>>>>),
 }
 
-/// State that the window and the working thread share.
+/// State that the window and the thread of the task share.
 #[derive(Default)]
 struct WorkState {
-    /// Fraction of the work that is done, 0 … 1, as the bits of an f32.
+    /// Finished fraction of the task, 0 to 1, as the bits of an f32.
     done: AtomicU32,
     is_cancelled: AtomicBool,
 }
 
-/// Handle by which the work reports its progress and sees a cancellation.
+/// Handle by which a task reports its progress and detects that the user cancelled it.
 pub(crate) struct Reporter {
     shared: Arc<WorkState>,
     context: egui::Context,
@@ -61,8 +62,8 @@ pub(crate) struct Reporter {
 }
 
 impl<T: Send + 'static> Work<T> {
-    /// Starts the work once all its runs have arrived. If the user cancels earlier, the work gets the runs that
-    /// arrived.
+    /// Starts a task that needs runs from the solver's thread. The task begins when all runs have arrived through the
+    /// channels `runs`. If the user cancels earlier, the task receives only the runs that have arrived.
     pub(crate) fn start<R: Send + 'static>(
         context: &egui::Context,
         runs: Vec<Receiver<R>>,
@@ -98,7 +99,7 @@ impl<T: Send + 'static> Doer<T> {
                     break outcome;
                 }
             };
-            // The window may have closed.
+            // The window may have been closed, so that nobody receives the result.
             let _ = outbox.send(outcome);
             context.request_repaint();
         });
@@ -106,7 +107,7 @@ impl<T: Send + 'static> Doer<T> {
     }
 }
 
-/// Work that begins when all runs have arrived.
+/// A task that begins when all runs have arrived.
 struct Job<R, Act> {
     coming: Vec<Receiver<R>>,
     came: Vec<R>,
@@ -114,7 +115,8 @@ struct Job<R, Act> {
 }
 
 impl<R, Act> Job<R, Act> {
-    /// Waits up to `patience` for the next run; once all are there, does the work. Returns `None` until it is done.
+    /// Waits up to `patience` for the next run. When all runs have arrived, performs the task and returns its result.
+    /// Returns `None` before that.
     fn advance<T>(&mut self, reporter: &Reporter, patience: Duration) -> Option<Result<T>>
     where
         Act: FnOnce(Vec<R>, &Reporter) -> Result<T>,
@@ -133,12 +135,12 @@ impl<R, Act> Job<R, Act> {
 }
 
 impl<T> Work<T> {
-    /// Asks the work to end at its next check.
+    /// Requests the task to end at its next check.
     fn cancel(&self) {
         self.shared.is_cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Cancels the work and waits for its end, so that files are closed before the process ends.
+    /// Cancels the task and waits for its end, so that files are closed before the process ends.
     pub(super) fn end(&mut self) {
         self.cancel();
         #[cfg(not(target_arch = "wasm32"))]
@@ -148,11 +150,11 @@ impl<T> Work<T> {
         }
     }
 
-    /// Shows a progress bar called `name` and a button that stops the work.
+    /// Shows a progress bar called `name` and a button that stops the task.
     pub(super) fn show(&self, ui: &mut Ui, name: &str, stop: &str, hint: &str) {
         ui.horizontal(|ui| {
-            // The button is at the other end of the line than the button that started the work, so that a double click
-            // does not stop it.
+            // The button is at the other end of the line than the button that started the task, so that a double click
+            // on the start button does not stop the task.
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui.button(stop).on_hover_text(hint).clicked() {
                     self.cancel();
@@ -163,7 +165,7 @@ impl<T> Work<T> {
         });
     }
 
-    /// Result of the work, once it has ended.
+    /// Result of the task, if the task has ended.
     pub(crate) fn outcome(&self) -> Option<Result<T>> {
         match &self.doer {
             #[cfg(not(target_arch = "wasm32"))]
@@ -180,7 +182,7 @@ impl<T> Work<T> {
     }
 }
 
-/// Takes the result of work that has ended, and removes the work.
+/// Returns the result of a task that has ended, and sets `work` to `None`.
 pub(super) fn outcome_of_ended<T: Send + 'static>(work: &mut Option<Work<T>>) -> Option<Result<T>> {
     let outcome = work.as_ref()?.outcome()?;
     *work = None;
@@ -193,14 +195,14 @@ impl<T> Drop for Work<T> {
     }
 }
 
-/// A bar that shows the finished fraction of some work.
+/// Shows a bar with the finished fraction of a task.
 pub(super) fn progress_bar(ui: &mut Ui, name: &str, part: f32) {
     let bar = ui.add(egui::ProgressBar::new(part).desired_height(14.0));
     bar.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, name));
 }
 
 impl Reporter {
-    /// Reports the finished fraction. Returns `Break` if the work was cancelled.
+    /// Reports the finished fraction of the task. Returns `Break` if the user cancelled the task.
     pub(crate) fn tell(&self, part: f64) -> ControlFlow<()> {
         self.shared.done.store((part as f32).clamp(0.0, 1.0).to_bits(), Ordering::Relaxed);
         let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
@@ -216,7 +218,7 @@ impl Reporter {
     }
 }
 
-/// Error for a run that closed before it was written.
+/// Returns the error for a run that was closed before it was written.
 pub(super) fn closed() -> Error {
     Error::value("run", "closed", "open until it is written")
 }

@@ -1,4 +1,4 @@
-//! Help, completions and manual pages of the command line.
+//! Help texts, shell completions and manual pages of the command line.
 
 use clap::{Arg, Command, CommandFactory};
 
@@ -8,13 +8,13 @@ use crate::config::Config;
 use crate::error::{Error, Result};
 use crate::scene::built_in;
 
-/// The options that `-h` shows; `--help` shows all.
+/// Options that the short help (`-h`) shows. The long help (`--help`) shows all options.
 const FIRST: [&str; 16] = [
     "scene", "grains", "seed", "preset", "duration", "stepper", "bond", "dt", "rho", "mu",
     "solver", "headless", "frames", "gif", "data", "help",
 ];
 
-/// The options that only runs without a window have.
+/// Options that are allowed only with `--headless`.
 const HEADLESS: [&str; 13] = [
     "overwrite",
     "fps",
@@ -45,7 +45,8 @@ const RUN_EXAMPLES: &str = "Examples:
   slump run cradle --frames out/ --save end.slump     # to be gone on with:
   slump run --restart end.slump --duration 3 --frames more/";
 
-/// The command line. `-h` shows its most important part. Long help states the settings of the shipped pile.
+/// Returns the definition of the command line. `-h` shows its most important options; `--help` also states the settings
+/// of the built-in pile.
 pub fn command() -> Command {
     let pile = built_in(Config::DEFAULT_SCENE).map(|scene| scene.settings()).ok();
     let root = Cli::command();
@@ -55,7 +56,8 @@ pub fn command() -> Command {
         let default = pile.and_then(|settings| settings.get(name));
         let is_hidden = !FIRST.contains(&name) && of_root.iter().any(|it| it == name);
         let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
-        // Always set: if an option is not in the short help, a manual page shows its long help, or none.
+        // The long help is always set. Without it, a manual page would have no text for an option that the short help
+        // hides.
         let long = match default {
             Some(default) => format!("{help} [pile: {default}]"),
             None => help,
@@ -71,7 +73,7 @@ pub fn command() -> Command {
     tell(root, &told)
 }
 
-/// Makes `run` take its scene as its first argument. It never opens a window.
+/// Changes the command `run` so that the scene is its first argument and `--headless`, which it implies, is hidden.
 fn scene_first(run: Command) -> Command {
     let scene = |scene: Arg| {
         let scene = scene.long(None).index(1).value_name("SCENE").help_heading(None);
@@ -80,8 +82,8 @@ fn scene_first(run: Command) -> Command {
     run.mut_arg("scene", scene).mut_arg("headless", |arg| arg.hide(true)).after_help(RUN_EXAMPLES)
 }
 
-/// Applies `told` to the arguments of all commands that take a scene. A negative number always counts as a value, so
-/// that the option's own check refuses it.
+/// Applies `told` to the arguments of all commands that take a scene. A negative number is always parsed as a value, so
+/// that the option's own check refuses it with a clear message.
 fn tell(command: Command, told: &dyn Fn(Arg) -> Arg) -> Command {
     let command = command.mut_args(|arg| match arg.get_action().takes_values() {
         true => arg.allow_negative_numbers(true),
@@ -92,7 +94,7 @@ fn tell(command: Command, told: &dyn Fn(Arg) -> Arg) -> Command {
     command.mut_subcommands(|below| tell(below, told))
 }
 
-/// A script with which a shell completes commands and options.
+/// Returns a script with which a shell completes commands and options.
 #[cfg(feature = "manual")]
 pub(super) fn completions(shell: clap_complete::Shell) -> String {
     let mut text = Vec::new();
@@ -100,7 +102,7 @@ pub(super) fn completions(shell: clap_complete::Shell) -> String {
     String::from_utf8_lossy(&text).into_owned()
 }
 
-/// The manual page of the program, or of the command with these names.
+/// Returns the manual page of the program, or of the command with these names, such as `problem solve`.
 ///
 /// # Errors
 /// If there is no such command.

@@ -1,4 +1,4 @@
-//! The command line, and the report of errors.
+//! The command line of the program, and the report of errors.
 
 mod help;
 mod studies;
@@ -97,7 +97,7 @@ enum CliCommand {
     Study(StudyCommand),
     /// Print a scene, with the requested changes, as a scene file
     Scene {
-        // By far the largest of them.
+        // Boxed because this variant is by far the largest.
         #[command(flatten)]
         config: Box<Config>,
     },
@@ -116,11 +116,11 @@ enum CliCommand {
     },
 }
 
-/// Exit code of all errors except signals.
+/// Exit code of a run that ends with an error, except a run that a signal ended.
 const REFUSED: u8 = 2;
 
-/// Runs the command line of this process. An error is one sentence on stderr and exit code 2; a run that a signal
-/// ended has the exit code that shells use for that signal.
+/// Runs the command line of this process. An error is reported as one sentence on stderr, with exit code 2. A run that
+/// a signal ended has the exit code that shells use for that signal.
 pub fn main() -> ExitCode {
     ignore_file_size_signal();
     let parsed = check_stack().map_err(|error| (REFUSED, error.to_string())).and_then(|()| parse());
@@ -141,8 +141,8 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// The parsed command line; `None` if it asked for help or the version. Its stack frame is one of the largest in the
-/// program.
+/// Parses the command line of this process. Returns `None` if the user asked for help or the version, which are then
+/// printed. `inline(never)` keeps its stack frame, one of the largest in the program, out of other functions.
 #[inline(never)]
 fn parse() -> std::result::Result<Option<Cli>, (u8, String)> {
     command()
@@ -151,7 +151,7 @@ fn parse() -> std::result::Result<Option<Cli>, (u8, String)> {
         .map(Some)
         .or_else(|error| match error.use_stderr() {
             true => Err((REFUSED, refusal_of(&error, command()))),
-            // Help or version.
+            // The user asked for help or the version.
             false => {
                 note_printed(error.print());
                 Ok(None)
@@ -159,12 +159,13 @@ fn parse() -> std::result::Result<Option<Cli>, (u8, String)> {
         })
 }
 
-/// Stack of the main thread that is enough for all commands: runs needed between 512 and 768 KiB. A window that opens
-/// a session needs more than 2 MiB, but that is no reason to refuse a run; systems with windows usually have 8 MiB.
+/// Smallest stack of the main thread, bytes, with which the program starts. Measured runs needed between 512 and 768
+/// KiB. A window that opens a saved session needs more than 2 MiB, but a run without a window must not be refused
+/// because of that. Systems with windows usually have stacks of 8 MiB.
 #[cfg(target_os = "linux")]
 const LEAST_STACK_BYTES: u64 = 1 << 20;
 
-/// Refuses to start if the stack is too small, because no program survives an overflow.
+/// Refuses to start if the stack is too small, because a stack overflow would end the process without a message.
 fn check_stack() -> Result<()> {
     #[cfg(target_os = "linux")]
     if let Some(bytes) = rustix::process::getrlimit(rustix::process::Resource::Stack).current {
@@ -273,7 +274,7 @@ impl Listed {
     }
 }
 
-/// Puts discs into a box and writes them to a file once they are at rest.
+/// Places discs in a box, lets them settle, and writes them to a file when they are at rest.
 fn generate(pile: &NewPile, out: &Path) -> Result<()> {
     let progress = Progress::new("settling", 100);
     let settled = deposit(pile, |Settling { time_secs, limit_secs, .. }| {
@@ -294,7 +295,7 @@ fn generate(pile: &NewPile, out: &Path) -> Result<()> {
     let command =
         format!("slump generate --grains {count} --box-width {width} --seed {seed}{sized}");
     let comment = match deposition {
-        // The shipped state has only these lines.
+        // The file of the built-in pile has only these lines.
         Deposition::Rain => format!(
             "Discs rained into a box over a rough base and left to come to rest; metres.\n{command}"
         ),
@@ -309,7 +310,7 @@ fn generate(pile: &NewPile, out: &Path) -> Result<()> {
     Ok(())
 }
 
-/// What to do with a problem.
+/// The subcommands of `slump problem`.
 #[derive(clap::Subcommand)]
 enum ProblemCommand {
     /// Run a scene up to a time and write the problem of the step that begins there
@@ -434,10 +435,11 @@ impl ProblemCommand {
     }
 }
 
-/// Number of sweeps after which a solve reports its progress. A smaller number makes short solves report, too.
+/// Number of sweeps after which a solve is long enough to report its progress. With a smaller number, short solves also
+/// report.
 const LONG_SOLVE_SWEEPS: u32 = 4_096;
 
-/// Prints the solutions found from several starts.
+/// Prints the solutions that were found from several sets of initial impulses.
 fn print_found(found: &[FoundSolution], starts: u32) {
     let solved = found.iter().filter(|solution| solution.is_solved).count();
     print_line(format_args!("starts          {starts}, under Coulomb's law"));
@@ -459,7 +461,7 @@ fn print_found(found: &[FoundSolution], starts: u32) {
     }
 }
 
-/// Reports the progress of a long solve, and ends it after a signal.
+/// Reports the progress of a long solve, and ends the solve after a signal.
 fn show_progress(progress: SolveProgress, tolerance: f64) -> ControlFlow<()> {
     let SolveProgress { sweeps, residual } = progress;
     if let Some(residual) = residual.filter(|_| sweeps >= LONG_SOLVE_SWEEPS) {
@@ -470,7 +472,7 @@ fn show_progress(progress: SolveProgress, tolerance: f64) -> ControlFlow<()> {
     caught_signal().map_or(ControlFlow::Continue(()), |_| ControlFlow::Break(()))
 }
 
-/// Prints a solution, its limit of sweeps, and the signal that ended it, if there was one.
+/// Prints a solution, with the limit of sweeps and the signal if one of them ended the solve early.
 fn print_solution(solution: &Solution, max_sweeps: u32, signal: Option<Signal>) {
     let Solution { contacts, method, sweeps, factorisations, seconds, residual, .. } = solution;
     print_line(format_args!("contacts        {contacts}"));

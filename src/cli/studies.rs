@@ -52,7 +52,7 @@ pub(super) enum StudyCommand {
     },
     /// Estimate how much of a result is due to the initial state, the contact law, the time step and the solver
     Budget {
-        // By far the largest of them.
+        // Boxed because this variant is by far the largest.
         #[command(flatten)]
         config: Box<Config>,
         /// Result to explain: a column (slump, max_overlap, coordination, …) at the end of the run, or mean(x), min(x), max(x), total(x) of it; can be given several times [default: slump]
@@ -241,7 +241,7 @@ fn part_of(shard: Option<String>) -> Result<Option<Shard>> {
     shard.map(|text| text.parse()).transpose()
 }
 
-/// Converts a time with its unit to seconds.
+/// Converts a time with its unit, such as 30min, to seconds.
 fn secs_of(text: &str) -> std::result::Result<f64, String> {
     let allowed = || "a time > 0 with its unit, as in 90s, 30min or 2h".to_owned();
     let digits = text.find(|sign: char| sign.is_ascii_alphabetic()).unwrap_or(text.len());
@@ -309,7 +309,7 @@ fn stability(
     progress.finish();
     let table = table?;
     print_text(&table);
-    // Before the maps, which take the most time.
+    // The table is written before the maps are computed, which takes the longest.
     if let Some(path) = table_path {
         write_file(path, &table.to_csv()?)?;
         print_line(path.display());

@@ -1,4 +1,4 @@
-//! The paper's Figs. 3, 4 and 7, from simulation to finished figure.
+//! Computes the piles and the cradle of the paper and draws its Figs. 3, 4 and 7.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -26,11 +26,11 @@ use crate::study::{
 };
 use crate::threads::make_threads;
 
-/// Width of a panel of Fig. 4, pixels.
+/// Width of a panel of Fig. 4 of the paper, pixels.
 const PILE_PANEL_WIDTH: u32 = 640;
-/// Width of Fig. 3, pixels.
+/// Width of Fig. 3 of the paper, pixels.
 const FIG3_WIDTH: u32 = 1280;
-/// Width of a panel of Fig. 7, pixels.
+/// Width of a panel of Fig. 7 of the paper, pixels.
 const CRADLE_PANEL_WIDTH: u32 = 720;
 
 struct FigureRun {
@@ -39,7 +39,7 @@ struct FigureRun {
     recorded: Recorded,
 }
 
-/// Simulates the runs on all cores and draws the figures into `folder`.
+/// Simulates the runs of the figures on all cores and draws the figures into `folder`.
 pub(super) fn draw(folder: &Path, earlier: EarlierFiles, renderer: RendererChoice) -> Result<()> {
     let mut renderer = Renderer::new(renderer)?;
     make_threads()?;
@@ -78,7 +78,7 @@ pub(super) fn draw(folder: &Path, earlier: EarlierFiles, renderer: RendererChoic
     Ok(())
 }
 
-/// Simulates all runs, the most expensive first, so that no core waits long for the last one.
+/// Simulates all runs, starting with the most expensive run, so that at the end no core waits long for another core.
 fn simulate(folder: &Path, runs: Vec<PaperRun>) -> Result<Vec<FigureRun>> {
     let steps = |run: &PaperRun| run.scene.duration_secs / run.scene.parameters.time_step_secs;
     let progress = Progress::new("simulating", runs.iter().map(|run| steps(run) as u64).sum());
@@ -89,7 +89,7 @@ fn simulate(folder: &Path, runs: Vec<PaperRun>) -> Result<Vec<FigureRun>> {
         .map(|run| {
             let started = Instant::now();
             let until_secs = run.times_secs.iter().copied().fold(0.0, f64::max);
-            // A run without steps has no table.
+            // A run that takes no steps has no table.
             let path = folder.join(format!("{}.csv", run.name));
             let table = (until_secs > 0.0).then(|| ObservablesTable::start_as(path)).transpose()?;
             let mut recorder = FigureRecorder { table, snapshots: Vec::new(), progress: &progress };
@@ -105,7 +105,7 @@ fn simulate(folder: &Path, runs: Vec<PaperRun>) -> Result<Vec<FigureRun>> {
     runs
 }
 
-/// Records the parts of a run that the figures need.
+/// Recorder that keeps the snapshots of a run that the figures need, and writes its table of observables.
 struct FigureRecorder<'a> {
     table: Option<ObservablesTable>,
     snapshots: Vec<Snapshot>,
@@ -127,9 +127,9 @@ impl Recorder for FigureRecorder<'_> {
 
 struct FigurePanel<'a> {
     run: &'a FigureRun,
-    /// Index of the run's snapshot that is shown.
+    /// Index of the displayed snapshot in the list of the run.
     number: usize,
-    /// File name without ending.
+    /// File name without its ending.
     name: String,
 }
 
@@ -166,7 +166,7 @@ impl FigureWriter<'_> {
 
     fn fig4(&mut self, runs: &[FigureRun]) -> Result<()> {
         let mut view = common_view(runs, "fig4");
-        // The base is part of the picture: its discs reach half a diameter below y = 0.
+        // The rough base belongs to the picture. Its fixed discs reach half a diameter below y = 0.
         view.min.y = -0.5 * runs[0].paper.scene.mean_diameter;
         let mut panels = Vec::new();
         for bond in FIG4_BONDS {
@@ -217,7 +217,7 @@ impl FigureWriter<'_> {
         self.figure("fig7.png", &figure, &panels)
     }
 
-    /// Draws panels `width` pixels wide, with the height that their view needs, and writes each to a file.
+    /// Draws panels that are `width` pixels wide and as high as `view` needs, and writes each panel to a file.
     fn panels(
         &mut self,
         [rows, columns]: [usize; 2],
@@ -230,7 +230,7 @@ impl FigureWriter<'_> {
         let camera = Style::default().camera(view.min, view.max, width, height);
         let mut images = Vec::new();
         for panel in panels {
-            // All panels have the same scale, so one bar is enough.
+            // All panels have the same scale, so only the first has a scale bar.
             let style = Style { scale_bar: images.is_empty(), ..Style::default() };
             let snapshot = &panel.run.snapshots[panel.number];
             let image = draw_scene(self.renderer, snapshot, &style, &camera, width, height)?;
@@ -242,7 +242,7 @@ impl FigureWriter<'_> {
         Ok(PanelGrid::new(rows, columns, images))
     }
 
-    /// Writes a figure that one command draws.
+    /// Writes a figure that consists of several panels to a file, with the command that reproduces it.
     fn figure(&mut self, file: &str, figure: &PanelGrid, panels: &[FigurePanel]) -> Result<()> {
         let mut texts = Texts::default();
         texts.add("Command line", "slump --headless --frames figures");
@@ -267,7 +267,7 @@ fn of_figure<'a>(runs: &'a [FigureRun], figure: &'a str) -> impl Iterator<Item =
     runs.iter().filter(move |run| run.paper.figure == figure)
 }
 
-/// One view for all panels of a figure, which makes them comparable. It shows all grains of all runs.
+/// Returns one view for all panels of a figure, so that they can be compared. It contains all grains of all runs.
 fn common_view(runs: &[FigureRun], figure: &str) -> View {
     let snapshots = of_figure(runs, figure).flat_map(|run| &run.snapshots);
     let mut view = View { min: DVec2::INFINITY, max: DVec2::NEG_INFINITY };
@@ -278,15 +278,15 @@ fn common_view(runs: &[FigureRun], figure: &str) -> View {
     view
 }
 
-/// Height in pixels at which the whole view is visible, with the margins of [`Style::camera`].
+/// Returns the height, pixels, at which the whole view is visible, with the margins of [`Style::camera`].
 fn panel_height(View { min, max }: View, width: u32) -> u32 {
-    /// Space above and below for margins and scale bar, pixels.
+    /// Space above and below the grains for margins and scale bar, pixels.
     const ROOM: f64 = 70.0;
     let shape = (max.y - min.y) / (max.x - min.x);
     (f64::from(width) * shape + ROOM).ceil() as u32
 }
 
-/// A time step in journal notation: Δt = 10^{−4} s, 2·10^{−3} s.
+/// Returns the text of a time step in scientific notation, such as Δt = 10^{−4} s or Δt = 2·10^{−3} s.
 fn time_step(secs: f64) -> String {
     let text = format!("{secs:e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));

@@ -1,9 +1,11 @@
-//! The output folder of one run, and its checkpoint, from which the same command resumes the run.
+//! The output folder of one run, and its checkpoint file, from which the same command can resume a run that was
+//! stopped.
 //!
-//! Several writers fill the folder: the table, the pictures, the states that wait to be drawn. At a checkpoint each
-//! one first writes everything to the disk and then states how far it is. When the run resumes, each goes back to
-//! this mark: later output is cut off and written again, with the same contents. A new kind of output needs a mark of
-//! its own in [`Marks`], which `RunWriter::marks` collects and `RunWriter::open` hands back.
+//! Several writers fill the folder: the table of observables, the pictures, and the file of states that wait to be
+//! drawn. At a checkpoint each writer first flushes everything to the disk and then reports the length of its output,
+//! its *mark*. When the run resumes, each output is cut off at its mark, and the rest is written again with the same
+//! contents. A new kind of output needs a mark in [`Marks`], which `RunWriter::marks` collects and `RunWriter::open`
+//! passes to the writers.
 
 use std::path::{Path, PathBuf};
 
@@ -20,17 +22,17 @@ use crate::output::{
 use crate::scene::Scene;
 use crate::sim::{ForceSums, Simulation, Tally};
 
-/// Treatment of an earlier run's files.
+/// Treatment of the files of an earlier run in the output folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum EarlierFiles {
-    /// If there are any, the folder is refused.
+    /// A folder that contains such files is refused.
     Refused,
     Cleared,
     /// The files stay, because the run is resumed.
     Kept,
 }
 
-/// An output folder, locked against other runs.
+/// An output folder, locked against use by other runs.
 pub(super) struct RunFolder {
     path: PathBuf,
     earlier: EarlierFiles,
@@ -38,41 +40,41 @@ pub(super) struct RunFolder {
 }
 
 impl RunFolder {
-    /// Creates the folder if it is missing, and locks it for this run.
+    /// Creates the folder if it is missing, locks it for this run, and checks its contents.
     ///
     /// # Errors
-    /// If it cannot be written to, another run uses it, or it contains files that are refused.
+    /// If the folder cannot be written to, if another run uses it, or if it contains files that are refused.
     pub(super) fn claim(path: &Path, earlier: EarlierFiles) -> Result<Self> {
         let folder = Self::lock(path, earlier)?;
         folder.check("")?;
         Ok(folder)
     }
 
-    /// Like [`Self::claim`], without a check of the contents.
+    /// Creates the folder if it is missing, and locks it for this run, without a check of its contents.
     ///
     /// # Errors
-    /// If it cannot be written to, or another run uses it.
+    /// If the folder cannot be written to, or another run uses it.
     pub(super) fn lock(path: &Path, earlier: EarlierFiles) -> Result<Self> {
         check_writable("frames", path)?;
         let lock = FolderLock::of(path, Locked::Pictures)?;
         Ok(Self { path: path.to_owned(), earlier, _lock: lock })
     }
 
-    /// The folder's path.
+    /// Path of the folder.
     pub(super) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// True if a run may resume from the folder's contents.
+    /// True if a run may be resumed from the contents of the folder.
     pub(super) fn may_go_on(&self) -> bool {
         self.earlier == EarlierFiles::Refused
     }
 
-    /// Refuses a folder with files of an earlier run, or with files to be removed that another program wrote. `why`
-    /// says why no run resumes there.
+    /// Checks the folder: refuses files of an earlier run, or, if such files are to be removed, files that another
+    /// program wrote. `why` is the reason why no run can be resumed from the folder, for the error message.
     ///
     /// # Errors
-    /// Names the first such file.
+    /// Names the first file that is refused.
     pub(super) fn check(&self, why: &str) -> Result<()> {
         let names = match self.earlier {
             EarlierFiles::Kept => return Ok(()),
@@ -90,8 +92,8 @@ impl RunFolder {
         Err(Error::value("frames", self.path.display(), allowed))
     }
 
-    /// Removes the pictures that are not in the `marks` of the resumed run, and drafts of files that a kill has left,
-    /// including the `animation` if it is in the folder.
+    /// Prepares the folder for a resumed run. Removes the pictures that are not in `marks`, and unfinished files of a
+    /// process that was killed, including an unfinished `animation` in the folder.
     ///
     /// # Errors
     /// Names a picture or table that is missing or incomplete, or a picture that cannot be removed.
@@ -122,7 +124,8 @@ impl RunFolder {
         Ok(())
     }
 
-    /// Removes the files of an earlier run, if they are to be removed. Call it after all other checks.
+    /// Removes the files of an earlier run, if the folder was opened with [`EarlierFiles::Cleared`]. Call this function
+    /// after all other checks, because the files cannot be restored.
     ///
     /// # Errors
     /// Names the file that cannot be removed.
@@ -133,7 +136,7 @@ impl RunFolder {
         let mut names = files_of_a_run(&self.path, None)?;
         names.extend(told_of(&self.path));
         for path in names.iter().map(|name| self.path.join(name)).filter(|path| is_plain(path)) {
-            // Anyone can edit the list, so each file is checked.
+            // Users can edit the manifest, so each file that it lists is checked before it is removed.
             if is_recognised(&path)? {
                 std::fs::remove_file(&path).map_err(|error| Error::file(&path, error))?;
             }
@@ -142,7 +145,7 @@ impl RunFolder {
     }
 }
 
-/// The existing files among the names that all runs use and the name of the `animation`.
+/// Returns the names of the files in the folder that any run may have written, and of the file named `animation`.
 fn files_of_a_run(folder: &Path, animation: Option<&str>) -> Result<Vec<String>> {
     let refuse = |error| Error::file(folder, error);
     let mut names = Vec::new();
@@ -163,10 +166,11 @@ fn is_of_every_run(name: &str) -> bool {
     is_frame(name) || ["manifest.json", TABLE, CHECKPOINT, WAITING].contains(&name)
 }
 
-/// Refuses two options with the same path, and a path that is also a file of the run in its folder.
+/// Refuses two options that name the same path, and an option that names a file which the run itself writes into its
+/// folder.
 ///
 /// # Errors
-/// Names the first such option.
+/// Names the first option that is refused.
 pub(super) fn check_apart(places: &[(&str, &Path)], folder: Option<&Path>) -> Result<()> {
     let folder = folder.map(|folder| folder.canonicalize().unwrap_or_else(|_| folder.to_owned()));
     let mut taken: Vec<(&str, PathBuf)> = Vec::new();
@@ -190,7 +194,7 @@ fn is_frame(name: &str) -> bool {
     number.is_some_and(|digits| digits.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
-/// The pictures and tables that an earlier run's manifest lists.
+/// Returns the names of the pictures and tables that the manifest of an earlier run lists.
 fn told_of(folder: &Path) -> Vec<String> {
     let text = std::fs::read_to_string(folder.join("manifest.json")).unwrap_or_default();
     let manifest: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
@@ -200,65 +204,65 @@ fn told_of(folder: &Path) -> Vec<String> {
     let tables = list("runs")
         .into_iter()
         .filter_map(|it| it["name"].as_str().map(|name| format!("{name}.csv")));
-    // Files outside the folder are never removed, even if the manifest names them.
+    // Files outside the folder are never removed, even if the manifest lists them.
     let is_name = |name: &String| Path::new(name).file_name() == Some(name.as_ref());
     pictures.chain(tables).filter(is_name).collect()
 }
 
-/// True for a regular file. Links and pipes are written through instead.
+/// True for a regular file. Links and pipes are never removed: the run writes to their targets.
 fn is_plain(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|there| there.is_file())
 }
 
-/// Name of the table of observables in the folder.
+/// Name of the table of observables in the output folder.
 pub(super) const TABLE: &str = "observables.csv";
-/// Name of the checkpoint in the folder.
+/// Name of the checkpoint in the output folder.
 pub(super) const CHECKPOINT: &str = "checkpoint.slump";
-/// Name of the file with states that wait to be drawn, if they must outlive the process.
+/// Name of the file with states that wait to be drawn, if these states must survive the end of the process.
 pub(super) const WAITING: &str = "checkpoint.states";
 
-/// How far each output of a run had come at a checkpoint.
+/// Lengths of all outputs of a run at a checkpoint. A resumed run cuts the outputs off at these lengths.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Marks {
-    /// Fingerprint of the command; only the same command resumes the run.
+    /// Hash of the command; only the same command resumes the run.
     pub fingerprint: String,
     /// Number of the next picture.
     pub next_picture: usize,
     /// Length of `observables.csv`, bytes.
     pub table: u64,
-    /// Length of the states that wait to be drawn, bytes.
+    /// Length of the file of states that wait to be drawn, bytes.
     pub waiting: u64,
     /// Pictures in the folder.
     pub pictures: Vec<PictureEntry>,
-    /// The moment of the saved run from which the command started, if it did.
+    /// Step and time of the saved run from which the command started (`--restart`), if it did.
     pub restarted_from: Option<Instant>,
     /// Moments at which the same command resumed the run; empty in a run without interruption.
     pub went_on_at: Vec<Instant>,
-    /// How much the recording contains.
+    /// Extent of the recording of grains and contacts: its numbers of frames and rows.
     pub recording: RecordingMark,
     /// Sums over contact pairs since the last frame of the recording.
     pub sums: ForceSums,
 }
 
-/// A run about to start or resume.
+/// State from which a run starts or resumes.
 pub(super) struct Beginning {
     pub state: SavedState,
-    /// How far its outputs in the folder had come.
+    /// Lengths of the outputs that the folder already contains.
     pub marks: Marks,
 }
 
-/// Saves a run at intervals, so that the same command can resume it.
+/// Writer of checkpoints, which saves a run at intervals of simulated time so that the same command can resume it.
 pub(super) struct Checkpoints {
     path: PathBuf,
     every_secs: f64,
     fingerprint: String,
-    /// Number of the next checkpoint, in intervals since t = 0.
+    /// Number of the next checkpoint. Checkpoint n is due at n times the interval.
     next: f64,
 }
 
 impl Checkpoints {
-    /// Plans the checkpoints in `folder` of a run that begins at this moment.
+    /// Plans the checkpoints in `folder` of a run that begins at the present moment of `simulation`.
     pub(super) fn start(
         folder: &Path,
         every_secs: f64,
@@ -273,7 +277,7 @@ impl Checkpoints {
 
     fn skip_to(&mut self, simulation: &Simulation) {
         self.next = (simulation.time_secs() / self.every_secs).floor() + 1.0;
-        // Rounding of sums of Δt must not write a checkpoint twice.
+        // The time is a sum of time steps, and its rounding must not cause a second checkpoint at the same time.
         if self.is_due(simulation) {
             self.next += 1.0;
         }
@@ -306,10 +310,10 @@ impl Checkpoints {
     }
 }
 
-/// The command's checkpoint in the folder, if there is one.
+/// Returns the checkpoint in the folder that the same command wrote, if there is a checkpoint.
 ///
 /// # Errors
-/// Says why this command cannot resume from it.
+/// States why this command cannot resume from the checkpoint.
 pub(super) fn look(
     folder: &Path,
     fingerprint: &str,

@@ -1,4 +1,4 @@
-//! The manifest: what was run, and the results, in a file beside the pictures.
+//! The manifest of a run: `manifest.json` in the folder of the pictures, with settings and results.
 
 use std::path::Path;
 use std::time::{Duration, Instant as Clock};
@@ -20,28 +20,31 @@ pub(super) struct Manifest {
     pub renderer: String,
     pub runs: Vec<RunEntry>,
     pub pictures: Vec<PictureEntry>,
-    /// Time of the last write during the run, and its duration.
+    /// Wall-clock time at which the manifest was last written during the run.
     #[serde(skip)]
     written: Clock,
+    /// Duration of the last write.
     #[serde(skip)]
     writing_took: Duration,
 }
 
-/// Shortest time between two writes. If a run is killed, its manifest may lack the pictures of this time.
+/// Shortest time between two writes during the run. If the process is killed, its manifest may lack the pictures of
+/// this period.
 const WAIT: Duration = Duration::from_millis(500);
-/// Writing takes at most 1/20 of the time, so a long manifest is written less often.
+/// Least ratio of the time between two writes to the duration of a write. Because of it, a long manifest, which takes
+/// longer to write, is written less often.
 const PART: u32 = 20;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum RunStatus {
-    /// The run has not ended, or was killed.
+    /// The run has not ended, or its process was killed.
     Running,
     /// The run reached its full duration.
     Complete,
     /// A signal ended the run.
     Interrupted,
-    /// The state was no longer finite.
+    /// The run ended because its state was no longer finite.
     NotFinite,
     /// Writing the results failed.
     Failed,
@@ -66,41 +69,41 @@ pub(super) struct RunEntry {
     pub step: u64,
     /// Simulated time at the end, s.
     pub time_secs: f64,
-    /// The scene without its lists of discs.
+    /// The scene without its lists of grains and fixed discs.
     pub scene: serde_json::Value,
     pub grains: usize,
     pub fixed_discs: usize,
-    /// Hash of the initial state: FNV-1a over the bits of all numbers of the grains.
+    /// Hash of the initial state: FNV-1a over the bits of positions, radii and velocities of the grains.
     pub initial_state: String,
     /// Hash of the final state ([`crate::sim::Snapshot::state_hash`]); empty until the run has ended.
     pub last_state: String,
     pub tally: Tally,
-    /// The moment of the saved run from which this run starts (`--restart`).
+    /// Step and time of the saved run from which this run starts (`--restart`).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub restarted_from: Option<Instant>,
-    /// Moments at which the same command resumed from a checkpoint.
+    /// Moments at which the same command resumed the run from a checkpoint.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub went_on_at: Vec<Instant>,
-    /// Alarms, with the change that is most likely to help.
+    /// Warnings, each with the change of settings that is most likely to help.
     pub alarms: Vec<AlarmEntry>,
-    /// Cohesive time, dimensionless (paper §3.3).
+    /// Cohesive time Bond·Δt/√(d/g), dimensionless (paper §3.3).
     pub cohesive_time: f64,
-    /// Capture speed, m/s (paper eq. 9).
+    /// Capture speed Bond·g·Δt, the opening speed that one step of cohesion cancels, m/s (paper eq. 9).
     pub capture_speed: f64,
-    /// Substeps per step; 1 if the problem is solved as a whole.
+    /// Substeps per step; 1 if the stepper solves each step as a whole.
     pub substeps: u32,
-    /// Longest substep that is certainly stable, s, if the stepper has such a limit.
+    /// Longest substep that is certainly stable, s; missing if the stepper has no such limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub critical_time_step_secs: Option<f64>,
-    /// Contact time of two colliding grains of mean mass, s, if contacts are springs.
+    /// Duration of the collision of two grains of mean mass, s; missing if contacts are not springs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_time_secs: Option<f64>,
-    /// Fracture work of the bond of two such grains, if the contact law defines it.
+    /// Work of breaking the bond of two grains of mean mass; missing if the contact law does not define this work.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fracture_work: Option<FractureWork>,
 }
 
-/// A moment of a run.
+/// A moment of a run: number of the step, and simulated time.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Instant {
@@ -123,15 +126,15 @@ pub(super) struct AlarmEntry {
     pub message: String,
 }
 
-/// A picture, with the moments that it shows.
+/// A picture, with the moments of runs that it shows.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct PictureEntry {
     pub file: String,
-    /// One moment per panel.
+    /// One moment for each panel of the picture.
     pub shows: Vec<ShownMoment>,
 }
 
-/// A moment of a run.
+/// A moment of a run that a picture shows.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct ShownMoment {
     pub run: String,
@@ -143,7 +146,7 @@ impl Manifest {
         Self {
             program: "slump",
             version: crate::VERSION,
-            // JSON has only UTF-8, so other bytes are replaced.
+            // JSON text is UTF-8, so bytes of the command line that are not UTF-8 are replaced.
             command: std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect(),
             renderer: renderer.to_owned(),
             runs: Vec::new(),
@@ -157,15 +160,15 @@ impl Manifest {
         self.write_and(path, true)
     }
 
-    /// Adds a picture, and writes the manifest from time to time, because a program that is killed cannot write it
-    /// later.
+    /// Adds a picture to the list. Writes the manifest if the last write was long enough ago, because a process that is
+    /// killed cannot write it later.
     pub(super) fn add(&mut self, picture: PictureEntry, path: &Path) -> Result<()> {
         self.pictures.push(picture);
         if self.written.elapsed() < WAIT.max(PART * self.writing_took) {
             return Ok(());
         }
         let begun = Clock::now();
-        // Does not wait until the disk has it.
+        // The write does not wait for the disk, to save time.
         self.write_and(path, false)?;
         (self.written, self.writing_took) = (Clock::now(), begun.elapsed());
         Ok(())
@@ -182,7 +185,7 @@ impl Manifest {
 }
 
 impl RunEntry {
-    /// The entry of a run at its start.
+    /// Returns the entry of a run at its start.
     pub(super) fn start(name: &str, scene: &Scene) -> Result<Self> {
         let mut said = serde_json::to_value(scene)
             .map_err(|error| Error::value("scene", name, error.to_string()))?;
@@ -215,7 +218,7 @@ impl RunEntry {
         })
     }
 
-    /// Records how the run ended, with its results.
+    /// Completes the entry at the end of the run, with the results.
     pub(super) fn end(&mut self, ended: RunStatus, recorded: &Recorded) {
         let Recorded { simulation, tally, .. } = recorded;
         let Observables { step, time_secs, .. } = *simulation.observables();
@@ -228,7 +231,7 @@ impl RunEntry {
     }
 }
 
-/// Hash of an initial state.
+/// Hash of the initial state of a scene.
 fn hash_of_start(scene: &Scene) -> String {
     hash_of_bits(scene.grains.iter().flat_map(|grain| {
         let (position, velocity) = (grain.position, grain.velocity);

@@ -1,4 +1,4 @@
-//! Pictures without a window: the paper's figures, or frames of one scene.
+//! Runs without a window, which draw the paper's figures or the frames of one scene.
 
 mod figures;
 mod folder;
@@ -21,7 +21,7 @@ use crate::error::Result;
 use crate::output::heed_signals;
 use folder::EarlierFiles;
 
-/// Draws the paper's snapshots into a folder, with any available renderer.
+/// Draws Figs. 3, 4 and 7 of the paper into a folder, with any available renderer.
 ///
 /// # Errors
 /// If the folder cannot be written to.
@@ -29,7 +29,8 @@ pub(crate) fn draw_snapshots(folder: &Path) -> Result<()> {
     figures::draw(folder, EarlierFiles::Kept, HeadlessOptions::default().renderer)
 }
 
-/// Draws the pictures that `options` ask for, or the paper's figures if neither scene nor frames are given.
+/// Runs the scene of `config` and writes the outputs that `options` request. If only a folder of frames is given, draws
+/// the paper's figures.
 pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
     heed_signals();
     let earlier = if options.overwrite { EarlierFiles::Cleared } else { EarlierFiles::Refused };

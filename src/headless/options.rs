@@ -1,4 +1,5 @@
-//! Options of pictures, recordings and saved runs, and the command lines that files contain for making them again.
+//! Options of pictures, recordings and saved runs, and the command lines by which output files can be reproduced. These
+//! command lines are written into the files.
 
 use std::path::{Path, PathBuf};
 
@@ -129,11 +130,11 @@ pub(crate) struct HeadlessOptions {
 const DEFAULT_SIZE: PictureSize = PictureSize { width: 960, height: 540 };
 /// Default number of pictures per simulated second.
 const DEFAULT_FPS: f64 = 25.0;
-/// Largest number of pictures. More are a mistake rather than a wish.
+/// Largest number of pictures. A larger number is probably a mistake of the user.
 const MOST_PICTURES: f64 = 1e5;
 
 impl HeadlessOptions {
-    /// True if any option is given that does not belong to the paper's figures.
+    /// True if any option is given that the paper's figures do not use.
     pub(super) fn asks_for_frames(&self) -> bool {
         let Self { headless, overwrite, renderer, .. } = *self;
         let frames = self.frames.clone();
@@ -144,14 +145,14 @@ impl HeadlessOptions {
         self.frames.is_some() || self.animation().is_some()
     }
 
-    /// The files that have an option of their own, with that option.
+    /// Returns the files that the options name, each with the name of its option.
     pub(super) fn files(&self) -> Vec<(&'static str, &Path)> {
         let files = [("gif", &self.gif), ("video", &self.video), ("save", &self.save)];
         files.into_iter().filter_map(|(option, path)| Some((option, path.as_deref()?))).collect()
     }
 
-    /// Checks that there is an output, and that options of pictures come with pictures. `data` is the requested
-    /// recording.
+    /// Checks that at least one output is requested, and that options of pictures are given only with pictures. `data`
+    /// is the requested recording.
     pub(super) fn check_places(&self, data: Option<&DataSettings>) -> Result<()> {
         if self.draws() {
             return Ok(());
@@ -176,7 +177,7 @@ impl HeadlessOptions {
         Ok(())
     }
 
-    /// The path of the GIF or video, if one is requested.
+    /// Path of the GIF or video, if one is requested.
     pub(super) fn animation(&self) -> Option<&Path> {
         self.gif.as_deref().or(self.video.as_deref())
     }
@@ -219,12 +220,12 @@ impl HeadlessOptions {
         Ok(Style { range, ..style })
     }
 
-    /// Pictures per simulated second, if no times are given.
+    /// Number of pictures per simulated second, if no times of pictures are given.
     pub(super) fn pictures_per_sec(&self) -> Result<f64> {
         Ok(self.fps.unwrap_or(DEFAULT_FPS / self.video_speed()?))
     }
 
-    /// Simulated seconds per second of video; 1 without an option.
+    /// Simulated seconds per second of video; 1 if the option is missing.
     fn video_speed(&self) -> Result<f64> {
         let Some(speed) = self.video_speed else { return Ok(1.0) };
         if self.video.is_none() {
@@ -260,7 +261,7 @@ impl HeadlessOptions {
         check_ffmpeg(path.display()).map(|()| rate_hz)
     }
 
-    /// The times of the pictures of a run of `duration_secs`, s, in ascending order.
+    /// Returns the times of the pictures of a run that lasts `duration_secs`, s, in ascending order.
     pub(crate) fn picture_times(&self, duration_secs: f64) -> Result<Vec<f64>> {
         if !self.times.is_empty() {
             let allowed = format!("between 0 and the duration of {duration_secs} s");
@@ -276,7 +277,7 @@ impl HeadlessOptions {
         let last = (duration_secs * fps * (1.0 + 1e-12)).floor();
         if !(fps > 0.0 && last < MOST_PICTURES) {
             let allowed = format!("> 0, and no more than {MOST_PICTURES} pictures in all");
-            // Names the option that the user gave.
+            // The error names the option that the user gave.
             return Err(match self.fps {
                 Some(fps) => Error::value("fps", fps, allowed),
                 None => Error::value(
@@ -291,7 +292,7 @@ impl HeadlessOptions {
 }
 
 impl HeadlessOptions {
-    /// Refuses a time between checkpoints that is not positive and finite.
+    /// Refuses an interval between checkpoints that is not positive and finite.
     pub(super) fn check_checkpoints(&self) -> Result<()> {
         match self.checkpoint_every {
             Some(secs) if !(secs > 0.0 && secs.is_finite()) => {
@@ -301,7 +302,8 @@ impl HeadlessOptions {
         }
     }
 
-    /// The requested recording: options override the scene. `None` if neither names a folder.
+    /// Returns the folder and settings of the requested recording; `None` if neither the options nor the scene name a
+    /// folder. Options override the scene.
     pub(super) fn data_settings(&self, scene: &Scene) -> Result<Option<(PathBuf, DataSettings)>> {
         let of_scene = scene.data.clone().unwrap_or_default();
         let given = !self.data_format.is_empty();
@@ -318,7 +320,7 @@ impl HeadlessOptions {
     }
 }
 
-/// Texts that the file of a figure's panel contains, for a built-in scene.
+/// Texts to be written into the file of a figure's panel that shows a built-in scene, including its command line.
 pub(super) fn texts_of_panel(scene: &Scene, snapshot: &Snapshot) -> Result<Texts> {
     let settings = scene.settings();
     let words = Config::of_scene(&scene.name).words(&settings)?;
@@ -329,12 +331,12 @@ pub(super) fn texts_of_panel(scene: &Scene, snapshot: &Snapshot) -> Result<Texts
 }
 
 impl HeadlessOptions {
-    /// The provenance of the run that `config` and these options describe.
+    /// Returns the provenance (scene, settings and options) of the run that `config` and these options describe.
     pub(super) fn provenance(&self, config: &Config, scene: &Scene) -> Result<Provenance> {
         let settings = scene.settings();
         let words = match &self.restart {
             None => {
-                // Frames do not depend on the duration of the run after them.
+                // A frame does not depend on how long the run continues after it.
                 let mut config = config.clone();
                 config.source.duration = None;
                 config.words(&settings)?
@@ -347,7 +349,7 @@ impl HeadlessOptions {
         Ok(Provenance { scene: scene.name.clone(), settings, words })
     }
 
-    /// Texts that the picture at a simulated time (s) contains.
+    /// Texts to be written into the file of the picture at a simulated time, s, including its command line.
     pub(super) fn texts_of_frame(&self, run: &Provenance, time_secs: f64, style: &Style) -> Texts {
         let frames = ["--frames".to_owned(), "frames".to_owned()];
         run.texts(
@@ -356,7 +358,8 @@ impl HeadlessOptions {
         )
     }
 
-    /// Texts that an animation of a run of this duration (s) contains. Its command ends with `last_words`.
+    /// Texts to be written into the file of an animation of a run that lasts `duration_secs`, s. The command line in
+    /// these texts ends with `last_words`.
     pub(super) fn texts_of_animation(
         &self,
         run: &Provenance,
@@ -380,7 +383,7 @@ impl HeadlessOptions {
         run.texts(None, &words)
     }
 
-    /// The options that reproduce the drawing, with the scales of the frames.
+    /// Returns the options that reproduce the drawing, with the scales of the frames.
     fn words_of_style(&self, style: &Style) -> Vec<String> {
         let named = |value: Option<clap::builder::PossibleValue>| {
             value.map_or_else(String::new, |value| value.get_name().to_owned())

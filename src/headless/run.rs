@@ -1,5 +1,5 @@
-//! The run of one scene: its beginning (a scene at t = 0, a saved run, or the checkpoint that the same command left
-//! in its folder) and its outputs.
+//! Runs one scene without a window. The run starts from the scene at t = 0, from a saved run, or from the checkpoint
+//! that the same command left in its folder.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ use crate::scene::{Scene, Settling};
 use crate::sim::{Observables, Simulation, Tally};
 use crate::study::{OnItsWay, go_on as go_on_with};
 
-/// Simulates the scene or resumes a saved run, and draws the frames.
+/// Simulates the scene, or resumes a saved run, and writes all requested outputs.
 pub(super) fn draw(
     config: &Config,
     options: &HeadlessOptions,
@@ -43,7 +43,7 @@ pub(super) fn draw(
     // A resumed run replaces the files that it left when it was stopped.
     let replaces = options.overwrite || found.is_some();
     places.iter().try_for_each(|(option, path)| check_new_file(option, path, replaces))?;
-    // The recording may be in the folder of the pictures.
+    // The recording may be in the same folder as the pictures.
     places.extend(data.as_ref().map(|(folder, _)| ("data", &**folder)));
     check_apart(&places, options.frames.as_deref())?;
     if let Some(gif) = options.gif.as_deref().filter(|path| path.extension().is_some()) {
@@ -66,7 +66,7 @@ pub(super) fn draw(
     };
     let goes_on = !begun.marks.went_on_at.is_empty();
     if let (true, Some(plan)) = (goes_on, &recording) {
-        // Before anything is cut, so that a refused run keeps all its files.
+        // This check comes before any output is cut off, so that a refused run keeps all its files.
         plan.check(begun.state.simulation.observables().step, &begun.marks.recording)?;
     }
     if let Some(folder) = &folder {
@@ -82,7 +82,7 @@ pub(super) fn draw(
 
     let Beginning { state: SavedState { scene, simulation, tally, .. }, marks } = begun;
     let steps = simulation.step_at(until_secs);
-    // Small grains may need very many substeps.
+    // Scenes with small grains may need very many substeps per step.
     let substeps = u64::from(simulation.substeps());
     warn_of_steps(steps.saturating_sub(simulation.observables().step).saturating_mul(substeps));
     let next_picture = marks.next_picture;
@@ -91,7 +91,8 @@ pub(super) fn draw(
         Checkpoints::start(folder.path(), every_secs, fingerprint, &simulation)
     });
     if let (Some(checkpoints), false) = (&mut checkpoints, goes_on) {
-        // Before any other file exists for which a repeated command would be refused.
+        // The first checkpoint is written before all other files. Without it the same command would be refused because
+        // these files exist.
         checkpoints.write(&scene, &simulation, &tally, marks.clone())?;
     }
     let start = |plan: RecordingPlan| -> Result<Recording> {
@@ -108,7 +109,7 @@ pub(super) fn draw(
     writer.end(recorded)
 }
 
-/// Reports on stderr the given settings that have no effect.
+/// Reports on stderr the given settings that have no effect with the chosen stepper.
 fn tell_of_unread_settings(config: &Config, scene: &Scene) {
     let unread = config.unread_by(scene.stepper);
     if !unread.is_empty() {
@@ -117,8 +118,8 @@ fn tell_of_unread_settings(config: &Config, scene: &Scene) {
     }
 }
 
-/// The run that the same command left in its folder, if it can be resumed. Other files of an earlier run are refused,
-/// unless they are to be removed.
+/// Returns the state of the run that the same command left in its folder, if the run can be resumed. A folder with
+/// other files of an earlier run is refused, unless these files are to be removed.
 fn left_in(folder: Option<&RunFolder>, fingerprint: Option<&str>) -> Result<Option<Beginning>> {
     let Some(folder) = folder else { return Ok(None) };
     let Some(fingerprint) = fingerprint.filter(|_| folder.may_go_on()) else {
@@ -138,13 +139,13 @@ fn left_in(folder: Option<&RunFolder>, fingerprint: Option<&str>) -> Result<Opti
 
 /// The requested run, read and checked, before its grains settle.
 pub(super) enum RequestedRun {
-    /// A scene from t = 0 on, with its grains at their initial places.
+    /// A scene that starts at t = 0, before its grains have settled.
     Scene(Box<Scene>),
-    /// A saved run, with the requested changes.
+    /// A saved run, with the requested changes of settings.
     Run(Box<SavedState>),
 }
 
-/// The times of the pictures and the end of the run, s.
+/// The times of the pictures and the end of the run, simulated seconds.
 pub(super) struct PictureSchedule {
     pub times_secs: Vec<f64>,
     pub until_secs: f64,
@@ -154,12 +155,12 @@ impl RequestedRun {
     /// Reads and checks the run that the options describe.
     ///
     /// # Errors
-    /// Names the refused value.
+    /// Names the value that is refused.
     pub(super) fn of(config: &Config, options: &HeadlessOptions) -> Result<Self> {
         options.check_checkpoints()?;
         let Some(path) = &options.restart else {
             let start = config.without_settling()?;
-            // Degenerate shapes and coinciding discs are reported before anything is written.
+            // The simulation is built to refuse degenerate shapes and coinciding discs before anything is written.
             start.simulation()?;
             return Ok(Self::Scene(Box::new(start)));
         };
@@ -177,7 +178,7 @@ impl RequestedRun {
         }
     }
 
-    /// The times of the pictures and the end of the run.
+    /// Returns the times of the pictures and the end of the run.
     ///
     /// # Errors
     /// If a time is not within the run.
@@ -186,13 +187,13 @@ impl RequestedRun {
         config: &Config,
         options: &HeadlessOptions,
     ) -> Result<PictureSchedule> {
-        // Without pictures the number of times is not limited.
+        // Without pictures the number of pictures is not limited.
         let has_times = options.draws() || !options.times.is_empty();
         let times_secs = match has_times {
             true => options.picture_times(self.scene().duration_secs)?,
             false => Vec::new(),
         };
-        // If only times are given, the run ends at the last one.
+        // If the options give times but no duration, the run ends at the last time.
         let until_secs = match times_secs.last() {
             Some(&last) if !options.times.is_empty() && config.source.duration.is_none() => last,
             _ => self.scene().duration_secs,
@@ -214,10 +215,11 @@ impl RequestedRun {
         }
     }
 
-    /// A fingerprint of what the command computes and draws. Output paths and saved files do not count.
+    /// Returns a hash of all inputs that affect what the command computes and draws. Paths of outputs and of saved runs
+    /// are left out.
     ///
     /// # Errors
-    /// If the request cannot be written as bytes.
+    /// If the inputs cannot be encoded as bytes.
     pub(super) fn fingerprint(&self, config: &Config, options: &HeadlessOptions) -> Result<String> {
         let refuse = |error: &dyn std::fmt::Display| {
             Error::value("scene", &self.scene().name, format!("written ({error})"))
@@ -243,10 +245,10 @@ impl RequestedRun {
         Ok(hasher.finalize().to_hex().to_string())
     }
 
-    /// The beginning of the run, after its grains have settled.
+    /// Returns the state from which the run starts, after its grains have settled.
     ///
     /// # Errors
-    /// If they do not come to rest.
+    /// If the grains do not come to rest.
     pub(super) fn begin(self, config: &Config, times_secs: &[f64]) -> Result<Beginning> {
         let (state, restarted_from) = match self {
             Self::Scene(_) => {
@@ -267,7 +269,7 @@ impl RequestedRun {
     }
 }
 
-/// The scene. Progress is shown if a new pile has to settle first.
+/// Returns the scene of a configuration. If a new pile must settle first, the progress is shown.
 pub(crate) fn settled(config: &Config) -> Result<Scene> {
     let progress = Progress::new("settling", 100);
     let scene = config.scene(|Settling { time_secs, limit_secs, .. }| {
@@ -278,16 +280,17 @@ pub(crate) fn settled(config: &Config) -> Result<Scene> {
     scene
 }
 
-/// A recording that has not started.
+/// A requested recording that has not started.
 pub(super) struct RecordingPlan {
-    /// The locked folder of the recording; `None` if the run continues its own recording.
+    /// The locked folder of the recording; `None` if a resumed run continues its own recording.
     claim: Option<RecordingFolder>,
     folder: PathBuf,
     settings: DataSettings,
 }
 
 impl RecordingPlan {
-    /// Locks the folder of a requested recording, unless a run `goes_on` with the existing one.
+    /// Locks the folder of a requested recording. If `goes_on` is true, the run continues its existing recording and
+    /// needs no lock.
     ///
     /// # Errors
     /// Names the problem with the folder.
@@ -303,15 +306,15 @@ impl RecordingPlan {
     /// Checks that the recording of a resumed run is still complete.
     ///
     /// # Errors
-    /// Names the missing part.
+    /// Names the missing file.
     fn check(&self, step: u64, mark: &RecordingMark) -> Result<()> {
         Recording::check(&self.folder, &formats_of(&self.settings)?, step, mark)
     }
 
-    /// Starts the recording, or resumes it at `mark`, at the present state of a run.
+    /// Starts the recording at the present state of a run, or resumes the existing recording at `mark`.
     ///
     /// # Errors
-    /// If the folder cannot be written to, or a part is missing.
+    /// If the folder cannot be written to, or a file of the recording is missing.
     pub(super) fn start(
         self,
         scene: &Scene,

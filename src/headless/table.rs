@@ -1,4 +1,4 @@
-//! The table `observables.csv`, written during the run.
+//! The table `observables.csv` with one row per step, written during the run.
 
 use std::io::{Error as IoError, Result as IoResult, Write};
 use std::path::{Path, PathBuf};
@@ -9,15 +9,15 @@ use crate::error::{Error, Result};
 use crate::output::{GrowingFile, end_of_last};
 use crate::sim::Observables;
 
-/// Longest time that a row waits to be written while steps are taken. With a shorter time small scenes spend their
-/// time in system calls; with a longer time a kill loses more.
+/// Longest time that a row waits in memory before it is written. With a shorter time, runs of small scenes spend their
+/// time in system calls; with a longer time, more rows are lost if the process is killed.
 const LONGEST_WAIT: Duration = Duration::from_millis(100);
 
-/// Largest number of bytes that wait to be written. Small scenes reach it sooner than [`LONGEST_WAIT`].
+/// Largest number of bytes that wait in memory. Small scenes reach it before [`LONGEST_WAIT`].
 const MOST_WAITING: usize = 1 << 16;
 
-/// The table of observables, one row per step. Only whole rows are written, so that the table is readable after a
-/// kill or on a full disk.
+/// The table of observables, one row per step. Only whole rows are written, so that the table is readable after the
+/// process was killed or the disk was full.
 pub(super) struct ObservablesTable {
     path: PathBuf,
     rows: csv::Writer<WholeRows>,
@@ -40,7 +40,7 @@ impl ObservablesTable {
         Ok(Self::of(GrowingFile::start(path)?))
     }
 
-    /// A table in a file. A file with rows already has the names of the columns.
+    /// Returns a table that writes to a file. The names of the columns are written only if the file is empty.
     fn of(file: GrowingFile) -> Self {
         let mut builder = csv::WriterBuilder::new();
         builder.has_headers(file.length() == 0).buffer_capacity(MOST_WAITING);
@@ -60,7 +60,7 @@ impl ObservablesTable {
         Ok(())
     }
 
-    /// Writes all rows to the disk. Returns their length, bytes.
+    /// Flushes all rows to the disk. Returns the length of the file, bytes.
     pub(super) fn mark(&mut self) -> Result<u64> {
         self.flush()?;
         let file = &self.rows.get_ref().file;
@@ -74,12 +74,12 @@ impl ObservablesTable {
     }
 }
 
-/// A writer that takes bytes and passes on whole rows.
+/// A writer that receives arbitrary pieces of text and passes only whole rows on to the file.
 struct WholeRows {
     file: GrowingFile,
     /// The beginning of an incomplete row.
     begun: Vec<u8>,
-    /// True after a failed write; later rows would leave a gap.
+    /// True after a write has failed. No further rows are written, because they would leave a gap in the table.
     is_full: bool,
 }
 

@@ -1,4 +1,5 @@
-//! States that wait on disk to be drawn.
+//! States of a run that wait in a file until the end of the run, because the scale of their colours is not known
+//! earlier.
 
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -12,13 +13,13 @@ use crate::output::{DraftFile, nameless_file};
 use crate::render::{Style, automatic_range, force_reference};
 use crate::sim::Snapshot;
 
-/// States of a run whose colours and widths need the same scale in all frames. The scale is known only at the end of
-/// the run. The states wait in a file without a name, which disappears with the process, or in a named file if the
-/// run may be resumed.
+/// States of a run that wait to be drawn. Colours and widths need the same scale in all frames, and this scale is known
+/// only at the end of the run. The states are in a temporary file that disappears with the process, or in a named file
+/// if the run may be resumed.
 pub(crate) struct WaitingStates {
     path: PathBuf,
     file: DraftFile,
-    /// Offsets of all states in the file, and the end of the last one.
+    /// Offsets of all states in the file, bytes, followed by the end of the last state.
     places: Vec<u64>,
     range: Option<(f64, f64)>,
     force_reference: f64,
@@ -33,7 +34,8 @@ struct WaitingState {
 }
 
 impl WaitingStates {
-    /// A place for waiting states, if the style needs one. Its file can `outlive` the process.
+    /// Returns a store for waiting states, or `None` if the style has fixed scales. If `outlive` is true, the states
+    /// survive the end of the process in a named file.
     ///
     /// # Errors
     /// Names the file and gives the system's message.
@@ -59,13 +61,14 @@ impl WaitingStates {
         }
     }
 
-    /// An empty place. Its file is in `folder`, or in the system's temporary folder if `folder` does not allow it.
+    /// Returns an empty store. Its temporary file is in `folder`, or in the system's temporary folder if `folder`
+    /// cannot contain it.
     pub(crate) fn start(folder: &Path) -> Result<Self> {
         let file = nameless_file(folder).or_else(|_| nameless_file(&std::env::temp_dir()));
         Ok(Self::of(folder, file.map_err(|error| Error::file(folder, error))?))
     }
 
-    /// Continues with the states in the first `length` bytes of a file, which are to be drawn in this style.
+    /// Returns a store with the states in the first `length` bytes of a file, which are to be drawn in the given style.
     pub(super) fn go_on(path: &Path, length: u64, style: &Style) -> Result<Self> {
         #[cfg(not(target_arch = "wasm32"))]
         let file =
@@ -87,18 +90,18 @@ impl WaitingStates {
         Self { path: path.to_owned(), file, places: vec![0], range: None, force_reference: 0.0 }
     }
 
-    /// Number of states.
+    /// Number of states in the file.
     pub(crate) fn len(&self) -> usize {
         self.places.len() - 1
     }
 
-    /// Writes all states to the disk. Returns their length in the file, bytes.
+    /// Flushes all states to the disk. Returns their length in the file, bytes.
     pub(super) fn mark(&self) -> Result<u64> {
         self.file.sync_data().map_err(|error| self.refuse(error))?;
         Ok(self.end())
     }
 
-    /// Adds a state that is to be drawn in this style.
+    /// Adds a state that is to be drawn in the given style as picture `number`.
     pub(crate) fn add(&mut self, style: &Style, number: usize, snapshot: Snapshot) -> Result<()> {
         self.measure(style, &snapshot);
         let state = rmp_serde::to_vec_named(&WaitingState { number, snapshot });
@@ -116,14 +119,14 @@ impl WaitingStates {
         self.force_reference = self.force_reference.max(force_reference(style, snapshot));
     }
 
-    /// Sets the style's missing scales to those of all states.
+    /// Sets the missing scales of the style, so that they fit all states.
     pub(crate) fn set_scale(&self, style: &mut Style) {
         let reference = Some(self.force_reference).filter(|&largest| largest > 0.0);
         style.range = style.range.or(self.range);
         style.force_reference = style.force_reference.or(reference);
     }
 
-    /// The state at an index, with the number of its picture.
+    /// Returns the number of the picture and the state at an index.
     pub(crate) fn get(&mut self, index: usize) -> Result<(usize, Snapshot)> {
         let place = SeekFrom::Start(self.places[index]);
         self.file.seek(place).map_err(|error| self.refuse(error))?;
@@ -135,11 +138,11 @@ impl WaitingStates {
         self.places.last().copied().unwrap_or(0)
     }
 
-    /// Reads the state at the file's position.
+    /// Reads the state at the current position of the file.
     fn read(&self) -> Result<WaitingState> {
         let (mut file, mut length, mut bytes) = (&self.file, [0; 8], Vec::new());
         let read = file.read_exact(&mut length);
-        // Reads no more bytes than the file has, even if a damaged file gives a larger length.
+        // Reads no more bytes than the file contains, even if a damaged file states a larger length.
         let read =
             read.and_then(|()| file.take(u64::from_le_bytes(length)).read_to_end(&mut bytes));
         read.map_err(|error| self.refuse(error))?;

@@ -1,5 +1,5 @@
-//! The outputs of a run: table, pictures, animations, recording and manifest, and the checkpoints from which all of
-//! them resume.
+//! The outputs of a run: table, pictures, animations, recording and manifest, and the checkpoints from which all
+//! outputs can be resumed.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -25,7 +25,7 @@ use crate::study::png::write_png;
 use crate::study::{Recorded, Recorder};
 
 const RUN: &str = "run";
-/// Frame rate of a GIF, Hz, which viewers can show.
+/// Frame rate of a GIF, Hz, which common viewers can show.
 const GIF_RATE_HZ: f64 = 25.0;
 
 pub(super) struct RunWriter<'a> {
@@ -38,19 +38,19 @@ pub(super) struct RunWriter<'a> {
     table: Option<ObservablesTable>,
     gif: Option<Animation>,
     video: Option<Video>,
-    /// Frames that wait for the end of the run, because their colours and widths need one scale. Other frames are
-    /// drawn during the run.
+    /// States that wait to be drawn at the end of the run, because their colours and widths need one common scale;
+    /// `None` if the scales are fixed, so that frames are drawn during the run.
     waiting: Option<WaitingStates>,
     pub recording: Option<Recording>,
     manifest: Manifest,
     provenance: Provenance,
     checkpoints: Option<Checkpoints>,
-    /// The marks at which the run begins, with `next_picture` kept up to date.
+    /// State of the outputs at the beginning of the run. Only `next_picture` is updated during the run.
     marks: Marks,
 }
 
 impl<'a> RunWriter<'a> {
-    /// Starts the outputs of a run that continues from `marks` to step `end`.
+    /// Starts the outputs of a run that continues from `marks` to the step number `end`.
     pub(super) fn open(
         options: &'a HeadlessOptions,
         renderer: Renderer,
@@ -100,7 +100,7 @@ impl<'a> RunWriter<'a> {
         Ok(writer)
     }
 
-    /// Adds the pictures of a resumed run to GIF and video.
+    /// Adds the existing pictures of a resumed run to the GIF and the video.
     fn animate_earlier_pictures(&mut self) -> Result<()> {
         if self.gif.is_none() && self.video.is_none() {
             return Ok(());
@@ -122,9 +122,9 @@ impl<'a> RunWriter<'a> {
         Ok(())
     }
 
-    /// How far each output has come, after all of it is on the disk.
+    /// Flushes all outputs to the disk and returns their marks, for a checkpoint.
     fn marks(&mut self) -> Result<Marks> {
-        // The recording keeps its own mark per step.
+        // The recording counts its own frames and rows; `flush` returns these numbers when the data are in the files.
         let recording = self.recording.as_mut().map(Recording::flush).transpose()?;
         Ok(Marks {
             table: self.table.as_mut().map_or(Ok(0), ObservablesTable::mark)?,
@@ -145,11 +145,11 @@ impl<'a> RunWriter<'a> {
         checkpoints.map_or(Ok(()), |it| it.write(self.scene, simulation, tally, marks))
     }
 
-    /// Saves the final state, as a checkpoint for the same command and as the requested file.
+    /// Saves the final state, as a checkpoint for the same command and as the file that `--save` names.
     fn save(&mut self, recorded: &Recorded) -> Result<()> {
         let Recorded { simulation, tally, failure, .. } = recorded;
         let checkpoint = match failure {
-            // The previous checkpoint is good.
+            // The previous checkpoint is still valid.
             Some(_) => Ok(()),
             None => self.checkpoint(simulation, tally),
         };
@@ -163,7 +163,8 @@ impl<'a> RunWriter<'a> {
         checkpoint.and(saved)
     }
 
-    /// Ends the outputs of a run. Each part is tried even if another has failed; the first failure is returned.
+    /// Finishes all outputs of a run. If one output fails, the others are still finished; the first failure is
+    /// returned.
     pub(super) fn end(mut self, mut recorded: Recorded) -> Result<()> {
         self.progress.finish();
         let scene = self.scene;
@@ -190,11 +191,12 @@ impl<'a> RunWriter<'a> {
         }
     }
 
-    /// Draws the waiting states, even if a signal has ended the run. A signal during drawing ends it. Returns this
-    /// signal or the run's.
+    /// Draws the waiting states, even if a signal has ended the run. If a signal arrives during the drawing, the
+    /// drawing ends. Returns the signal that ended the run or the drawing.
     fn draw_waiting(&mut self, ended_by: Option<Signal>) -> Result<Option<Signal>> {
         let Some(mut waiting) = self.waiting.take() else { return Ok(ended_by) };
-        // Drawing may take longer than the sender of the signal waits.
+        // The manifest is written first. Drawing may take longer than the sender of the signal waits before it kills
+        // the process.
         self.write_manifest()?;
         waiting.set_scale(&mut self.style);
         let progress = Progress::new("drawing", waiting.len() as u64);
@@ -227,7 +229,7 @@ impl<'a> RunWriter<'a> {
         self.animate(image)
     }
 
-    /// Adds a picture to GIF and video. Each contains the command that makes it again.
+    /// Adds a picture to the GIF and the video. Both files contain the command that reproduces them.
     fn animate(&mut self, image: RgbaImage) -> Result<()> {
         let Self { options, scene, provenance, style, .. } = self;
         let texts = |words: &[&str]| {
@@ -249,7 +251,7 @@ impl<'a> RunWriter<'a> {
         let video = self.video.take().map_or(Ok(false), Video::finish);
         let gif = self.gif.take().map_or(Ok(false), Animation::finish);
         self.write_manifest()?;
-        // A complete run is not resumed.
+        // A complete run needs no checkpoint.
         if self.manifest.runs[0].ended == RunStatus::Complete
             && let (Ok(_), Ok(_), Some(checkpoints)) = (&video, &gif, self.checkpoints.take())
         {
@@ -276,7 +278,7 @@ impl Recorder for RunWriter<'_> {
     }
 
     fn state(&mut self, simulation: &Simulation, tally: &Tally) -> Result<()> {
-        // Before the checkpoint, which includes it.
+        // The recording comes before the checkpoint, because the checkpoint contains the mark of the recording.
         let recording = self.recording.as_mut();
         recording.map_or(Ok(()), |recording| recording.add_if_due(simulation))?;
         let is_due = self.checkpoints.as_ref().is_some_and(|it| it.is_due(simulation));
@@ -294,24 +296,24 @@ impl Recorder for RunWriter<'_> {
     }
 }
 
-/// A sentence with the place and the number of frames of a finished recording.
+/// Returns a sentence with the folder and the number of frames of a finished recording.
 pub(crate) fn recording_sentence(folder: &Path, frames: u64) -> String {
     format!("{} of data in {}", counted(frames, "frame"), folder.display())
 }
 
-/// Continues the run until a signal comes.
+/// Returns `Continue` until a signal has arrived, then `Break`.
 pub(super) fn go_on() -> ControlFlow<()> {
     caught_signal().map_or(ControlFlow::Continue(()), |_| ControlFlow::Break(()))
 }
 
-/// The error of a run that a signal ended after its last step.
+/// Returns the error for a run that a signal ended after the step with the observables `last`.
 pub(super) fn interrupted(signal: Signal, last: &Observables) -> Error {
     let (signal, exit_code) = (signal.name(), signal.exit_code());
     Error::Interrupted { signal, exit_code, step: last.step, time_secs: last.time_secs }
 }
 
-/// Reports alarms on stderr, each with the most likely remedy. A state that is no longer finite ends the run with an
-/// error of its own.
+/// Reports warnings about the run on stderr, each with the most likely remedy. A state that is no longer finite is not
+/// reported here, because it ends the run with an error.
 pub(super) fn tell_of_alarms(scene: &Scene, alarms: &[Alarm]) {
     for alarm in alarms.iter().filter(|alarm| alarm.kind != AlarmKind::NotFinite) {
         note_line(format_args!("{}: {}", scene.name, alarm.message(&scene.settings())));
@@ -321,11 +323,11 @@ pub(super) fn tell_of_alarms(scene: &Scene, alarms: &[Alarm]) {
 /// Reports on stderr how many steps were not solved to the tolerance.
 pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
     let Tally { steps, unconverged_steps, stalled_steps, largest_velocity_error, .. } = *tally;
-    // A scheme has neither a tolerance nor a limit of sweeps.
+    // A stepper without a solver method has neither a tolerance nor a limit of sweeps.
     if unconverged_steps == 0 || !scene.stepper.uses_method() {
         return;
     }
-    // `auto` gives up before the limit.
+    // `auto` may stop before the limit of sweeps.
     let within = match scene.solver.method {
         Method::Auto => String::new(),
         _ => format!(" within {} sweeps", scene.solver.max_sweeps),
@@ -342,7 +344,7 @@ pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
     )));
 }
 
-/// Reports on stderr which method `auto` took for the last step.
+/// Reports on stderr which method `auto` chose for the last step.
 fn tell_of_picked_method(scene: &Scene, simulation: &Simulation) {
     if scene.stepper.uses_method() && scene.solver.method == Method::Auto {
         let contacts = simulation.contacts().contacts().len();

@@ -1,4 +1,4 @@
-//! Simulated time against wall-clock time.
+//! The clock of a live run, which relates simulated time to wall-clock time.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
 use std::time::Duration;
@@ -6,12 +6,14 @@ use std::time::Duration;
 use super::Pace;
 use crate::Instant;
 
-/// Largest delay that a run makes up for. With a larger delay its time continues from the present.
+/// Largest delay behind the chosen pace that a run catches up. If the delay is larger, the run skips it and
+/// continues at the chosen pace from the present moment.
 const MOST_LAG: Duration = Duration::from_millis(100);
-/// Period over which rates are averaged.
+/// Period over which the displayed rates are averaged.
 const RATE_WINDOW: Duration = Duration::from_millis(300);
 
-/// Receives within a time. A zero wait asks for no clock, which a worker in a browser lacks.
+/// Receives a message, or returns a timeout error after `wait`. A zero `wait` reads no clock, because the standard
+/// library has no clock in a browser.
 pub(crate) fn receive_within<T>(
     inbox: &Receiver<T>,
     wait: Duration,
@@ -25,15 +27,15 @@ pub(crate) fn receive_within<T>(
     })
 }
 
-/// Determines when the next step is due, and measures the rate of steps.
+/// A clock that determines when the next step is due, and measures the rate of steps.
 pub(super) struct Clock {
     pub pace: Pace,
     anchor: (Instant, f64),
     window: (Instant, f64, u64),
     steps: u64,
-    /// Recent simulated time per wall-clock time.
+    /// Simulated time per wall-clock time, averaged over 300 ms.
     pub real_time_factor: f64,
-    /// Recent steps of all worlds together, 1/s.
+    /// Steps of all simulations per second of wall-clock time, 1/s, averaged over 300 ms.
     pub steps_per_sec: f64,
 }
 
@@ -50,21 +52,21 @@ impl Clock {
         }
     }
 
-    /// Starts time at this simulated time.
+    /// Starts the clock at the simulated time `time_secs`, s.
     pub(super) fn start(&mut self, time_secs: f64) {
         let now = Instant::now();
         self.anchor = (now, time_secs);
         self.window = (now, time_secs, self.steps);
     }
 
-    /// The simulated time that is due now, s.
+    /// Returns the simulated time that the run should have reached now, s.
     pub(super) fn time_secs(&self) -> f64 {
         let (anchor, anchor_secs) = self.anchor;
         let factor = if let Pace::RealTime(factor) = self.pace { factor } else { 0.0 };
         anchor_secs + factor * anchor.elapsed().as_secs_f64()
     }
 
-    /// Time to wait before the step from `time_secs` is due.
+    /// Returns the time to wait before the step from the simulated time `time_secs` is due.
     pub(super) fn wait(&mut self, time_secs: f64) -> Duration {
         let Pace::RealTime(factor) = self.pace else { return Duration::ZERO };
         let (anchor, anchor_secs) = self.anchor;
@@ -77,7 +79,7 @@ impl Clock {
         due.saturating_duration_since(now)
     }
 
-    /// Counts steps that led to `time_secs`.
+    /// Counts `steps` steps, after which the simulated time is `time_secs`.
     pub(super) fn count(&mut self, steps: u64, time_secs: f64) {
         self.steps += steps;
         let (since, secs, steps) = self.window;

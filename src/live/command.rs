@@ -1,4 +1,4 @@
-//! The commands of a live run.
+//! The commands that a window sends to a live run (a simulation that the user watches).
 
 use std::sync::Arc;
 
@@ -7,73 +7,81 @@ use serde::{Deserialize, Serialize};
 use super::{LiveStart, StartSource, WorldHistory};
 use crate::sim::{Edit, Pull, Settings};
 
-/// Receives a world's history with the start. It runs on the solver's thread, so it must only hand on what it gets.
+/// Callback that receives the history of one simulation, with the initial state of the run. It runs on the solver's
+/// thread, so it must only pass its arguments on and return quickly.
 pub type Taker = Box<dyn FnOnce(Arc<LiveStart>, WorldHistory) + Send>;
 
-/// Receives the start with the whole history. It runs on the solver's thread, like a [`Taker`].
+/// Callback that receives the initial state of a run with its whole history. It runs on the solver's thread, so it
+/// must return quickly.
 pub type StartTaker = Box<dyn FnOnce(LiveStart) + Send>;
 
-/// Simulated time per wall-clock time.
+/// Speed of playing: simulated time per wall-clock time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Pace {
-    /// This many simulated seconds per second, or as many as the machine can compute.
+    /// This many simulated seconds per second of wall-clock time. If the machine is too slow for this pace, the run
+    /// is as fast as the machine can compute.
     RealTime(f64),
     /// As fast as the machine computes.
     Max,
 }
 
-/// A command to a live run. World indices that do not exist are ignored.
+/// A command to a live run. A *world* is one of the simulations that run side by side. Commands with the index of a
+/// world that does not exist are ignored.
 #[derive(Serialize, Deserialize)]
 pub enum Command {
-    /// Replace everything by a new start, with one world.
+    /// Replace everything by a new initial state from this source.
     #[serde(skip)]
     Load(Box<dyn StartSource>),
-    /// Give up the present loading.
+    /// Cancel the loading of an initial state.
     CancelLoading,
-    /// Run worlds with these settings side by side from the present start; usually one. The present run is kept.
+    /// Restart from the present initial state with one world for each of these settings (usually one), side by
+    /// side. The previous run is kept.
     Compare(Vec<Settings>),
-    /// Change the settings of a world from its next step on.
+    /// Change the settings of the simulation with this index from its next step on.
     Change(usize, Settings),
-    /// Tie a spring to a grain of a world, or remove it.
+    /// Tie a spring to a grain of the simulation with this index, so that the user can drag the grain; `None` removes
+    /// the spring.
     SetPull(usize, Option<Pull>),
-    /// Change a world by hand from its next step on. Recorded steps after this moment are kept as a run of their own.
+    /// Edit the simulation with this index (for example, move a grain) before its next step. Recorded steps after this
+    /// moment are kept as a separate run.
     Edit(usize, Edit),
-    /// Let time pass: show the recorded steps, and compute more at their end. With other settings than the recorded
-    /// ones, the run branches off, and the recorded steps are kept.
+    /// Start time: show the recorded steps, and compute more steps at their end. If the settings differ from the
+    /// recorded settings, a new run branches off, and the recorded steps are kept as a separate run.
     Play,
     /// Stop time.
     Pause,
-    /// Take one step (the world with the largest time step does; the others catch up), and pause.
+    /// Take one step, and pause. The simulation with the largest time step takes one step; the other simulations take
+    /// steps until they have reached the same time.
     Step,
-    /// Go back to the start with the present settings, and pause. The run is kept
-    /// ([`LiveFrame::past`](super::LiveFrame::past)).
+    /// Go back to the initial state with the present settings, and pause. The previous run is kept in
+    /// [`LiveFrame::past`](super::LiveFrame::past).
     Reset,
-    /// Go back to the earlier run of this number, or on to an undone one, at the moment at which it was left, and pause.
-    /// The present run is kept.
+    /// Return to the earlier or undone run of this number, at the moment at which the user left that run, and
+    /// pause. The present run is kept.
     Return(u64),
-    /// Name the earlier run of this number, or the present run if the number is `None`.
+    /// Name the run of this number, or the present run if the number is `None`.
     Name(Option<u64>, String),
     /// Go to the recorded moment nearest to this simulated time, s, and pause.
     Seek(f64),
-    /// Hand out the history of a world.
+    /// Pass the history of the simulation with this index to the callback.
     #[serde(skip)]
     Take(usize, Taker),
-    /// Hand out the start, with the history of all worlds and of the earlier runs.
+    /// Pass the initial state to the callback, with the history of all simulations and of the earlier runs.
     #[serde(skip)]
     TakeAll(StartTaker),
-    /// Change the pace.
+    /// Change the speed of playing.
     SetPace(Pace),
-    /// End the thread.
+    /// End the solver's thread.
     Quit,
 }
 
 impl Command {
-    /// True if the command makes the load that is under way pointless.
+    /// True if the command makes the loading of an initial state that is in progress pointless.
     pub(super) fn interrupts(&self) -> bool {
         matches!(self, Self::CancelLoading | Self::Load(_) | Self::Quit)
     }
 
-    /// True if the command concerns the state at the moment shown.
+    /// True if the command concerns the state at the moment that is shown.
     pub(super) fn is_about_the_moment(&self) -> bool {
         matches!(
             self,
@@ -86,7 +94,7 @@ impl Command {
         )
     }
 
-    /// True if the command needs a state that a seek is still computing.
+    /// True if the command must wait for the state that a seek is still computing.
     pub(super) fn waits_for_seek(&self) -> bool {
         self.is_about_the_moment() || matches!(self, Self::Play | Self::Reset | Self::Return(..))
     }

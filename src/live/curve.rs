@@ -1,4 +1,4 @@
-//! The observables of a run in a form that can be shared with a window at any length.
+//! The observables of a run as a list that a clone can share cheaply with a window, however long the run is.
 
 use std::sync::Arc;
 
@@ -6,15 +6,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::sim::Observables;
 
-/// Rows of a chunk, which is shared and never changes.
+/// Number of rows in a chunk. A full chunk is shared between clones and never changes.
 const CHUNK: usize = 256;
-/// Largest number of rows; longer curves are thinned by simulated time. 32,768 rows are 6 MB.
+/// Largest number of rows. A longer curve drops rows until a least spacing in simulated time remains. 32,768 rows take
+/// 6 MB.
 const MOST_ROWS: usize = 32_768;
 
-/// Observables in the order of time: every step's, or in a long run rows with a least distance in simulated time. The
-/// first row and the newest are always among them.
+/// Observables of a run in the order of time. A short run has one row per step. In a long run the rows have a least
+/// spacing in simulated time. The first and the newest row are always present.
 ///
-/// A clone shares all full chunks and copies fewer than 256 rows.
+/// A clone shares all full chunks and copies at most 256 rows.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Curve {
@@ -23,7 +24,7 @@ pub struct Curve {
     least_spacing_secs: f64,
 }
 
-/// Part of a spacing by which times may fall short of it because of rounding.
+/// Fraction of the least spacing by which a spacing may be too short, because times have rounding errors.
 const ROUNDING: f64 = 1e-6;
 
 impl Curve {
@@ -32,12 +33,12 @@ impl Curve {
         self.chunks.len() * CHUNK + self.tail.len()
     }
 
-    /// True if there is no row.
+    /// True if the curve has no row.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Least distance of rows, s; 0 if every step has a row.
+    /// Least spacing of rows in simulated time, s; 0 if every step has a row.
     pub fn least_spacing_secs(&self) -> f64 {
         self.least_spacing_secs
     }
@@ -52,7 +53,7 @@ impl Curve {
     }
 
     pub(crate) fn push(&mut self, row: Observables) {
-        // The newest row, which is never in a shared chunk, is replaced if it is too close to the row before.
+        // The newest row is never in a shared chunk. A new row replaces it if it is too close to the row before it.
         let of_chunk = self.chunks.last().and_then(|chunk| chunk.last()).map(|row| row.time_secs);
         let of_tail = self.tail.iter().rev().nth(1).map(|row| row.time_secs);
         let least_secs = (1.0 - ROUNDING) * self.least_spacing_secs;
@@ -66,7 +67,7 @@ impl Curve {
         self.thin_to(MOST_ROWS);
     }
 
-    /// Drops rows that are close to others until at most this many remain.
+    /// Doubles the least spacing of the rows until at most `most_rows` rows remain.
     pub(crate) fn thin_to(&mut self, most_rows: usize) {
         while self.len() > most_rows.max(2) {
             let rows: Vec<_> = self.rows().copied().collect();
@@ -87,7 +88,7 @@ impl Curve {
         }
     }
 
-    /// Removes all steps after `step`.
+    /// Removes the rows of all steps after `step`.
     pub(crate) fn truncate(&mut self, step: u64) {
         if self.last().is_some_and(|row| row.step > step) {
             self.set(self.rows().filter(|row| row.step <= step).copied().collect());
@@ -101,10 +102,10 @@ impl Curve {
     }
 }
 
-/// The difference between two curves, for sending.
+/// The difference between two versions of a curve, to be sent to another process.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct CurveChange {
-    /// Number of first rows that both curves share.
+    /// Number of rows at the beginning that both versions share.
     kept: usize,
     rows: Vec<Observables>,
     least_spacing_secs: f64,

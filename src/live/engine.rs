@@ -1,4 +1,4 @@
-//! The loop of the solver's thread: its mode, and the effect of commands.
+//! The loop of the solver's thread: it handles commands, takes the steps that are due, and publishes frames.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -17,10 +17,10 @@ use crate::Instant;
 use crate::error::Error;
 use crate::sim::{Settings, Surroundings};
 
-/// Frame intervals after which a frame that nobody has fetched is replaced. Making a frame takes time, but an old one
-/// shows events late.
+/// Number of frame intervals after which a frame that the window has not fetched is replaced by a newer frame. With
+/// a smaller number, time is spent on frames that nobody sees; with a larger number, the window shows events late.
 const UNFETCHED_INTERVALS: u32 = 3;
-/// Shortest time between two frames during loading.
+/// Shortest time between two frames while an initial state is being made.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(50);
 
 struct Outbox {
@@ -29,9 +29,9 @@ struct Outbox {
     interval: Duration,
     count: u64,
     sent: Instant,
-    /// True if no frame shows the newest state.
+    /// True if the last published frame does not show the newest state.
     is_behind: bool,
-    /// True if the next step must be shown at once.
+    /// True if a frame must be published immediately after the next step.
     is_urgent: bool,
 }
 
@@ -48,7 +48,7 @@ pub(super) struct Engine {
     waiting: VecDeque<(u64, Command)>,
     outbox: Outbox,
     start: Option<Arc<LiveStart>>,
-    /// Surroundings of the grains at the start, with the shapes that hold them.
+    /// Walls and fixed discs around the grains at the start, including the walls that are removed when time begins.
     held: Option<Arc<Surroundings>>,
     history: RunHistory,
     mode: Mode,
@@ -59,7 +59,7 @@ pub(super) struct Engine {
     acknowledged: u64,
     loads: u64,
     quit: bool,
-    /// Called while a start is made ([`LiveOptions`]).
+    /// Returns true to cancel the loading of an initial state ([`LiveOptions`]).
     gives_up: Box<dyn Fn() -> bool + Send>,
 }
 
@@ -105,8 +105,9 @@ impl Engine {
         while !self.quit && self.turn(true) {}
     }
 
-    /// Handles all commands and does what is due. If nothing is due and it may sleep, it sleeps until something is.
-    /// Returns false if nobody can send commands any more.
+    /// Handles all commands and takes the steps and sends the frames that are due. If nothing is due and
+    /// `may_sleep` is true, the thread sleeps until a command comes or something is due. Returns false if the
+    /// window has gone, so that no command can come.
     pub(super) fn turn(&mut self, may_sleep: bool) -> bool {
         if !self.receive(may_sleep) {
             return false;
@@ -126,8 +127,8 @@ impl Engine {
         true
     }
 
-    /// Handles all commands. If nothing else is due, it sleeps until a command comes. Returns false if nobody can
-    /// send commands any more.
+    /// Handles all commands. If nothing else is due and `may_sleep` is true, the thread sleeps until a command
+    /// comes. Returns false if the window has gone, so that no command can come.
     fn receive(&mut self, may_sleep: bool) -> bool {
         let mut commanded = false;
         loop {
@@ -155,7 +156,7 @@ impl Engine {
             commanded = true;
         }
         if commanded && !self.mode.seeks() {
-            // The next step shows the change, if it comes at once.
+            // If the next step is due at once, the frame after that step shows the effect of the commands.
             self.outbox.is_urgent = self.mode.plays() && self.wait_for_step().is_zero();
             if !self.outbox.is_urgent {
                 self.publish();
@@ -164,7 +165,7 @@ impl Engine {
         true
     }
 
-    /// Time until something is due; `None` if only a command can change that.
+    /// Returns the time until a step or a frame is due; `None` if nothing is due before the next command.
     pub(super) fn wait(&mut self) -> Option<Duration> {
         if self.mode.seeks() || matches!(self.mode, Mode::Stepping { .. }) {
             return Some(Duration::ZERO);
@@ -282,7 +283,8 @@ impl Engine {
         };
     }
 
-    /// Stops time. If a stored moment is shown, its state is computed, so that the run can continue from it.
+    /// Stops time. If a stored moment is shown, its state is computed, so that the run can continue from that
+    /// moment.
     fn pause(&mut self) {
         match self.mode {
             Mode::Showing { until_secs } => self.seek(until_secs, false),
@@ -292,8 +294,8 @@ impl Engine {
         }
     }
 
-    /// Shows the stored moment that is due. After the last one, the worlds move to the end of the record, which keeps
-    /// a keyframe of it.
+    /// Shows the stored moment that is due. After the last stored moment, the simulations seek the end of the
+    /// record, where a keyframe (a copy of the whole state) is kept.
     fn advance_show(&mut self) {
         if !self.outbox.wait().is_zero() {
             return;
@@ -307,13 +309,13 @@ impl Engine {
             self.outbox.is_behind = true;
             return;
         }
-        // A run that has reached its end stops there.
+        // A run that has reached the duration of its scene stops at that time.
         let half_step_secs = 0.5 * self.history.present.time_step_secs();
         let goes_on = self.stop_at_secs.is_none_or(|stop| end_secs + half_step_secs < stop);
         self.seek(stop_secs.unwrap_or(end_secs), goes_on);
     }
 
-    /// Starts a seek to a recorded moment.
+    /// Starts a seek to the recorded moment nearest to the simulated time `secs`.
     fn seek(&mut self, secs: f64, then_plays: bool) {
         self.mode = Mode::Seeking { then_plays };
         self.history.present.seek(secs);
@@ -367,7 +369,8 @@ impl Engine {
         }
     }
 
-    /// Replaces everything by the start from `source`, unless that fails or is given up.
+    /// Replaces everything by the initial state from `source`, unless the source fails or the user cancels the
+    /// loading.
     fn load(&mut self, source: Box<dyn StartSource>) {
         self.pause();
         self.refusal = None;
@@ -390,7 +393,8 @@ impl Engine {
         }
     }
 
-    /// True if a command makes the present loading pointless. All commands received wait.
+    /// Returns true if a command makes the present loading pointless. All received commands are kept, to be handled
+    /// after the loading.
     fn is_interrupted(&mut self) -> bool {
         let mut interrupted = (self.gives_up)();
         while let Ok((number, command)) = self.inbox.try_recv() {
@@ -421,7 +425,7 @@ impl Engine {
         }
     }
 
-    /// Puts worlds at the start, one for each of these settings.
+    /// Puts one simulation for each of these settings at the initial state.
     fn restart(&mut self, all: &[Settings]) {
         if let Some(start) = &self.start
             && !all.is_empty()
@@ -431,7 +435,7 @@ impl Engine {
         }
     }
 
-    /// Publishes a frame of the newest state, and wakes its receiver.
+    /// Publishes a frame of the newest state, and wakes the window.
     fn publish(&mut self) {
         let shown_secs = match self.mode {
             Mode::Showing { until_secs } => Some(until_secs),

@@ -1,4 +1,4 @@
-//! Frames: what a live run shows, as plain data that is cheap to copy.
+//! Frames: the data that a live run sends to the window for display, which are cheap to copy.
 
 use std::sync::Arc;
 
@@ -11,117 +11,121 @@ use crate::sim::{AlarmKind, FractureWork, Snapshot, Surroundings};
 use crate::solver::Method;
 use crate::world::Gravity;
 
-/// The newest moment of a live run.
+/// The newest state of a live run, for display.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LiveFrame {
-    /// Number of the frame.
+    /// Number of this frame, counted from 1.
     pub number: u64,
-    /// Number of the last command that this frame takes into account.
+    /// Number of the last command whose effect this frame shows.
     pub acknowledged: u64,
-    /// Number of loads.
+    /// Number of initial states that have been loaded so far.
     pub loads: u64,
-    /// Start of the run; `None` before the first load.
+    /// Initial state of the run; `None` before the first load.
     pub start: Option<Arc<LiveStart>>,
-    /// The worlds; one unless worlds are compared.
+    /// The worlds (simulations side by side). There is one, except if worlds are compared.
     pub worlds: Vec<WorldFrame>,
-    /// The user's name of the present run; may be empty.
+    /// The user's name for the present run; may be empty.
     pub name: String,
-    /// Earlier runs, the newest last, then those that were undone, the next one first.
+    /// Summaries of the earlier runs, the newest last, followed by the undone runs, starting with the next one to redo.
     pub past: Arc<[PastRun]>,
-    /// The worlds of the newest earlier run at the visible simulated time, or at its end. Empty if nothing is stored.
+    /// States of the newest earlier run at the displayed simulated time, or at its last stored moment before that time.
+    /// The window draws them as outlines for comparison. The list is empty if no moment is stored.
     pub ghosts: Vec<Arc<Snapshot>>,
-    /// True if time passes.
+    /// True if the run is playing, so that simulated time advances.
     pub playing: bool,
-    /// True if the next step is recorded already.
+    /// True if the next step repeats a recorded step.
     pub replaying: bool,
-    /// True if the next step branches off from the record.
+    /// True if the next step branches off from the record, because the settings differ from the recorded ones.
     pub branching: bool,
     /// True if a stored moment is shown and nothing is computed.
     pub stored: bool,
-    /// True if a recorded moment is being computed.
+    /// True if a recorded moment or a long single step is being computed.
     pub seeking: bool,
-    /// Progress of a start that is being made.
+    /// Progress of the making of an initial state; `None` if none is being made.
     pub loading: Option<LoadingProgress>,
-    /// Why the last start failed.
+    /// The reason why the last load, edit or change of settings was refused, if it was.
     pub refusal: Option<Arc<str>>,
-    /// Recent simulated time per wall-clock time.
+    /// Simulated time per wall-clock time, averaged over 300 ms.
     pub real_time_factor: f64,
-    /// Recent steps of all worlds together, 1/s.
+    /// Steps of all simulations per second of wall-clock time, 1/s, averaged over 300 ms.
     pub steps_per_sec: f64,
 }
 
-/// One world at one moment.
+/// One world (simulation) at one moment, for display.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct WorldFrame {
-    /// The state. Before the first step, it includes the shapes that hold the grains.
+    /// Positions, velocities, contacts and observables. Before the first step, the walls that hold the grains until
+    /// time begins are included.
     pub snapshot: Arc<Snapshot>,
-    /// The controls of the next step.
+    /// The controls (settings and pull of a grain) of the next step.
     pub controls: Controls,
-    /// Gravity, if it is uniform, m/s².
+    /// Acceleration of gravity, m/s²; `None` if gravity is not uniform.
     pub gravity: Option<DVec2>,
-    /// Observables of the whole record.
+    /// Observables of all recorded steps, for plots.
     pub curve: Curve,
-    /// True if all recorded steps have the settings of the next step, and no hand pulled a grain.
+    /// True if all recorded steps have the settings of the next step, and the user neither edited the simulation nor
+    /// pulled a grain.
     pub is_even: bool,
     /// Simulated time at the beginning of the record, s.
     pub recorded_from_secs: f64,
     /// Simulated time of the last recorded step, s.
     pub recorded_secs: f64,
-    /// Steps up to this moment that did not reach the tolerance.
+    /// Number of steps up to this moment that did not reach the tolerance.
     pub unconverged_steps: u64,
-    /// Recent mean time per step, ms.
+    /// Wall-clock time per step, ms, as a running mean.
     pub step_ms: f64,
-    /// The method that solves the next step, also if `auto` picks it.
+    /// The solver's method for the next step. If the user chose `auto`, this is the method that `auto` picks.
     pub picked_method: Method,
-    /// Substeps of the next step.
+    /// Number of substeps of the next step.
     pub substeps: u32,
-    /// Longest substep that is certainly stable, s, if the stepper has such a limit.
+    /// Longest substep that is certainly stable, s; `None` if the stepper has no such limit.
     pub critical_time_step_secs: Option<f64>,
-    /// Contact time of two colliding grains of mean mass, s, if contacts are springs.
+    /// Duration of the collision of two grains of mean mass, s; `None` if contacts are not springs.
     pub contact_time_secs: Option<f64>,
-    /// Work of breaking a bond slowly, if the law defines it.
+    /// Work of breaking a bond slowly; `None` if the contact law does not define this work.
     pub fracture_work: Option<FractureWork>,
-    /// Alarms up to this moment, with advice.
+    /// Warnings about the run up to this moment, with advice.
     pub alarms: Vec<WorldAlarm>,
-    /// Why the run cannot continue from here.
+    /// The reason why the simulation cannot continue from this moment, if it cannot.
     pub failure: Option<Arc<str>>,
 }
 
-/// An alarm of a world.
+/// A warning about a world (simulation).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WorldAlarm {
-    /// Kind of the alarm.
+    /// Kind of the warning.
     pub kind: AlarmKind,
-    /// Message: the event, the time of its first step, and advice for the settings of that step.
+    /// Message: the event, the simulated time of its first step, and advice for the settings of that step.
     pub text: Arc<str>,
-    /// True if the settings have changed since then.
+    /// True if the present settings differ from the settings at the time of the event.
     pub is_earlier: bool,
 }
 
 impl LiveFrame {
-    /// Simulated time of the first world, s.
+    /// Simulated time of the first simulation, s.
     pub fn time_secs(&self) -> f64 {
         self.worlds.first().map_or(0.0, |world| world.snapshot.observables.time_secs)
     }
 
-    /// Simulated time of the last recorded step of any world, s.
+    /// Simulated time of the last recorded step of any simulation, s.
     pub fn recorded_secs(&self) -> f64 {
         self.worlds.iter().map(|world| world.recorded_secs).fold(0.0, f64::max)
     }
 
-    /// True if the run is at its start.
+    /// True if no simulation has taken a step since the initial state.
     pub fn at_start(&self) -> bool {
         self.worlds.iter().all(|world| world.snapshot.observables.step == 0)
     }
 
-    /// True if shapes hold the grains, which have not been released.
+    /// True if walls still hold the grains, because time has not begun.
     pub fn held(&self) -> bool {
         self.at_start() && self.start.as_ref().is_some_and(|start| !start.held_by.is_empty())
     }
 }
 
 impl WorldFrame {
-    /// The present moment of a world, or a stored one. Before the first step, it has the `held` surroundings.
+    /// Returns the present moment of a simulation, or the stored moment if one is given. Before the first step, the
+    /// frame has the surroundings `held`, which include the walls that are removed when time begins.
     pub(super) fn of(
         world: &WorldHistory,
         stored: Option<&StoredMoment>,
@@ -165,14 +169,14 @@ impl WorldFrame {
     }
 }
 
-/// The alarms of a world except the alarm that ends it, which is its failure. Each advises on the settings under
-/// which it was raised.
+/// Returns the warnings about a simulation, except the warning that the state is no longer finite, which is reported as
+/// the failure. Each advises on the settings of the step in which it was raised.
 fn alarms(world: &WorldHistory) -> Vec<WorldAlarm> {
     let simulation = &world.simulation;
     let alarms = simulation.alarms().iter().copied().chain(simulation.alarm_on_placed());
     let told = alarms.filter(|alarm| alarm.kind != AlarmKind::NotFinite).map(|alarm| {
         let now = *simulation.settings();
-        // An overlap of placed grains concerns the next step's settings.
+        // An overlap of placed grains concerns the settings of the next step.
         let step = alarm.step + u64::from(alarm.kind == AlarmKind::PlacedInOverlap);
         let then = world.record.settings_of_step(step).unwrap_or(now);
         let text = alarm.message_in_millis(&then);

@@ -1,4 +1,4 @@
-//! The window's handle of a live run.
+//! The handle by which a window controls a live run.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -9,29 +9,29 @@ use super::remote::{Ask, RemoteRun};
 use super::{Command, LiveFrame, LiveOptions};
 use crate::error::{Error, Result};
 
-/// Stack of the solver's thread, bytes. Reading a session needs half a megabyte per level of its contents, in all
-/// more than the default of two megabytes. Unused stack takes no memory.
+/// Stack size of the solver's thread, bytes. Reading a saved session needs half a megabyte for each level of its
+/// nested data, in total more than the default stack of two megabytes. Unused stack takes no memory.
 const STACK_BYTES: usize = 32 << 20;
 
-/// A run on a thread of its own. When it is dropped, it ends after the present step.
+/// Handle of a live run. When the handle is dropped, the run ends after the present step.
 pub struct Live {
     place: Place,
     sent: u64,
 }
 
-/// The place of the computation.
+/// The place in which a run is computed.
 enum Place {
     /// A thread of this process.
     Thread { commands: Sender<(u64, Command)>, frames: Output<LiveFrame> },
-    /// A partner that takes and returns bytes.
+    /// A solver elsewhere, such as a browser's worker, which exchanges bytes with this process.
     Remote(Box<RemoteRun>),
 }
 
 impl Live {
-    /// Starts the thread with nothing loaded.
+    /// Starts a solver's thread that has no initial state yet.
     ///
     /// # Errors
-    /// If the system refuses a thread.
+    /// If the operating system cannot start a thread.
     pub fn spawn(options: LiveOptions) -> Result<Self> {
         let (commands, inbox) = channel();
         let (output, frames) = triple_buffer(&LiveFrame::default());
@@ -44,18 +44,19 @@ impl Live {
         Ok(Self { place: Place::Thread { commands, frames }, sent: 0 })
     }
 
-    /// A run that a [`RemoteEngine`](super::RemoteEngine) computes. `ask` sends messages to it, and its replies
-    /// arrive in `inbox`.
+    /// Returns a handle of a run that a [`RemoteEngine`](super::RemoteEngine) computes. `ask` sends messages to
+    /// that engine, and the replies arrive in `inbox`.
     pub fn remote(ask: Ask, inbox: Receiver<Vec<u8>>) -> Self {
         Self { place: Place::Remote(Box::new(RemoteRun::new(ask, inbox))), sent: 0 }
     }
 
-    /// Sends a command and returns its number. [`LiveFrame::acknowledged`] reaches the number when the command has
-    /// been carried out (loading and seeking: when they have begun).
+    /// Sends a command and returns its number. [`LiveFrame::acknowledged`] reaches this number when the command has
+    /// taken effect. For loading and seeking, it reaches the number when they have begun.
     pub fn send(&mut self, command: Command) -> u64 {
         self.sent += 1;
         match &mut self.place {
-            // The thread ends only with this handle. After a panic in it, the run stands still.
+            // The thread ends only when this handle is dropped. If the thread panics, sending fails and the display
+            // stops changing.
             Place::Thread { commands, .. } => {
                 let _ = commands.send((self.sent, command));
             }
@@ -69,7 +70,7 @@ impl Live {
         self.sent
     }
 
-    /// The newest frame. Never waits.
+    /// The newest frame. This function never waits.
     pub fn latest(&mut self) -> &LiveFrame {
         match &mut self.place {
             Place::Thread { frames, .. } => frames.read(),

@@ -1,5 +1,5 @@
-//! The history of a live run: its worlds with their records, and the earlier runs. A reset, other worlds, or a change
-//! at an earlier moment lose no computed step.
+//! The history of a live run: its worlds (simulations side by side) with their records, and the earlier runs. No
+//! computed step is lost by a reset, by other worlds, or by a change at an earlier moment.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,27 +13,29 @@ use crate::Instant;
 use crate::error::{Error, Result};
 use crate::sim::{Edit, Settings, Simulation, Snapshot, Tally};
 
-/// Largest number of earlier runs; the oldest is dropped.
+/// Largest number of earlier runs; if there are more, the oldest run is dropped.
 const MOST_PAST: usize = 50;
-/// The newest of them get 1/8 of the memory for keyframes each. Older ones keep two keyframes, and are dropped if all
-/// keyframes together exceed that memory.
+/// Number of newest earlier runs with the keyframe memory of [`PART_OF_PAST`]. Older runs keep two keyframes each, and
+/// the oldest runs are dropped if all keyframes together exceed the memory of the present run.
 const NEWEST: usize = 4;
+/// Each of the newest earlier runs gets 1/8 of the memory for keyframes.
 const PART_OF_PAST: usize = 8;
-/// Bytes of keyframes of the present worlds in a history that is handed out, and of each earlier run. Moments between
-/// keyframes can be computed again.
+/// Bytes of keyframes of the present run, and of each earlier run, in a history that is sent to the window or to a
+/// file. States between keyframes can be computed again.
 const KEYFRAME_BYTES: usize = 8 << 20;
 const PAST_KEYFRAME_BYTES: usize = 1 << 20;
-/// Largest number of rows per curve in a history that is handed out; a row is about 500 bytes in a file.
+/// Largest number of rows of a curve in a history that is sent to the window or to a file, for the present run and for
+/// earlier runs. A row (the observables of one step) takes about 500 bytes in a file.
 const ROWS: usize = 4096;
 const PAST_ROWS: usize = 512;
-/// Time after which a tick pauses for commands. A world whose time step is far shorter than the leader's takes
-/// thousands of steps per step of the leader.
+/// Time after which a tick is interrupted to handle commands. A tick is one step of the simulation with the longest
+/// time step; a simulation with a far shorter time step takes thousands of steps in a tick.
 const SLICE: Duration = Duration::from_millis(50);
-/// Steps of each world between two reports of progress.
+/// Number of steps that each simulation takes between two reports of progress.
 const STEPS_AT_ONCE: u64 = 8;
 
-/// Worlds side by side at the same simulated time. The world with the largest time step leads; the others follow to
-/// within half a step of their own.
+/// Worlds (simulations) side by side at the same simulated time. The world with the largest time step leads. Each other
+/// world follows to within half of its own time step.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct LiveRun {
@@ -41,15 +43,15 @@ pub(super) struct LiveRun {
     pub worlds: Vec<WorldHistory>,
     /// The user's name for the run; may be empty.
     pub name: String,
-    /// Number by which an earlier run is called up.
+    /// Number by which the window selects an earlier run.
     #[serde(skip)]
     number: u64,
-    /// Simulated time that the worlds approach during a long tick, s.
+    /// Simulated time that all simulations must reach to finish a tick ([`Self::tick`]), s.
     #[serde(skip)]
     goal_secs: Option<f64>,
 }
 
-/// Applies `act` to all worlds, in parallel if there are several. Returns true if all calls do.
+/// Applies `act` to all simulations, in parallel if there are several. Returns true if all calls return true.
 fn each(
     worlds: &mut [WorldHistory],
     act: impl Fn(&mut WorldHistory) -> bool + Send + Sync,
@@ -65,18 +67,18 @@ impl LiveRun {
         self.worlds.iter().map(|world| *world.simulation.settings()).collect()
     }
 
-    /// True if the next tick branches off from the record.
+    /// True if the next step branches off from the record, because the settings differ from the recorded ones.
     pub(super) fn branches(&self) -> bool {
         self.worlds.iter().any(WorldHistory::branches)
     }
 
-    /// True if the next tick repeats recorded steps.
+    /// True if the next step repeats a recorded step.
     pub(super) fn replays(&self) -> bool {
         let replays = |world: &WorldHistory| world.record.replays(&world.simulation);
         !self.branches() && self.worlds.iter().any(replays)
     }
 
-    /// True if the moments after the present one are stored.
+    /// True if the moments after the present one are stored and can be shown without computing.
     pub(super) fn is_stored(&self) -> bool {
         self.worlds.iter().all(|world| world.stored.go_on_from(world.steps()))
     }
@@ -85,7 +87,8 @@ impl LiveRun {
         self.worlds.iter().any(|world| world.failure.is_some())
     }
 
-    /// Limits the keyframes of all worlds together to about this many bytes, and the stored moments to their memory.
+    /// Limits the keyframes of all simulations together to about `budget_bytes` bytes, and their stored moments to
+    /// [`STORED_BYTES`].
     fn keep_within(&mut self, budget_bytes: usize) {
         let count = self.worlds.len().max(1);
         for world in &mut self.worlds {
@@ -108,12 +111,12 @@ impl LiveRun {
         self.leader().map_or(0.0, WorldHistory::time_step_secs)
     }
 
-    /// Simulated time of the leader's last recorded step, s.
+    /// Simulated time of the last recorded step of the simulation with the largest time step, s.
     pub(super) fn recorded_secs(&self) -> f64 {
         self.leader().map_or(0.0, |world| world.record.end_secs())
     }
 
-    /// Approximate memory of the keyframes, bytes.
+    /// Approximate memory of the keyframes of all simulations, bytes.
     fn bytes(&self) -> usize {
         self.worlds.iter().map(|world| world.record.bytes()).sum()
     }
@@ -122,9 +125,9 @@ impl LiveRun {
         self.worlds.iter().map(WorldHistory::steps).sum()
     }
 
-    /// Takes one step of the leader, and the steps that bring the other worlds to the same time. If these take longer
-    /// than a slice, the next tick continues them. Returns the number of steps of all worlds, and true if all
-    /// succeeded.
+    /// Takes one step of the simulation with the largest time step, and the steps that bring the other simulations to
+    /// the same time. If this takes longer than [`SLICE`], the next tick continues. Returns the number of steps of all
+    /// simulations, and true if all steps succeeded.
     pub(super) fn tick(&mut self) -> (u64, bool) {
         let steps_before = self.steps();
         let goal_secs = self.goal_secs.take();
@@ -139,7 +142,7 @@ impl LiveRun {
         (self.steps() - steps_before, all_well)
     }
 
-    /// True while a tick is unfinished.
+    /// True while some simulations have not yet finished a tick ([`Self::tick`]).
     pub(super) fn is_on_its_way(&self) -> bool {
         self.goal_secs.is_some()
     }
@@ -149,12 +152,12 @@ impl LiveRun {
         self.worlds.iter_mut().for_each(|world| world.seek(time_secs));
     }
 
-    /// Takes one step of a seek. Returns true if all worlds have arrived.
+    /// Takes one step of a seek in each simulation. Returns true if all simulations have reached the requested time.
     pub(super) fn advance_seek(&mut self) -> bool {
         each(&mut self.worlds, WorldHistory::advance_seek)
     }
 
-    /// A copy with fewer keyframes and rows, to be handed out.
+    /// Copy of the run with fewer keyframes and rows, to be sent to the window or to a file.
     fn thinned(&self, bytes: usize, rows: usize) -> Self {
         let mut run = Self { worlds: Vec::new(), ..self.clone() };
         run.worlds = self.worlds.iter().map(WorldHistory::handed_out).collect();
@@ -164,37 +167,37 @@ impl LiveRun {
     }
 }
 
-/// Returns the freed memory of a run to the system. With GNU's allocator each thread keeps its freed memory: after a
-/// hundred runs of some tens of MiB a window had several times the memory in use.
+/// Returns the freed memory of a run to the operating system. With GNU's allocator each thread keeps its freed memory:
+/// after a hundred runs of some tens of MiB, a window occupied several times the memory in use.
 fn return_freed_memory() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
-    // SAFETY: it touches no memory in use, and any thread may call it at any time.
+    // SAFETY: `malloc_trim` changes no memory in use, and any thread may call it at any time.
     unsafe {
         libc::malloc_trim(0);
     }
 }
 
-/// Summary of an earlier run for a window.
+/// Summary of an earlier run for display.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PastRun {
-    /// Number by which the run is called up ([`Command::Return`](super::Command::Return)).
+    /// Number by which the window selects the run ([`Command::Return`](super::Command::Return)).
     pub number: u64,
-    /// The user's name for it; may be empty.
+    /// The user's name for the run; may be empty.
     pub name: String,
-    /// True if the user went back from this run to an earlier one.
+    /// True if the user went back from this run to an earlier run.
     pub is_undone: bool,
-    /// Simulated time of its last recorded step, s.
+    /// Simulated time of the last recorded step of the run, s.
     pub recorded_secs: f64,
-    /// Its worlds.
+    /// The worlds (simulations side by side) of the run.
     pub worlds: Vec<PastWorld>,
 }
 
-/// One world of an earlier run.
+/// Summary of one world (simulation) of an earlier run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PastWorld {
-    /// The controls of its last step.
+    /// The controls (settings and pull of a grain) at the last step.
     pub controls: Controls,
-    /// Observables of the whole record.
+    /// Observables of the whole recorded run, for plots.
     pub curve: Curve,
 }
 
@@ -215,8 +218,8 @@ impl PastRun {
     }
 }
 
-/// Everything that a live run has computed: the present worlds with their records, and the earlier runs. It can be
-/// continued later, or computed again from its changes.
+/// All data that a live run has computed: the present simulations with their records, and the earlier runs. A run can
+/// be continued from its history, and each of its steps can be computed again from the recorded changes.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunHistory {
@@ -224,36 +227,36 @@ pub struct RunHistory {
     pub(super) present: LiveRun,
     /// Earlier runs, the oldest first.
     past: Vec<LiveRun>,
-    /// Runs from which the user went back; the one to be repeated next is the last.
+    /// Runs from which the user went back. The last one is the next to be redone.
     undone: Vec<LiveRun>,
-    /// Summaries of the earlier runs for a window.
+    /// Summaries of the earlier runs for display.
     #[serde(skip)]
     told: Arc<[PastRun]>,
-    /// Number of runs that have been kept.
+    /// Number of runs that have been kept so far.
     #[serde(skip)]
     count: u64,
     #[serde(skip)]
     recording_bytes: usize,
 }
 
-/// Recipe for a world from a start.
+/// Plan of a simulation: its settings, their changes and its number of steps. [`RunHistory::computed`] computes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorldPlan {
-    /// Settings of its first step.
+    /// Settings of the first step.
     pub settings: Settings,
-    /// Changes of the settings, in order, each with the number of the step after which it is made.
+    /// Changes of the settings, in order. Each has the number of the step after which it takes effect.
     pub changes: Vec<(u64, Settings)>,
-    /// Number of steps.
+    /// Number of steps of the simulation.
     pub steps: u64,
 }
 
 impl RunHistory {
-    /// A history without worlds, with this much memory for keyframes.
+    /// Returns a history without simulations, whose keyframes may take `recording_bytes` bytes.
     pub(super) fn new(recording_bytes: usize) -> Self {
         Self { recording_bytes, ..Self::default() }
     }
 
-    /// Replaces this history by another one.
+    /// Replaces this history by `other`.
     pub(super) fn take_up(&mut self, other: Self) {
         self.clear();
         for run in other.past {
@@ -273,7 +276,7 @@ impl RunHistory {
         self.tell();
     }
 
-    /// Puts worlds at a start, one for each of these settings. The present worlds are kept.
+    /// Starts one simulation from `start` for each of the settings `all`. The run so far is kept as an earlier run.
     pub(super) fn restart(&mut self, start: &Simulation, tally: Tally, all: &[Settings]) {
         let world =
             |settings: &Settings| WorldHistory::new(start, tally, settings, self.recording_bytes);
@@ -285,8 +288,8 @@ impl RunHistory {
         return_freed_memory();
     }
 
-    /// Goes back to an earlier run, or on to one that was undone. The runs between are kept in their order. Returns
-    /// false if there is no such run.
+    /// Goes back to the earlier run of this number, or forward to the undone run of this number. The runs between are
+    /// kept in their order. Returns false if no run has this number.
     pub(super) fn go_to(&mut self, number: u64) -> bool {
         let has = |runs: &[LiveRun]| runs.iter().any(|run| run.number == number);
         let is_back = has(&self.past);
@@ -307,11 +310,11 @@ impl RunHistory {
         true
     }
 
-    /// Keeps the present run as it is, if its next tick branches off from the record.
+    /// Keeps a copy of the present run, if its next step branches off from the record.
     pub(super) fn keep_before_tick(&mut self) {
         if self.present.branches() {
             let mut before = self.present.clone();
-            // The recorded steps had other settings than those that branch off.
+            // The recorded steps had other settings than the steps that branch off.
             for world in &mut before.worlds {
                 world.record.restore_controls(&mut world.simulation);
             }
@@ -319,7 +322,8 @@ impl RunHistory {
         }
     }
 
-    /// Changes a world by hand. If that branches off from the record, the run is kept.
+    /// Applies a user's edit (for example, a moved grain) to a simulation. If this branches off from the record, the
+    /// run is kept.
     pub(super) fn edit(&mut self, world: usize, edit: Edit) -> Result<()> {
         let Some(edited) = self.present.worlds.get(world) else { return Ok(()) };
         let branches = edited.record.is_before_end(&edited.simulation);
@@ -329,15 +333,15 @@ impl RunHistory {
         Ok(())
     }
 
-    /// Keeps the run as it was before it branched off. The present run is now another one, without a name.
+    /// Keeps the run as it was before a change branched off. The present run becomes a new run without a name.
     fn keep_copy(&mut self, before: LiveRun) {
         self.keep(before);
         self.present.name.clear();
         self.present.number = 0;
     }
 
-    /// The worlds of the newest earlier run at a simulated time, or the last stored moment before; none if nothing is
-    /// stored.
+    /// Stored states of the newest earlier run, one per simulation, at the last stored moment up to the simulated time
+    /// `secs`, s. The list is empty if a simulation has no such moment.
     pub(super) fn ghosts(&self, secs: f64) -> Vec<Arc<Snapshot>> {
         let worlds = self.past.last().map_or(&[][..], |run| &run.worlds);
         let snapshots =
@@ -345,7 +349,7 @@ impl RunHistory {
         snapshots.collect::<Option<_>>().unwrap_or_default()
     }
 
-    /// Keeps a run as the newest earlier one. Runs that were undone become earlier runs, too.
+    /// Keeps a run as the newest earlier run. Undone runs also become earlier runs.
     fn keep(&mut self, run: LiveRun) {
         self.past.extend(self.undone.drain(..).rev());
         let run = self.kept(run);
@@ -354,7 +358,7 @@ impl RunHistory {
         self.tell();
     }
 
-    /// A run with a number and with a part of the memory; nothing if no step of it is recorded.
+    /// Returns the run with a number and a limited memory, or `None` if the run has no recorded step.
     fn kept(&mut self, mut run: LiveRun) -> Option<LiveRun> {
         if !run.worlds.iter().any(|world| world.record.has_steps()) {
             return None;
@@ -369,7 +373,7 @@ impl RunHistory {
         Some(run)
     }
 
-    /// Limits the memory of the runs that are kept. Only the newest earlier run keeps stored moments.
+    /// Limits the memory of the kept runs. Only the newest earlier run keeps stored moments.
     fn limit(&mut self) {
         let older = self.past.len().saturating_sub(1);
         let older = self.past[..older].iter_mut().chain(&mut self.undone);
@@ -388,7 +392,7 @@ impl RunHistory {
         }
     }
 
-    /// Names an earlier run, or the present one.
+    /// Names the earlier or undone run of this number, or the present run if the number is `None`.
     pub(super) fn name(&mut self, number: Option<u64>, name: String) {
         match number {
             None => self.present.name = name,
@@ -401,7 +405,8 @@ impl RunHistory {
         }
     }
 
-    /// Summaries of the earlier runs for a window, the newest last, then those that were undone, the next one first.
+    /// Summaries for display: the earlier runs, the newest last, then the undone runs, starting with the next one to
+    /// redo.
     pub(super) fn told(&self) -> Arc<[PastRun]> {
         Arc::clone(&self.told)
     }
@@ -412,7 +417,7 @@ impl RunHistory {
         self.told = past.chain(undone).collect();
     }
 
-    /// A copy with fewer keyframes and rows, to be handed out, without earlier runs whose state is no longer finite.
+    /// Copy with fewer keyframes and rows, to be sent to the window or to a file. Failed earlier runs are left out.
     pub(super) fn thinned(&self) -> Self {
         let thinned = |runs: &[LiveRun]| {
             let kept = runs.iter().filter(|run| !run.has_failed());
@@ -426,11 +431,11 @@ impl RunHistory {
         }
     }
 
-    /// The history of worlds that are computed here in parallel, from a state and the sums over the steps before it.
-    /// `tell` is called with the progress, and ends the computation by returning false.
+    /// Computes the history of several simulations in parallel. All start from `start`, after steps with the sums
+    /// `tally`. `tell` receives the progress and returns false to cancel the computation.
     ///
     /// # Errors
-    /// Names the first refused setting, or says that the computation was given up.
+    /// If a setting is refused, or if the computation is cancelled.
     pub fn computed(
         start: &Simulation,
         tally: Tally,
@@ -461,12 +466,12 @@ impl RunHistory {
         Ok(Self { present: LiveRun { worlds, ..LiveRun::default() }, ..Self::default() })
     }
 
-    /// The worlds of the present run.
+    /// The worlds (simulations side by side) of the present run.
     pub fn worlds(&self) -> &[WorldHistory] {
         &self.present.worlds
     }
 
-    /// True if a history that was read is consistent.
+    /// True if a history that was read from a file is consistent.
     pub fn is_sound(&self) -> bool {
         let is_sound = |run: &LiveRun| {
             !run.worlds.is_empty() && run.worlds.iter().all(|world| world.record.is_sound())
@@ -474,13 +479,13 @@ impl RunHistory {
         is_sound(&self.present) && self.past.iter().chain(&self.undone).all(is_sound)
     }
 
-    /// Why one of its worlds cannot continue.
+    /// The reason why one of the present simulations cannot continue, if one cannot.
     pub fn failure(&self) -> Option<&str> {
         self.present.worlds.iter().find_map(|world| world.failure.as_deref())
     }
 }
 
-/// Takes some steps of a plan, with its changes. Returns true if more steps remain.
+/// Takes up to [`STEPS_AT_ONCE`] steps of a plan, with its changes of settings. Returns true if more steps remain.
 fn advance(world: &mut WorldHistory, plan: &WorldPlan) -> Result<bool> {
     for _ in 0..STEPS_AT_ONCE {
         let step = world.steps();

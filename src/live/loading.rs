@@ -1,4 +1,4 @@
-//! Progress of a start that is being made.
+//! Progress of the making of an initial state, for display.
 
 use std::sync::Arc;
 
@@ -7,24 +7,25 @@ use serde::{Deserialize, Serialize};
 
 use crate::sim::Snapshot;
 
-/// Receives the progress of a start. Returns false to give it up.
+/// Callback that receives the progress of a long computation, such as the making of an initial state. Returns false
+/// to cancel the computation.
 pub type Tell<'a> = &'a mut dyn FnMut(LoadingProgress) -> bool;
 
-/// Progress of a long preparation.
+/// Progress of a long computation, such as the making of an initial state.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LoadingProgress {
-    /// Completed fraction, 0 … 1.
+    /// Completed fraction, 0 to 1.
     pub part: f32,
-    /// Description of the progress, one line.
+    /// Description of the progress in one line.
     pub text: String,
-    /// Present state of the preparation, if it can be shown.
+    /// Present state of the grains, if there is a state to show.
     pub preview: Option<Preview>,
 }
 
-/// A moment of a preparation. It is only shown; the worlds do not change.
+/// A state of the grains while an initial state is being made. It is only shown; it does not change any simulation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Preview {
-    /// The moment.
+    /// The positions and velocities to show.
     pub snapshot: Arc<Snapshot>,
     /// Lower left and upper right corner of the view, m.
     pub view: [DVec2; 2],

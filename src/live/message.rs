@@ -1,11 +1,11 @@
-//! Messages between a window and a remote engine as bytes.
+//! Messages between a window and a solver in another process, as bytes.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::{Error, Result};
 
-/// Writes a message, or a source of starts.
+/// Encodes a message, or a source of initial states, in binary form (MessagePack).
 ///
 /// # Errors
 /// If the binary form cannot express the data.
@@ -14,7 +14,7 @@ pub fn to_bytes(message: &impl Serialize) -> Result<Vec<u8>> {
         .map_err(|error| Error::value("message", error, "one that can be written"))
 }
 
-/// Reads a message that this program wrote.
+/// Decodes a message that this program encoded.
 pub(super) fn from_bytes<T: DeserializeOwned>(bytes: &[u8]) -> Result<T> {
     rmp_serde::from_slice(bytes)
         .map_err(|error| Error::value("message", error, "one of the same program"))

@@ -1,8 +1,9 @@
-//! A run that someone watches: simulations on a thread of their own.
+//! Live runs: simulations that compute on a thread of their own while a user watches and changes them.
 //!
-//! Commands go in by a channel ([`Command`]); the newest moment comes out by a triple buffer ([`LiveFrame`]). Neither side
-//! ever waits for the other. The thread records what it computes in a [`RunHistory`], so that a run can be looked at
-//! again and continued from any moment. Several worlds that start from one state are kept at the same simulated time.
+//! The window sends commands through a channel ([`Command`]) and reads the newest moment from a triple buffer
+//! ([`LiveFrame`]). The window never waits for the thread, and the thread never waits for the window. The thread
+//! records all steps in a [`RunHistory`], so that the user can look at a run again and continue it from any moment.
+//! Several simulations (*worlds*) that start from one initial state are kept at the same simulated time.
 
 mod clock;
 mod command;

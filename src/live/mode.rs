@@ -1,28 +1,30 @@
-//! The mode of the solver's thread.
+//! The mode of the solver's thread: paused, playing, seeking, stepping or loading.
 
 use super::LoadingProgress;
 
-/// The present activity of the thread.
+/// The present activity of the solver's thread.
 #[derive(Clone, Debug)]
 pub(super) enum Mode {
     Paused,
     /// Time passes, and steps are computed when they are due.
     Computing,
-    /// Time passes within the record: the stored moments up to this simulated time, s, are shown and nothing is
-    /// computed, so that a slow run is shown smoothly. The worlds do not change meanwhile.
+    /// The stored moments of the record up to this simulated time, s, are shown at the chosen pace. Nothing is
+    /// computed, so that a run that is slow to compute is also shown smoothly. The simulations do not change in
+    /// this mode.
     Showing {
         until_secs: f64,
     },
-    /// A recorded moment is being computed; then time passes or stops.
+    /// A recorded moment is being computed. After that, time passes if `then_plays` is true; otherwise the run
+    /// pauses.
     Seeking {
         then_plays: bool,
     },
-    /// A step that takes longer than a slice is being completed. Then the further requested steps are taken, and time
-    /// stops.
+    /// A step that takes longer than 50 ms is being completed. After that, `more` further requested steps are
+    /// taken, and the run pauses.
     Stepping {
         more: u64,
     },
-    /// A start is being made.
+    /// An initial state is being made.
     Loading(LoadingProgress),
 }
 

@@ -1,21 +1,22 @@
-//! Options of a live run.
+//! Options of the solver's thread of a live run.
 
 use std::time::Duration;
 
 /// Options of the solver's thread.
 pub struct LiveOptions {
-    /// Called on the solver's thread after each new frame.
+    /// Callback on the solver's thread after each new frame, for example to make the window redraw.
     pub wake: Box<dyn Fn() + Send>,
-    /// Called while a start is made: returns true to give it up, although no command can arrive meanwhile.
+    /// Callback while an initial state is made. If it returns true, the loading is cancelled. A thread that
+    /// receives no commands during the loading needs this callback.
     pub gives_up: Box<dyn Fn() -> bool + Send>,
     /// Shortest time between two frames of a running simulation.
     pub frame_interval: Duration,
-    /// Memory for keyframes of all worlds together, bytes.
+    /// Memory for keyframes (copies of the whole state) of all simulations together, bytes.
     pub recording_bytes: usize,
 }
 
 impl Default for LiveOptions {
-    /// No callback, 60 frames per second, 96 MiB.
+    /// No callbacks, 60 frames per second, 96 MiB of keyframes.
     fn default() -> Self {
         Self {
             wake: Box::new(|| {}),

@@ -1,9 +1,9 @@
-//! The record of a world, from which each of its moments can be computed again bitwise.
+//! The record of a simulation, from which each of its past states can be computed again with the same bits.
 //!
-//! A simulation is a function of its state and its settings, and a clone continues like the original. So a record
-//! consists of some clones (keyframes) and all changes of the settings. A moment is computed from the keyframe before
-//! it. If memory runs out, every second keyframe is dropped: the whole run stays reachable, with more steps from the
-//! nearest keyframe.
+//! A step depends only on the state and the settings, and a clone of a simulation continues exactly like the original.
+//! So a record consists of some clones (keyframes) and all changes of the settings. A state between two keyframes is
+//! computed from the keyframe before it. If memory runs out, every second keyframe is dropped. Then the whole run can
+//! still be computed, with more steps from the nearest keyframe.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -13,56 +13,56 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use crate::sim::{Edit, Pull, RunEnding, Settings, Simulation, Tally};
 
-/// Everything that can change between two steps.
+/// The inputs of a simulation that can change between two steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Controls {
     /// Settings of the next step.
     pub settings: Settings,
-    /// A spring on a grain.
+    /// Spring by which the user drags a grain, if the user does.
     pub pull: Option<Pull>,
 }
 
 impl Controls {
-    /// The controls of a simulation's next step.
+    /// Returns the controls of a simulation's next step.
     pub(super) fn of(simulation: &Simulation) -> Self {
         Self { settings: *simulation.settings(), pull: simulation.pull() }
     }
 }
 
-/// A change of the controls.
+/// A change of the controls (settings or pull of a grain) between two steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ControlsChange {
     /// Number of the last step before the change.
     pub after_step: u64,
-    /// Simulated time of that step, s.
+    /// Simulated time at the end of that last step, s.
     pub time_secs: f64,
-    /// Controls until the next change.
+    /// The new controls, which apply until the next change.
     pub controls: Controls,
 }
 
-/// A change by hand between two steps.
+/// A user's edit of a simulation between two steps, for example a moved grain.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandEdit {
-    /// Number of the step before it.
+    /// Number of the last step before the edit.
     pub after_step: u64,
-    /// The change.
+    /// The edit.
     pub edit: Edit,
 }
 
-/// Initial number of steps between keyframes.
+/// Initial number of steps between keyframes (copies of the state); it doubles when the memory for keyframes is full.
 const FIRST_SPACING: u64 = 32;
 
-/// The record of a world's run. A clone shares its keyframes, so it is cheap to hand out. Its receiver computes the
-/// moments between them.
+/// The record of one simulation: keyframes (copies of the state) and the changes between them. Clones share the
+/// keyframes, so a clone is cheap. States between keyframes are computed from the nearest earlier keyframe.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WorldRecord {
     keyframes: Vec<Keyframe>,
     changes: Vec<ControlsChange>,
-    /// In order; a simulation knows how many of them it contains.
+    /// Edits by the user, in order of time. Each simulation counts the edits that it contains.
     edits: Vec<HandEdit>,
     spacing: u64,
     budget_bytes: usize,
@@ -84,8 +84,8 @@ impl Keyframe {
 }
 
 impl WorldRecord {
-    /// A record that starts with this state and the sums over the steps before it, with about `budget_bytes` of
-    /// keyframes.
+    /// Returns a record that begins at the state `start`. `tally` contains the sums over the steps before `start`, and
+    /// `budget_bytes` is the approximate memory for keyframes.
     pub(super) fn new(start: &Simulation, tally: Tally, budget_bytes: usize) -> Self {
         Self {
             keyframes: vec![Keyframe { simulation: Arc::new(start.clone()), tally }],
@@ -105,11 +105,11 @@ impl WorldRecord {
 
     /// The first recorded state.
     pub fn start(&self) -> &Simulation {
-        // A record is created with its first keyframe, and thinning keeps that one.
+        // A record is created with its first keyframe, and `thin` always keeps the first keyframe.
         &self.keyframes[0].simulation
     }
 
-    /// Records a state that is about to take a step. Later records are removed.
+    /// Records the state before a new step. Records of later steps are removed.
     pub(super) fn before_step(&mut self, simulation: &Simulation, tally: &Tally) {
         let step = simulation.observables().step;
         self.cut(step, self.edits_of(simulation));
@@ -135,7 +135,7 @@ impl WorldRecord {
         }
     }
 
-    /// Removes everything after a step, and all but the first `edits` changes by hand.
+    /// Removes the records of all steps after `step`, and all edits except the first `edits`.
     fn cut(&mut self, step: u64, edits: usize) {
         if self.end_step > step {
             let begun_with = self.start().edits();
@@ -149,7 +149,7 @@ impl WorldRecord {
         self.edits.truncate(edits);
     }
 
-    /// Records a change by hand of this state. Later records are removed.
+    /// Records a user's edit that led to the state of `simulation`. Records of later steps are removed.
     pub(super) fn edited(&mut self, simulation: &Simulation, edit: Edit) {
         let after_step = simulation.observables().step;
         self.cut(after_step, self.edits_of(simulation).saturating_sub(1));
@@ -157,17 +157,17 @@ impl WorldRecord {
         self.edits.push(HandEdit { after_step, edit });
     }
 
-    /// Number of this record's changes by hand that a state contains.
+    /// Number of this record's edits that the state of `simulation` contains.
     fn edits_of(&self, simulation: &Simulation) -> usize {
         simulation.edits().saturating_sub(self.start().edits())
     }
 
-    /// All changes of the world by hand.
+    /// All edits by the user, in order of time.
     pub fn edits(&self) -> &[HandEdit] {
         &self.edits
     }
 
-    /// Keeps a keyframe of the state at the end of the record, so that it need not be computed again.
+    /// Keeps a keyframe of the state at the end of the record, so that a later seek to the end computes nothing.
     pub(super) fn keep_end(&mut self, simulation: &Simulation, tally: &Tally) {
         let step = simulation.observables().step;
         if step == self.end_step && self.last_keyframe() < step {
@@ -175,7 +175,7 @@ impl WorldRecord {
         }
     }
 
-    /// Records a state that has just taken a step.
+    /// Records the end of a step that `simulation` has just taken.
     pub(super) fn after_step(&mut self, simulation: &Simulation) {
         self.end_step = simulation.observables().step;
         self.end_secs = simulation.time_secs();
@@ -200,7 +200,7 @@ impl WorldRecord {
         newest.map_or(0, |newest| self.keyframes.len() * memory_bytes(newest))
     }
 
-    /// Limits the keyframes to about this many bytes.
+    /// Limits the memory of the keyframes to about `budget_bytes` bytes.
     pub(super) fn keep_within(&mut self, budget_bytes: usize) {
         self.budget_bytes = budget_bytes;
         while !self.is_within_budget() {
@@ -208,8 +208,8 @@ impl WorldRecord {
         }
     }
 
-    /// True if a record that was read is consistent: it has a beginning, its steps increase, and it ends after all of
-    /// them.
+    /// True if a record that was read from a file is consistent: it has a keyframe, the step numbers of keyframes,
+    /// changes and edits increase, and no keyframe is later than the last step.
     pub(super) fn is_sound(&self) -> bool {
         let rise = |pair: &[Keyframe]| pair[0].step() < pair[1].step();
         let last = self.keyframes.last().map(Keyframe::step);
@@ -226,14 +226,15 @@ impl WorldRecord {
         self.end_step > self.start().observables().step
     }
 
-    /// True if all recorded steps have these settings, and no hand acted.
+    /// True if all recorded steps have these settings, and the user neither edited the simulation nor pulled a grain.
     pub(super) fn is_all_with(&self, settings: &Settings) -> bool {
         let all_along = Controls { settings: *settings, pull: None };
         self.edits.is_empty() && self.changes.iter().all(|change| change.controls == all_along)
     }
 
-    /// True if the next step of a simulation is a recorded one. A pull that was not recorded makes a difference. A
-    /// missing pull does not, because a seek removes it.
+    /// True if the next step of a simulation repeats a recorded step. If the user now pulls a grain and the pull is not
+    /// recorded, the step is a new one. If a recorded pull is missing, the step still counts as recorded, because a
+    /// seek removes pulls.
     pub(super) fn replays(&self, simulation: &Simulation) -> bool {
         let step = simulation.observables().step;
         let same = |recorded: &Controls| {
@@ -243,12 +244,12 @@ impl WorldRecord {
         self.is_before_end(simulation) && self.controls_after(step).is_some_and(same)
     }
 
-    /// True if steps after a state are recorded.
+    /// True if steps after the state of `simulation` are recorded.
     pub(super) fn is_before_end(&self, simulation: &Simulation) -> bool {
         simulation.observables().step < self.end_step
     }
 
-    /// The keyframe at or before a simulated time, and the sums over the steps up to it.
+    /// Returns the last keyframe at or before a simulated time, and the sums over the steps up to that keyframe.
     pub(super) fn keyframe_before(&self, time_secs: f64) -> (&Simulation, Tally) {
         let after = |keyframe: &Keyframe| keyframe.simulation.time_secs() <= time_secs;
         let index = self.keyframes.partition_point(after).saturating_sub(1);
@@ -256,7 +257,8 @@ impl WorldRecord {
         (&keyframe.simulation, keyframe.tally)
     }
 
-    /// True if a recorded state is the one nearest to a simulated time, or later, or the last one.
+    /// True if the state of `simulation` is the recorded state nearest to the simulated time `goal_secs`, or a later
+    /// state, or the last recorded state.
     pub(super) fn has_come_to(&self, simulation: &Simulation, goal_secs: f64) -> bool {
         let step = simulation.observables().step;
         let controls = self.controls_after(step).copied();
@@ -268,33 +270,35 @@ impl WorldRecord {
         time_secs + 0.5 * time_step_secs >= goal_secs || step >= self.end_step
     }
 
-    /// Gives a recorded state the controls of its next recorded step, and applies the changes by hand before it.
+    /// Prepares a recorded state for its next recorded step: applies the recorded edits up to this moment, and sets the
+    /// recorded controls.
     pub(super) fn restore_controls(&self, simulation: &mut Simulation) {
         let step = simulation.observables().step;
         let made = self.edits.iter().skip(self.edits_of(simulation));
         for made in made.take_while(|made| made.after_step <= step) {
-            // They were accepted when they were recorded.
+            // The edits were accepted when they were recorded.
             let _ = simulation.edit(&made.edit);
         }
         if let Some(Controls { settings, pull }) = self.controls_after(step).copied() {
-            // They were accepted when they were recorded.
+            // The settings were accepted when they were recorded.
             let _ = simulation.change(settings);
             simulation.set_pull(pull);
         }
     }
 
-    /// The settings of a recorded step.
+    /// The settings of the recorded step with this number.
     pub(super) fn settings_of_step(&self, step: u64) -> Option<Settings> {
         Some(self.controls_after(step.checked_sub(1)?)?.settings)
     }
 
-    /// The controls of the step after `step`; `None` before the first recorded change.
+    /// The controls of the step after step number `step`; `None` before the first recorded change.
     pub(super) fn controls_after(&self, step: u64) -> Option<&Controls> {
         let count = self.changes.partition_point(|change| change.after_step <= step);
         count.checked_sub(1).map(|index| &self.changes[index].controls)
     }
 
-    /// The changes from a step on that affect steps up to a simulated time.
+    /// Returns the changes of the controls from step `from_step` on that affect steps up to the simulated time
+    /// `until_secs`.
     pub fn changes(
         &self,
         from_step: u64,
@@ -308,12 +312,12 @@ impl WorldRecord {
         })
     }
 
-    /// Computes the moments between two simulated times again, bitwise. `each` gets all states in order of time, from
-    /// the keyframe before, with true if a state is between the two times. Each state has the settings of the step
-    /// that led to it. `each` can end the replay.
+    /// Computes the states between two simulated times again, with the same bits. `each` receives all states in order
+    /// of time, starting at the keyframe before the first time. Its second argument is true if the state is between the
+    /// two times. Each state has the settings of the step that led to it. `each` can end the replay.
     ///
     /// # Errors
-    /// Errors of `each`.
+    /// Errors of `each`, and errors of a step except a state that is no longer finite.
     pub fn replay(
         &self,
         [from_secs, until_secs]: [f64; 2],
@@ -323,7 +327,7 @@ impl WorldRecord {
         let index = self.keyframes.partition_point(is_before).saturating_sub(1);
         let mut simulation = Simulation::clone(&self.keyframes[index].simulation);
         if simulation.observables().step == 0 {
-            // No step led to the start, so it gets the settings of the first step.
+            // No step led to the initial state, so the initial state gets the settings of the first step.
             self.restore_controls(&mut simulation);
         }
         loop {
@@ -346,8 +350,8 @@ impl WorldRecord {
 
 /// Approximate memory of a clone of a simulation, bytes.
 fn memory_bytes(simulation: &Simulation) -> usize {
-    // Measured on piles of 138 to 10,000 grains: lists of grains, bodies and candidates take about 500 bytes per
-    // grain, rows and impulses about 250 per contact, fixed shapes about 100 each.
+    // Measured on piles of 138 to 10,000 grains: the lists of grains, bodies and candidate pairs take about 500 bytes
+    // per grain, rows and impulses about 250 bytes per contact, and fixed shapes about 100 bytes each.
     let world = simulation.world();
     let fixed = world.fixed_discs.len() + world.boundaries.len();
     4096 + 500 * world.grains.len() + 250 * simulation.contacts().contacts().len() + 100 * fixed

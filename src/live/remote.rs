@@ -1,9 +1,9 @@
-//! A live run without memory shared with its window, as in a browser's worker: both sides as readers and writers of
-//! bytes.
+//! A live run whose solver shares no memory with the window, for example in a browser's worker. The window and the
+//! solver exchange messages as bytes.
 //!
-//! Commands are sent as they are. Sources of starts are sent as data, and receivers of histories wait on the window's
-//! side for the reply. Only the newest frame comes back, and the next one is made after the window has seen it. A
-//! frame is sent as its difference from the previous one.
+//! Most commands are sent unchanged. A source of initial states is sent as data. A callback for a history stays on the
+//! window's side and is called when the reply arrives. The solver sends only its newest frame, as the difference from
+//! the previous frame, and makes the next frame when the window has seen the last one.
 
 use std::collections::HashMap;
 use std::marker::PhantomData;
@@ -25,21 +25,23 @@ use super::{
 use crate::Instant;
 use crate::error::{Error, Result};
 
-/// Time after which another frame follows an unseen one. While a start is made, the engine receives no messages.
+/// Time after which the solver sends another frame, although the window has not yet reported that it has seen the last
+/// one. While an initial state is being made, the solver receives no messages, so it cannot learn that the window has
+/// seen a frame.
 const UNSEEN_INTERVAL: Duration = Duration::from_millis(100);
 
-/// A message from the window. The numbers are those of commands.
+/// A message from the window to the solver. The first number of each message is the number of the command.
 #[derive(Serialize, Deserialize)]
 enum Request {
     Command(u64, Command),
     Load(u64, Vec<u8>),
     Take(u64, usize),
     TakeAll(u64),
-    /// The last frame has been seen.
+    /// The window has seen the last frame.
     Seen,
 }
 
-/// A message to the window.
+/// A message from the solver to the window.
 #[derive(Serialize, Deserialize)]
 enum Reply {
     Frame(Box<FrameChange>),
@@ -47,10 +49,10 @@ enum Reply {
     TakenAll(u64, Box<LiveStart>),
 }
 
-/// A frame as its difference from the previous one.
+/// A frame as its difference from the previous frame.
 #[derive(Serialize, Deserialize)]
 struct FrameChange {
-    /// The frame without the parts below.
+    /// The frame without its initial state, summaries of earlier runs, and curves.
     frame: LiveFrame,
     start: Option<Arc<LiveStart>>,
     past: Option<Arc<[PastRun]>>,
@@ -83,13 +85,13 @@ impl FrameChange {
     }
 }
 
-/// The receiver of a history.
+/// A callback that waits for the history of one simulation or of the whole run.
 enum Waiting {
     World(Taker),
     All(StartTaker),
 }
 
-/// Sends bytes to the engine. The flag is true if the load that is under way is to be cancelled.
+/// Sends the bytes of a message to the solver. The flag is true if the loading that is in progress is to be cancelled.
 pub type Ask = Box<dyn FnMut(Vec<u8>, bool)>;
 
 /// The window's side of a remote run.
@@ -160,13 +162,13 @@ impl RemoteRun {
     }
 }
 
-/// Sends bytes to the window. The engine itself calls it while a start is made.
+/// Sends the bytes of a message to the window. Frames are also sent while an initial state is being made.
 pub type Post = Box<dyn FnMut(Vec<u8>) + Send>;
 
-/// Posts frames when they are due.
+/// Sends a frame to the window when the window has seen the previous frame, or after [`UNSEEN_INTERVAL`].
 struct FramePoster {
     frames: Output<LiveFrame>,
-    /// The last posted frame.
+    /// The last frame that was sent.
     posted: LiveFrame,
     posted_at: Instant,
     is_seen: bool,
@@ -187,14 +189,14 @@ impl FramePoster {
     }
 
     fn reply(&mut self, reply: &Reply) {
-        // Plain data can always be written.
+        // Plain data can always be encoded, so this cannot fail.
         if let Ok(bytes) = to_bytes(reply) {
             (self.post)(bytes);
         }
     }
 }
 
-/// The computing side: an engine that never sleeps. `S` is the type of its sources of starts.
+/// The solver's side of a remote run: an engine that never sleeps. `S` is the type of its sources of initial states.
 pub struct RemoteEngine<S> {
     engine: Engine,
     commands: Sender<(u64, Command)>,
@@ -203,7 +205,7 @@ pub struct RemoteEngine<S> {
 }
 
 impl<S: StartSource + DeserializeOwned> RemoteEngine<S> {
-    /// An engine with nothing loaded, which sends its replies to `post`.
+    /// Returns an engine without an initial state, which sends its replies to `post`.
     pub fn new(post: Post, options: LiveOptions) -> Self {
         let (commands, inbox) = channel();
         let (output, frames) = triple_buffer(&LiveFrame::default());
@@ -220,7 +222,7 @@ impl<S: StartSource + DeserializeOwned> RemoteEngine<S> {
         Self { engine, commands, poster, sources: PhantomData }
     }
 
-    /// Handles a message of the window.
+    /// Handles a message from the window.
     ///
     /// # Errors
     /// If the message is invalid.
@@ -250,12 +252,13 @@ impl<S: StartSource + DeserializeOwned> RemoteEngine<S> {
                 return Ok(());
             }
         };
-        // The engine has the other end, so sending cannot fail.
+        // The engine owns the receiver of the channel, so sending cannot fail.
         let _ = self.commands.send((number, command));
         Ok(())
     }
 
-    /// Does what is due. Returns the time until something is due again; `None` if only a message changes that.
+    /// Handles the received commands and takes the steps that are due. Returns the time until the next step or frame is
+    /// due; `None` if nothing is due before the next message.
     pub fn turn(&mut self) -> Option<Duration> {
         self.engine.turn(false);
         self.engine.wait()

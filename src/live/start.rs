@@ -1,4 +1,4 @@
-//! The initial state of a run, and its sources.
+//! The initial state of a live run, and the sources that make initial states.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -11,62 +11,66 @@ use crate::scene::Scene;
 use crate::sim::{Settings, Simulation, Tally};
 use crate::world::{Boundary, Physics};
 
-/// A source of a start. It is data, so that it can be sent to the place of the computation.
+/// A source of an initial state. It is serialisable data, so that it can be sent to the thread or process that
+/// computes the run.
 pub trait StartSource: Send + 'static {
-    /// Makes the start. Gives up with an error if `tell` returns false.
+    /// Makes the initial state. `tell` reports the progress; if it returns false, `make` stops with an error.
     ///
     /// # Errors
-    /// Says why there is no start.
+    /// States why no initial state could be made.
     fn make(self: Box<Self>, tell: Tell<'_>) -> Result<LiveStart>;
 
-    /// The source as bytes, from which its type can be read.
+    /// Encodes the source as bytes, from which a reader can recognise the type of the source.
     ///
     /// # Errors
-    /// If it cannot be sent.
+    /// If the source cannot be encoded.
     fn to_bytes(&self) -> Result<Vec<u8>>;
 }
 
-/// The initial state of a run.
+/// Initial state of a live run, with its scene, view and history.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LiveStart {
-    /// The scene in its initial state. The run pauses once at its duration, and can be continued.
+    /// The scene in its initial state. The run pauses at the duration of the scene, and the user can continue the
+    /// run.
     pub scene: Scene,
-    /// The configuration that opens the scene again.
+    /// The configuration from which the scene can be built again.
     #[serde(with = "as_json")]
     pub config: Config,
-    /// Arrangement of the window that saved the start, in that window's own form; `None` without a window.
+    /// Arrangement of the window that saved this initial state, as text in the window's own form; `None` if no
+    /// window saved it.
     pub window: Option<String>,
-    /// The state at t = 0, or that of a saved run.
+    /// The simulation at t = 0, or at the last moment of a saved run.
     pub simulation: Simulation,
-    /// Sums over the steps before the start.
+    /// Sums over the steps before this state (a [`Tally`]).
     pub tally: Tally,
-    /// Shapes that hold a state at rest, drawn before the first step.
+    /// Walls that support the grains until time begins; drawn before the first step.
     pub held_by: Vec<Boundary>,
     /// Lower left and upper right corner of the view, m.
     pub view: [DVec2; 2],
-    /// True if the scene is a heap on level ground, whose slump is meaningful.
+    /// True if the scene is a heap on level ground, so that its slump (relative drop of the mean height) is
+    /// meaningful.
     pub slumps: bool,
-    /// Settings of the initial worlds side by side; empty for one world with the settings of the simulation.
+    /// Settings of the worlds that start side by side; empty for one world with the settings of `simulation`.
     pub worlds: Vec<Settings>,
-    /// History of a run that continues. `worlds` has no effect then.
+    /// History of a run that continues. If a history is given, `worlds` has no effect.
     #[serde(rename = "record")]
     pub history: Option<RunHistory>,
 }
 
 impl LiveStart {
-    /// The settings that the scene states.
+    /// The settings of the initial state.
     pub fn settings(&self) -> &Settings {
         self.simulation.settings()
     }
 
-    /// The physics that the scene computes.
+    /// The physics (friction, rotation and so on) that the scene needs.
     pub fn physics(&self) -> Physics {
         self.simulation.physics()
     }
 }
 
-/// A start that is already made.
+/// An initial state that already exists is its own source.
 impl StartSource for LiveStart {
     fn make(self: Box<Self>, _: Tell<'_>) -> Result<LiveStart> {
         Ok(*self)
@@ -77,7 +81,8 @@ impl StartSource for LiveStart {
     }
 }
 
-/// Serialises a config as JSON, because it reads its options by name, which binary forms lack.
+/// Serialises a configuration as JSON text. A configuration reads its options by name, and binary forms have no
+/// names.
 pub(crate) mod as_json {
     use serde::de::Error as _;
     use serde::ser::Error as _;

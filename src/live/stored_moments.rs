@@ -1,20 +1,21 @@
-//! Moments of a run as they were shown, stored so that playing within the record computes nothing.
+//! Stored moments: past states of a run in the form in which the window shows them. With stored moments, recorded time
+//! can be shown without computing.
 
 use std::sync::Arc;
 
 use crate::sim::{Simulation, Snapshot, Tally};
 use crate::world::Gravity;
 
-/// Memory for the stored moments of all worlds together, bytes. If it runs out, every second moment is dropped. It
-/// holds about 2,000 moments of 138 grains, or 30 of 10,000.
+/// Memory for the stored moments of all simulations together, bytes. If it is full, every second moment is dropped. It
+/// is enough for about 2,000 moments of 138 grains, or 30 moments of 10,000 grains.
 pub(super) const STORED_BYTES: usize = 64 << 20;
 
-/// A moment as it was shown.
+/// The state after one step, in the form in which the window shows it.
 #[derive(Clone, Debug)]
 pub(super) struct StoredMoment {
     pub snapshot: Arc<Snapshot>,
     pub gravity: Gravity,
-    /// Sums over the steps up to it.
+    /// Sums over all steps up to this moment.
     pub tally: Tally,
 }
 
@@ -29,11 +30,11 @@ impl StoredMoment {
     }
 }
 
-/// The stored moments of a world, in order of time.
+/// The stored moments of one simulation, in order of time.
 #[derive(Clone, Debug)]
 pub(super) struct StoredMoments {
     moments: Vec<StoredMoment>,
-    /// Only steps whose number is a multiple of the stride are stored.
+    /// Only the states after steps whose number is a multiple of `stride` are stored.
     stride: u64,
     bytes: usize,
     most_bytes: usize,
@@ -46,7 +47,8 @@ impl Default for StoredMoments {
 }
 
 impl StoredMoments {
-    /// Stores the moment after a step. Later moments are removed, unless the step `is_recorded`.
+    /// Stores the state after the simulation's last step. Stored moments of later steps are removed, unless the step
+    /// `is_recorded`, so that the later steps remain valid.
     pub(super) fn store(&mut self, simulation: &Simulation, tally: &Tally, is_recorded: bool) {
         let now = simulation.observables().step;
         let earlier = self.moments.partition_point(|moment| moment.step() < now);
@@ -64,7 +66,7 @@ impl StoredMoments {
         self.thin();
     }
 
-    /// Limits the memory of the moments.
+    /// Limits the memory of the stored moments, bytes.
     pub(super) fn keep_within(&mut self, most_bytes: usize) {
         self.most_bytes = most_bytes;
         self.thin();
@@ -78,7 +80,7 @@ impl StoredMoments {
         }
     }
 
-    /// Removes the moments of this and later steps, because they have changed.
+    /// Removes the stored moments of step `first` and of later steps, because these states have changed.
     pub(super) fn forget_from(&mut self, first: u64) {
         self.retain(|step| step < first);
     }
@@ -88,13 +90,13 @@ impl StoredMoments {
         self.bytes = self.moments.iter().map(StoredMoment::bytes).sum();
     }
 
-    /// The last moment at or before a simulated time, s.
+    /// The last stored moment at or before a simulated time, s.
     pub(super) fn at(&self, secs: f64) -> Option<&StoredMoment> {
         let is_there = |moment: &StoredMoment| moment.snapshot.observables.time_secs <= secs;
         self.moments.get(self.moments.partition_point(is_there).checked_sub(1)?)
     }
 
-    /// True if the moments after a step are stored.
+    /// True if the moments after step `from` are stored.
     pub(super) fn go_on_from(&self, from: u64) -> bool {
         let next = self.moments.partition_point(|moment| moment.step() <= from);
         self.moments.get(next).is_some_and(|next| next.step() <= from + 2 * self.stride)
@@ -124,7 +126,7 @@ mod tests {
             stride > 1 && steps.windows(2).all(|pair| pair[1] - pair[0] == stride),
             "{steps:?}"
         );
-        // Later moments do not get more memory either.
+        // Moments stored after the thinning do not get more memory either.
         for _ in 0..40 {
             simulation.step().unwrap();
             stored.store(&simulation, &Tally::default(), false);

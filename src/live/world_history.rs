@@ -1,4 +1,4 @@
-//! One world of a live run: its present state, its record and its curve.
+//! One world (simulation) of a live run: its present state, its record, and the curve of its observables.
 
 use std::sync::Arc;
 
@@ -10,19 +10,20 @@ use crate::Instant;
 use crate::error::{Error, Result};
 use crate::sim::{Edit, Settings, Simulation, Tally};
 
-/// Weight of the newest step in the mean time per step.
+/// Weight of the newest step in the running mean of the wall-clock time per step.
 const NEWEST: f64 = 0.05;
 
-/// One world of a live run. A clone shares the record.
+/// One world (simulation) of a live run, with its record. A clone shares the keyframes of the record and most of the
+/// curve.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WorldHistory {
-    /// The present state.
+    /// The simulation at the present moment.
     pub simulation: Simulation,
-    /// The record before and after the present moment.
+    /// The record of the steps before the present moment and, after a seek, of the steps after it.
     #[serde(rename = "recording")]
     pub record: WorldRecord,
-    /// Observables of the whole record.
+    /// Observables of all recorded steps, for plots.
     pub curve: Curve,
     /// Stored moments, which can be shown without computing.
     #[serde(skip)]
@@ -31,7 +32,7 @@ pub struct WorldHistory {
     pub tally: Tally,
     #[serde(skip)]
     pub(super) step_secs: f64,
-    /// Why the run cannot continue from the present moment.
+    /// The reason why the simulation cannot continue from the present moment, if it cannot.
     pub failure: Option<Arc<str>>,
     /// Simulated time that a seek approaches, s.
     #[serde(skip)]
@@ -39,7 +40,8 @@ pub struct WorldHistory {
 }
 
 impl WorldHistory {
-    /// A world at a start, with the sums over the steps before it.
+    /// Returns a simulation at the state `start` with these settings. `tally` contains the sums over the steps before
+    /// `start`, and `budget_bytes` limits the keyframes.
     pub(super) fn new(
         start: &Simulation,
         tally: Tally,
@@ -47,7 +49,8 @@ impl WorldHistory {
         budget_bytes: usize,
     ) -> Self {
         let mut simulation = start.clone();
-        // Settings are checked when they are made. If one is refused here, the start's setting stays.
+        // Settings are checked when they are made. If a setting is nevertheless refused here, the setting of `start`
+        // remains.
         let _ = simulation.change(*settings);
         let mut curve = Curve::default();
         curve.push(*simulation.observables());
@@ -72,12 +75,12 @@ impl WorldHistory {
         self.simulation.parameters().time_step_secs
     }
 
-    /// True if the next step branches off from the record.
+    /// True if the next step branches off from the record, because the settings differ from the recorded ones.
     pub(super) fn branches(&self) -> bool {
         self.record.is_before_end(&self.simulation) && !self.record.replays(&self.simulation)
     }
 
-    /// Takes a step, and records it unless it is recorded already. Returns false on failure.
+    /// Takes a step, and records the step unless it is already recorded. Returns false if the step fails.
     pub(super) fn step(&mut self) -> bool {
         if self.failure.is_some() {
             return false;
@@ -102,7 +105,7 @@ impl WorldHistory {
         self.failure.is_none()
     }
 
-    /// Repeats a recorded step. Returns false on failure.
+    /// Repeats a recorded step. Returns false if the step fails.
     fn step_in_the_record(&mut self) -> bool {
         self.record.restore_controls(&mut self.simulation);
         let before = Instant::now();
@@ -131,13 +134,13 @@ impl WorldHistory {
         self.step_secs += weight * (secs - self.step_secs);
     }
 
-    /// True if another step brings the world's time closer to `time_secs`.
+    /// True if another step brings the simulated time closer to `time_secs`.
     pub(super) fn is_before(&self, time_secs: f64) -> bool {
         self.simulation.time_secs() + 0.5 * self.time_step_secs() < time_secs
     }
 
-    /// Takes at least one step until the world's time is nearest to `time_secs` or the wall-clock time is up. Returns
-    /// false if a step failed.
+    /// Takes at least one step, and further steps until the simulated time is nearest to `time_secs` or the wall-clock
+    /// time `until` is reached. Returns false if a step failed.
     pub(super) fn catch_up(&mut self, time_secs: f64, until: Instant) -> bool {
         while self.is_before(time_secs) {
             if !self.step() {
@@ -150,7 +153,7 @@ impl WorldHistory {
         true
     }
 
-    /// Starts a seek to a recorded moment.
+    /// Starts a seek to the recorded moment nearest to the simulated time `time_secs`.
     pub(super) fn seek(&mut self, time_secs: f64) {
         if self.failure.is_none() {
             self.record.keep_end(&self.simulation, &self.tally);
@@ -163,19 +166,19 @@ impl WorldHistory {
         self.record.restore_controls(&mut self.simulation);
     }
 
-    /// Takes one step of a seek. Returns true on arrival.
+    /// Takes one step of a seek. Returns true when the seek has ended.
     pub(super) fn advance_seek(&mut self) -> bool {
         let Some(goal) = self.goal_secs else { return true };
         if self.record.has_come_to(&self.simulation, goal) || !self.replay_step() {
             self.goal_secs = None;
-            // The recorded pull of a grain does not continue from here.
+            // The recorded pull of a grain ends at this moment.
             self.simulation.set_pull(None);
             return true;
         }
         false
     }
 
-    /// Changes the world by hand. Later records are removed.
+    /// Applies a user's edit (for example, a moved grain). Records of later steps are removed.
     pub(super) fn edit(&mut self, edit: Edit) -> Result<()> {
         if let Some(failure) = &self.failure {
             return Err(Error::value("state", failure, "one from which the run can continue"));
@@ -187,10 +190,10 @@ impl WorldHistory {
         Ok(())
     }
 
-    /// The world's history, for handing out.
+    /// Copy of the history without stored moments, to be sent to the window or to a file.
     pub(super) fn handed_out(&self) -> Self {
         let mut world = Self { stored: StoredMoments::default(), ..self.clone() };
-        // A pull does not continue from here.
+        // The user's pull of a grain ends here.
         world.simulation.set_pull(None);
         world
     }

@@ -1,20 +1,20 @@
-//! Conversion from the world (metres, y up, any distance from the origin) to pixels.
+//! Conversion of positions in the scene (metres, y up, at any distance from the origin) to pixels.
 //!
-//! A camera is the point in the middle of the picture and a scale. Positions are taken relative to that point in f64,
-//! and only then become f32 pixels. So a scene a million diameters from the origin is drawn as sharply as one at the
-//! origin.
+//! A camera is the point in the middle of the picture and a scale. Positions relative to that point are computed in f64
+//! and only then rounded to f32 pixels. So a scene a million diameters from the origin is drawn as sharply as a scene
+//! at the origin.
 
 use glam::DVec2;
 
 use crate::sim::Snapshot;
 use crate::world::{Boundary, Edge};
 
-/// The part of the world that a picture shows.
+/// The rectangle of the scene that a picture shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// The point in the middle of the picture, m.
     pub centre: DVec2,
-    /// Scale, m/px.
+    /// Scale, metres per pixel.
     pub metres_per_pixel: f64,
 }
 
@@ -28,8 +28,8 @@ pub(super) struct Margins {
 }
 
 impl Camera {
-    /// Shows the box from `min` to `max` (m), as large as possible, with at least `margin_px` free
-    /// on each side of a picture of `width` × `height` pixels.
+    /// Returns the camera that shows the box from `min` to `max` (m) as large as possible, with at least `margin_px`
+    /// free pixels on each side of a picture of `width` × `height` pixels.
     pub fn framing(min: DVec2, max: DVec2, width: u32, height: u32, margin_px: f64) -> Self {
         let margins =
             Margins { left: margin_px, right: margin_px, top: margin_px, bottom: margin_px };
@@ -45,7 +45,7 @@ impl Camera {
     ) -> Self {
         let picture = DVec2::new(f64::from(width), f64::from(height));
         let taken = DVec2::new(margins.left + margins.right, margins.top + margins.bottom);
-        // Margins that leave no space are reduced: a pixel must have a finite length.
+        // Margins that leave no space are reduced, because a pixel must have a finite length.
         let free = (picture - taken).max(DVec2::ONE);
         let extent = max - min;
         let scale = (extent / free).max_element();
@@ -55,7 +55,7 @@ impl Camera {
         Self { centre: (min + max) / 2.0 + shift * metres_per_pixel, metres_per_pixel }
     }
 
-    /// Pixel position of a point of the world, relative to the middle of the picture, y up.
+    /// Returns the pixel position of a point of the scene (m), relative to the middle of the picture, y up.
     pub fn project(&self, position: DVec2) -> [f32; 2] {
         self.offset_px(position).as_vec2().into()
     }
@@ -64,24 +64,24 @@ impl Camera {
         (position - self.centre) / self.metres_per_pixel
     }
 
-    /// The point of the world at `offset_px` pixels from the middle of the picture, y up.
+    /// Returns the point of the scene (m) at `offset_px` pixels from the middle of the picture, y up.
     pub fn unproject(&self, offset_px: DVec2) -> DVec2 {
         self.centre + offset_px * self.metres_per_pixel
     }
 
-    /// A length in pixels.
+    /// Converts a length (m) to pixels.
     pub fn pixels(&self, length: f64) -> f32 {
         (length / self.metres_per_pixel) as f32
     }
 }
 
-/// Vector from the middle of a picture of `size` pixels to its corner.
+/// Returns the vector from the middle of a picture of `size` pixels to its upper right corner.
 pub(super) fn half_size(size: [u32; 2]) -> DVec2 {
     DVec2::from(size.map(f64::from)) / 2.0
 }
 
-/// The box around all finite parts of a snapshot: grains, fixed discs, walls and the centre of attraction. `None` if
-/// there are none.
+/// Returns the box (m) around all finite parts of a snapshot: grains, fixed discs, walls and the centre of attraction.
+/// `None` if there are no such parts.
 pub fn bounds(snapshot: &Snapshot) -> Option<[DVec2; 2]> {
     let surroundings = &snapshot.surroundings;
     let grains = snapshot.grains.iter().map(|grain| (grain.position, grain.radius));
@@ -98,7 +98,7 @@ pub fn bounds(snapshot: &Snapshot) -> Option<[DVec2; 2]> {
         .reduce(|all, next| [all[0].min(next[0]), all[1].max(next[1])])
 }
 
-/// The ends of an edge; none if it is infinite.
+/// Returns the two ends of an edge; an infinite edge has no ends.
 fn ends(edge: Edge) -> impl Iterator<Item = DVec2> {
     let ends = match edge {
         Edge::Endless { .. } => None,
@@ -124,7 +124,7 @@ mod tests {
         let margins = Margins { left: 0.0, right: 0.0, top: 10.0, bottom: 50.0 };
         let camera = Camera::framing_within(DVec2::ZERO, DVec2::new(1.0, 1.0), 100, 160, margins);
         assert_eq!(camera.metres_per_pixel, 0.01);
-        // 50 px are free below and 10 px above.
+        // 50 px are free below the box and 10 px above it.
         assert_eq!(camera.project(DVec2::ZERO), [-50.0, -30.0]);
         assert_eq!(camera.project(DVec2::ONE), [50.0, 70.0]);
     }

@@ -1,11 +1,11 @@
 //! Colours in gamma space: the numbers that a PNG file stores, divided by 255.
 //!
-//! Every renderer blends these numbers, so that pictures look the same everywhere and a half-covered edge pixel is
-//! the mean of its two sides.
+//! Every renderer blends these numbers, so that pictures look the same everywhere, and a pixel that an edge half covers
+//! has the mean colour of the edge's two sides.
 
 use serde::{Deserialize, Serialize};
 
-/// Red, green, blue and opacity, each 0 … 1, not premultiplied.
+/// Red, green, blue and opacity, each 0 to 1, not premultiplied.
 #[repr(C)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -21,7 +21,7 @@ impl Colour {
     #[cfg(test)]
     pub(crate) const BLACK: Self = Self::grey(0);
 
-    /// The opaque colour `#rrggbb`.
+    /// Returns the opaque colour `#rrggbb`.
     pub(crate) const fn hex(rrggbb: u32) -> Self {
         Self {
             red: ((rrggbb >> 16) & 0xff) as f32 / 255.0,
@@ -31,7 +31,7 @@ impl Colour {
         }
     }
 
-    /// An opaque grey: 0 black … 255 white.
+    /// Returns an opaque grey, from 0 (black) to 255 (white).
     pub(crate) const fn grey(tone: u8) -> Self {
         let level = tone as f32 / 255.0;
         Self { red: level, green: level, blue: level, alpha: 1.0 }
@@ -41,7 +41,7 @@ impl Colour {
         Self { alpha, ..self }
     }
 
-    /// Mixes this colour (`part` 0) with `other` (`part` 1).
+    /// Returns the linear interpolation between this colour (`part` 0) and `other` (`part` 1).
     pub(crate) fn mix(self, other: Self, part: f32) -> Self {
         let between = |a: f32, b: f32| a + (b - a) * part;
         Self {
@@ -52,20 +52,20 @@ impl Colour {
         }
     }
 
-    /// Red, green and blue times opacity, and opacity.
+    /// Red, green and blue, each multiplied by the opacity, followed by the opacity.
     pub(super) fn premultiplied(self) -> [f32; 4] {
         let Self { red, green, blue, alpha } = self;
         [red * alpha, green * alpha, blue * alpha, alpha]
     }
 
     pub(crate) fn to_rgba8(self) -> image::Rgba<u8> {
-        // Casts from float to integer saturate, so a channel outside 0 … 1 ends at 0 or 255.
+        // Casts from float to integer saturate, so a channel below 0 or above 1 becomes 0 or 255.
         let byte = |channel: f32| (channel * 255.0 + 0.5) as u8;
         image::Rgba([byte(self.red), byte(self.green), byte(self.blue), byte(self.alpha)])
     }
 }
 
-/// Lays a colour over an opaque pixel, `coverage` 0 … 1 times its opacity.
+/// Blends a colour over an opaque pixel. The opacity of the colour is multiplied by `coverage`, 0 to 1.
 pub(super) fn blend_pixel(pixel: &mut image::Rgba<u8>, colour: Colour, coverage: f32) {
     let alpha = colour.alpha * coverage;
     for (under, over) in pixel.0.iter_mut().zip([colour.red, colour.green, colour.blue]) {
@@ -73,7 +73,7 @@ pub(super) fn blend_pixel(pixel: &mut image::Rgba<u8>, colour: Colour, coverage:
     }
 }
 
-/// Colours of the map, equally spaced.
+/// Colours of the colour map viridis, equally spaced.
 const VIRIDIS: [Colour; 9] = [
     Colour::hex(0x440154),
     Colour::hex(0x472d7b),
@@ -86,7 +86,8 @@ const VIRIDIS: [Colour; 9] = [
     Colour::hex(0xfde725),
 ];
 
-/// Colours of materials, which colour-blind people can distinguish (Okabe & Ito). Those of force chains come last.
+/// Colours of materials, which colour-blind people can distinguish (Okabe & Ito). The two colours that force chains
+/// also use come last.
 pub(super) const MATERIALS: [Colour; 7] = [
     Colour::hex(0xe69f00),
     Colour::hex(0x56b4e9),
@@ -97,7 +98,8 @@ pub(super) const MATERIALS: [Colour; 7] = [
     Colour::hex(0xd55e00),
 ];
 
-/// The colour at `part` of the map. Values outside 0 … 1 have the colour of the nearer end.
+/// Returns the colour of the colour map at the fraction `part`, 0 to 1. Values outside this range have the colour of
+/// the nearer end.
 pub(crate) fn map_colour(part: f64) -> Colour {
     // NaN has the colour of 0.
     let part = if part.is_nan() { 0.0 } else { part.clamp(0.0, 1.0) };

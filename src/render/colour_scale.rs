@@ -1,14 +1,14 @@
-//! Colour scales: the quantity of a grain that its colour shows, and its range.
+//! Colour scales: the quantity that the colours of grains show, and the range of its values.
 
 use super::colour::{Colour, MATERIALS, map_colour};
 use super::numbers::{round_above, si_prefix};
 use super::{ColourBy, Style};
 use crate::sim::{GrainView, Snapshot};
 
-/// From this number of contacts on, all grains have the same colour.
+/// Number of contacts from which on all grains have the same colour.
 pub(super) const MOST_CONTACTS: u32 = 6;
 
-/// A quantity and the values at the two ends of its colours.
+/// A quantity of grains and the values at the two ends of its colour range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ColourScale {
     pub colour_by: ColourBy,
@@ -18,7 +18,8 @@ pub(crate) struct ColourScale {
 }
 
 impl ColourScale {
-    /// The scale of a style: its own range, or one that contains the whole snapshot.
+    /// Returns the colour scale of a style. Its range is the range that the style states, or a range that contains the
+    /// whole snapshot.
     pub(crate) fn new(style: &Style, snapshot: &Snapshot) -> Self {
         let (low, high) = match (style.colour_by, style.range) {
             (ColourBy::Coordination, _) => (0.0, f64::from(MOST_CONTACTS)),
@@ -28,7 +29,7 @@ impl ColourScale {
         Self { colour_by: style.colour_by, low, high }
     }
 
-    /// The colour of a grain. `mean_diameter` in m.
+    /// Returns the colour of a grain; `mean_diameter` is in m.
     pub(crate) fn colour(&self, grain: &GrainView, mean_diameter: f64) -> Colour {
         match self.colour_by {
             ColourBy::PaperGreys => Colour::grey(grain.tone),
@@ -42,7 +43,8 @@ impl ColourScale {
         }
     }
 
-    /// Name of the quantity in the legend, and the factor for its numbers.
+    /// Returns the name of the quantity for the legend, with its unit, and the factor that converts values to this
+    /// unit.
     pub(crate) fn label(&self) -> (String, f64) {
         let (prefix, factor) = si_prefix(self.low.abs().max(self.high.abs()));
         match self.colour_by {
@@ -60,13 +62,13 @@ pub(crate) fn contact_colour(contacts: u32) -> Colour {
     map_colour(f64::from(contacts.min(MOST_CONTACTS)) / f64::from(MOST_CONTACTS))
 }
 
-/// The colour of the material with this number. After the last colour the first one follows.
+/// Returns the colour of the material with this number. If there are more materials than colours, the colours repeat.
 pub(crate) fn material_colour(number: usize) -> Colour {
     MATERIALS[number % MATERIALS.len()]
 }
 
-/// A range from zero to a round number that contains every grain of the snapshot. An animation uses the largest range
-/// of its frames.
+/// Returns a range from zero to a round number that contains the values of all grains of the snapshot. The frames of an
+/// animation use the largest of their ranges.
 pub(crate) fn automatic_range(colour_by: ColourBy, snapshot: &Snapshot) -> (f64, f64) {
     let mean_diameter = snapshot.surroundings.mean_diameter;
     let largest = snapshot
@@ -75,7 +77,7 @@ pub(crate) fn automatic_range(colour_by: ColourBy, snapshot: &Snapshot) -> (f64,
         .map(|grain| quantity(colour_by, grain, mean_diameter))
         .filter(|value| value.is_finite())
         .fold(0.0, f64::max);
-    // If nothing moves, overlaps or presses, any scale shows it at its lower end.
+    // If all values are zero, every range shows them at its lower end.
     let idle = if colour_by == ColourBy::Overlap { 0.01 } else { 1.0 };
     (0.0, if largest > 0.0 { round_above(largest) } else { idle })
 }

@@ -1,7 +1,8 @@
 //! A figure of several pictures, arranged as in a journal: a grid of panels with labels.
 //!
-//! All labels are laid out before anything is placed, and the grid reserves the space that they need. So no label is
-//! cut or overlaps another: long ones break at spaces, and a word too long for its place becomes smaller.
+//! The sizes of all labels are computed first, and the grid reserves the space that they need. So no label is cut off
+//! or covers another label. A long label breaks at its spaces, and a label with a word that is too long becomes
+//! smaller.
 
 use image::{RgbaImage, imageops};
 
@@ -10,31 +11,31 @@ use super::text::{Align, TextBlock, TextStyle};
 use super::{Palette, Theme};
 use crate::error::{Error, Result};
 
-/// A grid of panels, filled row by row.
+/// A grid of panels (pictures of one size), filled row by row.
 #[derive(Clone, Debug)]
 pub struct PanelGrid {
     /// Number of rows.
     pub rows: usize,
     /// Number of columns.
     pub columns: usize,
-    /// Pictures of one size, at most `rows` × `columns`.
+    /// The pictures, all of one size; at most `rows` × `columns`.
     pub panels: Vec<RgbaImage>,
-    /// Title of each panel. A title is left out if it is empty or the list is shorter.
+    /// Title of each panel. A panel has no title if the title is empty or the list is too short.
     pub panel_titles: Vec<String>,
-    /// True if panel titles are in the panels' upper left corners instead of above them.
+    /// True if the titles of panels are in the upper left corners of the panels instead of above them.
     pub titles_inside: bool,
-    /// Labels on the left of the rows, reading upwards.
+    /// Labels to the left of the rows; the text runs upwards.
     pub row_labels: Vec<String>,
     /// Labels above the columns.
     pub column_labels: Vec<String>,
-    /// Title above everything, bold.
+    /// Title above the grid, in bold type.
     pub title: String,
-    /// Caption below everything.
+    /// Caption below the grid.
     pub caption: String,
 }
 
 impl PanelGrid {
-    /// A grid without labels, on white.
+    /// Returns a grid without labels, on white.
     pub fn new(rows: usize, columns: usize, panels: Vec<RgbaImage>) -> Self {
         Self {
             rows,
@@ -52,7 +53,7 @@ impl PanelGrid {
     /// Draws the figure. Its size depends on the panels and the labels.
     ///
     /// # Errors
-    /// Names the list that does not fit the grid, or the panel of another size.
+    /// Names a list that is too long for the grid, or a panel whose size differs from the first panel.
     pub fn draw(&self) -> Result<RgbaImage> {
         let panel = self.validate()?;
         let palette = Theme::Light.palette();
@@ -63,7 +64,7 @@ impl PanelGrid {
         Ok(image)
     }
 
-    /// Checks the lists against the grid. Returns the size of a panel.
+    /// Checks that the lists fit the grid. Returns the size of a panel, pixels.
     fn validate(&self) -> Result<[u32; 2]> {
         let places = self.rows * self.columns;
         let Some(first) = self.panels.first() else {
@@ -90,7 +91,7 @@ impl PanelGrid {
     }
 }
 
-/// The laid-out text blocks of a figure, and the space that they take. Lengths in pixels.
+/// The text blocks of a figure and the space that they need. Lengths are in pixels.
 struct GridLayout {
     gap: u32,
     panel: [u32; 2],
@@ -99,17 +100,18 @@ struct GridLayout {
     columns: Vec<Option<TextBlock>>,
     rows: Vec<Option<TextBlock>>,
     panels: Vec<Option<TextBlock>>,
-    /// Width of the row labels with their gap.
+    /// Width of the widest row label with the gap beside it.
     row_label_width: u32,
     column_label_height: u32,
-    /// Height of the titles above the panels of each row, with their gap.
+    /// Height of the titles above the panels of each row, with the gap below them.
     title_heights: Vec<u32>,
 }
 
 impl GridLayout {
     fn new(figure: &PanelGrid, panel: [u32; 2], palette: &Palette) -> Self {
         let columns = figure.columns as u32;
-        // 18 px at a width of 1600 px, but readable on small grids too.
+        // The font size is 18 px if the panels are together 1600 px wide, and at least 14 px, so that labels on small
+        // grids are readable.
         let text_px = ((panel[0] * columns) as f32 / 88.0).clamp(14.0, 48.0).round();
         let gap = (0.6 * text_px).round() as u32;
         let text = TextStyle::new(text_px, palette.ink);
@@ -124,7 +126,7 @@ impl GridLayout {
         let column_blocks: Vec<_> = (0..figure.columns)
             .map(|column| block(figure.column_labels.get(column), text.centred(), panel[0]))
             .collect();
-        // A title in a corner needs a margin on both of its sides.
+        // A title in the corner of a panel needs a margin on its left and its right.
         let title_width =
             if figure.titles_inside { panel[0].saturating_sub(2 * gap) } else { panel[0] };
         let panels: Vec<_> = (0..figure.rows * figure.columns)
@@ -154,7 +156,7 @@ impl GridLayout {
         }
     }
 
-    /// Height of the title, or of the caption, with its gap.
+    /// Height of the title or the caption with the gap beside it, pixels.
     fn outer(&self, block: &Option<TextBlock>) -> u32 {
         block.as_ref().map_or(0, |block| block.height() + self.gap)
     }
@@ -275,7 +277,7 @@ mod tests {
         let teal = Colour::hex(0x2c728e).to_rgba8();
         let covered = image.pixels().filter(|pixel| **pixel == teal).count();
         assert_eq!(covered, 4 * 118 * 78, "no label may cover a panel within its frame");
-        // The outermost pixels are free, so no label is cut.
+        // The outermost pixels are white, so no label is cut off.
         let (width, height) = image.dimensions();
         let white = Colour::WHITE.to_rgba8();
         assert!((0..width).all(|x| *image.get_pixel(x, 0) == white));

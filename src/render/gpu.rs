@@ -1,7 +1,7 @@
-//! A GPU, on Vulkan or OpenGL, which draws pictures into memory.
+//! A GPU that draws pictures into memory by Vulkan or OpenGL.
 //!
-//! Each kind is requested separately, so that a missing driver can be named. Software drivers (Mesa's llvmpipe) count
-//! as GPUs: they draw the same pictures.
+//! Vulkan and OpenGL are requested separately, so that an error can name the missing driver. Software drivers (Mesa's
+//! llvmpipe) count as GPUs, because they draw the same pictures.
 
 use std::sync::{Arc, Mutex};
 
@@ -17,18 +17,18 @@ pub(crate) struct Gpu {
     pub queue: wgpu::Queue,
     /// Kind of driver and name of the device.
     pub name: String,
-    /// Message of the first failure that no call reported directly.
+    /// Message of the first failure that no function call returned.
     failure: Arc<Mutex<Option<String>>>,
 }
 
 impl Gpu {
-    /// Opens a GPU of either kind.
+    /// Opens a GPU by Vulkan, or by OpenGL if Vulkan fails.
     #[cfg(feature = "panels")]
     pub(crate) fn any() -> Result<Self> {
         Self::open(GpuKind::Vulkan).or_else(|_| Self::open(GpuKind::Gl))
     }
 
-    /// Opens the strongest device of one kind.
+    /// Opens the fastest device that has a driver of this kind.
     pub(super) fn open(kind: GpuKind) -> Result<Self> {
         let backends = match kind {
             GpuKind::Vulkan => wgpu::Backends::VULKAN,
@@ -36,7 +36,7 @@ impl Gpu {
         };
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends,
-            // Without this, debug builds would load validation layers, which write to stderr.
+            // With other flags, debug builds would load validation layers, which write to stderr.
             flags: wgpu::InstanceFlags::empty(),
             ..wgpu::InstanceDescriptor::new_without_display_handle()
         });
@@ -70,18 +70,18 @@ impl Gpu {
         Ok(Self { device, queue, name, failure })
     }
 
-    /// Returns an error if anything failed on the device since the last call.
+    /// Returns an error if anything failed on the device since the last call of this function.
     pub(crate) fn check(&self) -> Result<()> {
         let Some(message) = self.failure.lock().ok().and_then(|mut first| first.take()) else {
             return Ok(());
         };
-        // Messages of wgpu have several lines; an error is one sentence.
+        // Messages of wgpu have several lines; an error of this program is one sentence.
         let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
         Err(Error::Renderer(format!("{} failed: {message}", self.name)))
     }
 }
 
-/// One sentence that names the missing driver and the package that contains it.
+/// Returns an error that names the missing driver and the package that contains this driver.
 fn missing(kind: GpuKind) -> Error {
     let (driver, packages) = match kind {
         GpuKind::Vulkan => ("Vulkan", "mesa-vulkan-drivers and libvulkan1"),
@@ -93,18 +93,19 @@ fn missing(kind: GpuKind) -> Error {
     ))
 }
 
-/// A format that stores the blended numbers; an sRGB format would convert them.
+/// Texture format that stores the blended numbers unchanged. An sRGB format would convert them.
 pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// A GPU that draws pictures into memory. Rows of the readback buffer are padded to 256 bytes, as texture copies
-/// require. Texture and buffer are kept while the size is unchanged, as in a sequence of pictures.
+/// A GPU that draws pictures into memory. The texture and the buffer for reading it back are kept until the size
+/// changes, so that a sequence of pictures reuses them. Rows of the buffer are padded to 256 bytes, as texture copies
+/// require.
 pub(super) struct Offscreen {
     gpu: Gpu,
     painter: Painter,
     target: Option<OffscreenTarget>,
 }
 
-/// The resources that depend on the size of the picture.
+/// The texture and the buffer, which depend on the size of the picture.
 pub(crate) struct OffscreenTarget {
     pub width: u32,
     pub height: u32,
@@ -115,7 +116,7 @@ pub(crate) struct OffscreenTarget {
 }
 
 impl Offscreen {
-    /// Opens the strongest device of one kind.
+    /// Opens the fastest device that has a driver of this kind.
     pub(super) fn open(kind: GpuKind) -> Result<Self> {
         let gpu = Gpu::open(kind)?;
         let painter = Painter::new(&gpu.device, FORMAT);
@@ -127,7 +128,7 @@ impl Offscreen {
         &self.gpu.name
     }
 
-    /// Largest width and height, pixels.
+    /// Largest width and height of a picture, pixels.
     pub(super) fn largest_side(&self) -> u32 {
         self.gpu.device.limits().max_texture_dimension_2d
     }
@@ -164,12 +165,13 @@ impl Offscreen {
         target.record_copy(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
         let image = target.read(gpu);
-        // A failure on the device explains more than the failed readback.
+        // A failure on the device explains more than the error of the readback that follows from it.
         gpu.check().and(image)
     }
 }
 
-/// The ground as a clear colour, at the exact value of its byte, so that all drivers round it in the same way.
+/// Returns the colour of the ground for the clearing of the texture, as an exact multiple of 1/255, so that all drivers
+/// round it to the same byte.
 fn clear_colour(colour: Colour) -> wgpu::Color {
     let [r, g, b, _] = colour.to_rgba8().0.map(|byte| f64::from(byte) / 255.0);
     wgpu::Color { r, g, b, a: 1.0 }

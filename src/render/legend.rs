@@ -1,4 +1,4 @@
-//! Scale bar, and the strip on the right that explains colours and links.
+//! The scale bar of a picture, and the strip on its right (the legend) that explains colours and links.
 //!
 //! The strip is always drawn on the processor, so that it is the same with every renderer.
 
@@ -15,20 +15,20 @@ use crate::sim::Snapshot;
 /// Longest scale bar, as a fraction of the picture's width.
 const LONGEST: f64 = 0.2;
 
-/// Place and label of a picture's scale bar.
+/// Position and label of a picture's scale bar.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ScaleBar {
     pub length: f64,
     pub label: String,
-    /// Left end, pixels from the middle of the picture, y up.
+    /// Left end of the bar, pixels from the middle of the picture, y up.
     pub start: [f32; 2],
     pub end: [f32; 2],
-    /// Font size of the label, pixels; the label starts half of it to the right of `end`.
+    /// Font size of the label, pixels. The label starts half a font size to the right of `end`.
     pub text_px: f32,
 }
 
 impl ScaleBar {
-    /// The bar for a picture of `width` × `height` pixels.
+    /// Returns the scale bar of a picture of `width` × `height` pixels.
     pub(crate) fn new(style: &Style, camera: &Camera, width: u32, height: u32) -> Self {
         let length_m = round_below(LONGEST * f64::from(width) * camera.metres_per_pixel);
         let text_px = style.text_px(width, height);
@@ -44,7 +44,8 @@ impl ScaleBar {
         }
     }
 
-    /// Bar and end marks, on a plate of the ground's colour with space for `label_width` pixels of text.
+    /// Returns the links (thick lines) of the bar and its end marks. They lie on a plate in the colour of the ground,
+    /// which has space for a label that is `label_width` pixels wide.
     pub(super) fn links(&self, palette: &Palette, label_width: f32) -> Vec<LinkInstance> {
         let ([left, y], [right, _]) = (self.start, self.end);
         let half_width = (self.text_px / 16.0).max(0.75);
@@ -69,20 +70,21 @@ impl ScaleBar {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Legend {
     pub scale: ColourScale,
-    /// Names of the materials.
+    /// Names of the materials of the grains.
     pub materials: Vec<String>,
-    /// How much the grains have faded towards the ground, 0 … 1.
+    /// Fraction by which the colours of grains fade towards the ground, 0 to 1.
     pub fading: f32,
-    /// The |N| (N) at full width, and half that width (px), if forces are drawn.
+    /// The force |N| of a link at full width, N, and half of that width, pixels; `None` if forces are not drawn.
     pub forces: Option<(f64, f32)>,
-    /// The speed (m/s) and length (px) of an arrow, if velocities are drawn.
+    /// The speed that an arrow in the legend stands for, m/s, and the length of the arrow, pixels; `None` if velocities
+    /// are not drawn.
     pub velocities: Option<(f64, f32)>,
     pub palette: Palette,
     pub text_px: f32,
 }
 
 impl Legend {
-    /// The legend of a snapshot in a style. `text_px` is the font size of the whole picture.
+    /// Returns the legend of a snapshot in a style. `text_px` is the font size of the whole picture, pixels.
     pub(crate) fn of(snapshot: &Snapshot, style: &Style, camera: &Camera, text_px: f32) -> Self {
         let mean_diameter = snapshot.surroundings.mean_diameter;
         let forces =
@@ -133,7 +135,7 @@ impl Legend {
         (sizes * self.text_px).round() as i64
     }
 
-    /// A colour as it appears on grains.
+    /// Returns a colour as it appears on faded grains.
     fn faded(&self, colour: Colour) -> Colour {
         colour.mix(self.palette.ground, self.fading)
     }
@@ -142,7 +144,8 @@ impl Legend {
         TextStyle::new(self.text_px, self.palette.ink)
     }
 
-    /// Draws a continuous bar with ticks on its right and the turned title beyond them.
+    /// Draws a continuous colour bar with ticks and numbers on its right, and the vertical title to the right of the
+    /// numbers.
     fn draw_bar(&self, strip: &mut RgbaImage, top: i64, bottom: i64) {
         let (left, right) = (self.em(0.4), self.em(1.5));
         let rows = bottom - top;
@@ -161,7 +164,7 @@ impl Legend {
         let mut widest = 0;
         for value in values {
             let part = if span > 0.0 { (value - low) / span } else { 0.0 };
-            // The middle of the end ticks is on the bar.
+            // The centres of the first and the last tick are on the bar.
             let y = bottom - 1 - (part * (rows - 1) as f64).round() as i64;
             fill(strip, right, right + self.em(0.3), y, y + 1, self.palette.ink);
             let label = TextBlock::new(&decimal(value, step), &self.text());
@@ -171,7 +174,8 @@ impl Legend {
         self.draw_title(strip, &title, rows, right + self.em(0.5) + widest, (top + bottom) / 2);
     }
 
-    /// Draws squares of these colours with their labels, from the top, and the turned title beyond them.
+    /// Draws one square per colour with its label, from top to bottom, and the vertical title to the right of the
+    /// labels.
     fn draw_swatches(
         &self,
         strip: &mut RgbaImage,
@@ -198,7 +202,8 @@ impl Legend {
         self.draw_title(strip, &title, count * pitch, x, start + count * pitch / 2);
     }
 
-    /// Draws the two colours of forces and the force at full width. Returns the upper end of the key.
+    /// Draws the key of contact forces: the colours of pull and push, and the force at full width. Returns the y
+    /// position of the key's upper end, pixels.
     fn draw_force_key(
         &self,
         strip: &mut RgbaImage,
@@ -227,10 +232,10 @@ impl Legend {
         y - self.em(1.2)
     }
 
-    /// Draws an arrow with its speed. Returns the upper end of the key.
+    /// Draws the key of velocities: an arrow with its speed. Returns the y position of the key's upper end, pixels.
     fn draw_arrow_key(&self, strip: &mut RgbaImage, bottom: i64, speed: f64, length: f32) -> i64 {
         let largest = (strip.width() as f32 - 2.0 * self.text_px).max(1.0);
-        // An arrow that is too long is halved, with its speed, until it fits.
+        // If the arrow is too long, its length and its speed are halved until it fits.
         let halvings = (length / largest).log2().ceil().max(0.0);
         let (speed, length) = (speed / f64::from(halvings.exp2()), length / halvings.exp2());
         let (prefix, factor) = si_prefix(speed);
@@ -263,7 +268,7 @@ impl Legend {
         y - self.em(0.8)
     }
 
-    /// A short link at the left of the strip.
+    /// Draws a short link at the left of the strip, as an example.
     fn sample(&self, strip: &mut RgbaImage, y: i64, half_width: f32, colour: Colour) {
         let [width, height] = [self.em(2.4), self.em(1.4)].map(|side| side.max(1) as u32);
         let mut picture = Picture::new(self.palette.ground);
@@ -278,8 +283,8 @@ impl Legend {
         imageops::replace(strip, &sample, self.em(0.2), y - i64::from(height / 2));
     }
 
-    /// Draws the title on one line that reads upwards from the point. It is smaller if it would be longer than the
-    /// bar.
+    /// Draws the title on one line that runs upwards, starting at (`x`, `y`). The title becomes smaller if it would be
+    /// longer than the colour bar.
     fn draw_title(&self, strip: &mut RgbaImage, title: &str, length: i64, x: i64, y: i64) {
         let style = self.text();
         let shrink = (length as f32 / style.width(title).max(1.0)).min(1.0);
@@ -288,7 +293,7 @@ impl Legend {
     }
 }
 
-/// Fills the part of a rectangle that is in the image.
+/// Fills the visible part of a rectangle.
 pub(super) fn fill(
     image: &mut RgbaImage,
     left: i64,

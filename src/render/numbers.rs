@@ -1,9 +1,10 @@
-//! Round numbers, and numbers in readable form.
+//! Round numbers for axes and scale bars, and the text of numbers.
 
-/// The largest of 1, 2 and 5 times a power of ten that is at most `limit`, which must be positive.
+/// Returns the largest number of the form 1, 2 or 5 times a power of ten that is at most `limit`. `limit` must be
+/// positive.
 pub(crate) fn round_below(limit: f64) -> f64 {
     let power = 10f64.powi(limit.log10().floor() as i32);
-    // The tolerance prevents 0.2 from being lost to the rounding of its own logarithm.
+    // The tolerance keeps numbers such as 0.2, whose computed logarithm is rounded.
     [10.0, 5.0, 2.0, 1.0]
         .into_iter()
         .map(|factor| factor * power)
@@ -11,7 +12,7 @@ pub(crate) fn round_below(limit: f64) -> f64 {
         .unwrap_or(power)
 }
 
-/// A number slightly above `value`, which must be positive, at which a scale can end.
+/// Returns a round number slightly above `value`, at which a scale can end. `value` must be positive.
 pub(crate) fn round_above(value: f64) -> f64 {
     let power = 10f64.powi(value.log10().floor() as i32);
     [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0]
@@ -21,7 +22,7 @@ pub(crate) fn round_above(value: f64) -> f64 {
         .unwrap_or(10.0 * power)
 }
 
-/// Round numbers from `low` to `high`, at most `most` of them, and their distance.
+/// Returns at most `most` round numbers from `low` to `high`, equally spaced, and their spacing.
 pub(crate) fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, f64) {
     let span = high - low;
     if !(span > 0.0 && span.is_finite()) {
@@ -43,18 +44,19 @@ pub(crate) fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, f64) {
     ((first..=last).map(|index| index as f64 * step).collect(), step)
 }
 
-/// Largest number of decimals, and of zeros before the point, of numbers that are not written as powers of ten.
+/// Largest number of decimals, and of zeros before the decimal point, in a number that is not written as a power of
+/// ten.
 const MOST_DECIMALS: f64 = 6.0;
 
-/// A number with enough decimals to distinguish multiples of `step`, or as a power of ten if these are many, with a
-/// true minus sign.
+/// Returns the text of a number, with enough decimals to distinguish multiples of `step`. If too many digits are
+/// needed, the number is written as a power of ten. The minus sign is U+2212.
 pub(crate) fn decimal(value: f64, step: f64) -> String {
     let places = -(step.abs().log10() + 1e-9).floor();
     let is_far = places.abs() > MOST_DECIMALS;
     let text = if is_far && value == 0.0 {
         "0".to_owned()
     } else if is_far {
-        // As many digits as there are between the number and the step.
+        // The number of digits is the number of decades between the number and the step.
         let digits = (value.abs().log10().floor() + places).clamp(0.0, 15.0) as usize;
         format!("{value:.digits$e}").replace("e-", "e−")
     } else {
@@ -62,15 +64,15 @@ pub(crate) fn decimal(value: f64, step: f64) -> String {
         format!("{value:.decimals$}")
     };
     match text.strip_prefix('-') {
-        // A negative number that rounds to zero is zero.
+        // A negative number that rounds to zero is written as zero.
         Some(digits) if digits.bytes().all(|byte| matches!(byte, b'0' | b'.')) => digits.to_owned(),
         Some(digits) => format!("−{digits}"),
         None => text,
     }
 }
 
-/// The prefix with which numbers up to `largest` of a unit are written, and its factor. There is no prefix between
-/// 0.1 and 10 000, nor below 0.001 of the smallest prefix: such numbers are written as powers of ten.
+/// Returns the SI prefix for numbers up to `largest`, and the factor of the prefix. There is no prefix between 0.1 and
+/// 10,000, and none below 0.001 of the smallest prefix, where numbers are written as powers of ten.
 pub(crate) fn si_prefix(largest: f64) -> (&'static str, f64) {
     let largest = largest.abs();
     if largest < 1e-15 || !largest.is_finite() || (0.1..1e4).contains(&largest) {
@@ -82,7 +84,7 @@ pub(crate) fn si_prefix(largest: f64) -> (&'static str, f64) {
         .unwrap_or(("p", 1e-12))
 }
 
-/// A round length, m, in readable form: "5 mm", "20 cm", "1 km".
+/// Returns the text of a round length, m, with a suitable unit, such as "5 mm", "20 cm" or "1 km".
 pub(crate) fn length(metres: f64) -> String {
     let (unit, factor) =
         [("km", 1e3), ("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9)]
@@ -148,7 +150,7 @@ mod tests {
         assert_eq!(decimal(-1e-18, 0.1), "0.0");
         assert_eq!(decimal(1500.0, 500.0), "1500");
         assert_eq!(decimal(0.025, 0.005), "0.025");
-        // Numbers with as many zeros as fit digits are written as powers of ten.
+        // A number that would need more zeros than are allowed is written as a power of ten.
         assert_eq!(decimal(2e-10, 1e-10), "2e−10");
         assert_eq!(decimal(-2.5e-8, 5e-9), "−2.5e−8");
         assert_eq!(decimal(0.0, 1e-10), "0");

@@ -1,4 +1,4 @@
-//! Overlays on the grains: contact forces, velocities, and motions of walls and fixed discs.
+//! Overlays on the grains: contact forces, velocities, and arrows for moving walls and fixed discs.
 
 use std::f64::consts::TAU;
 
@@ -11,15 +11,16 @@ use super::{Camera, Colour, LinkInstance, Palette, Style};
 use crate::sim::{MotionView, Snapshot, Surroundings};
 use crate::world::Edge;
 
-/// Width of the widest link, in units of d.
+/// Full width of a link that shows a contact force, in mean diameters.
 const FORCE_WIDTH: f64 = 0.4;
-/// Smallest force drawn, as a fraction of the reference. Thinner links would be invisible.
+/// Smallest drawn force, as a fraction of the reference force. Links of smaller forces would be too thin to be visible.
 const LEAST_FORCE: f64 = 0.004;
-/// Fraction of contacts whose links are narrower than the full width, if no reference is given.
+/// Fraction of contacts whose links are narrower than the full width, if the style states no reference force.
 const REFERENCE_QUANTILE: f64 = 0.95;
 
-/// The |N| (N) at full width: the style's own, or the 95th percentile of the snapshot, so that a single huge force
-/// does not make all others invisible. 0 without any force.
+/// Returns the reference force |N|, N, whose link has the full width. It is the force that the style states, or the
+/// 95th percentile of the snapshot's forces, so that a single huge force does not make all other links invisible. 0 if
+/// there are no forces.
 pub(crate) fn force_reference(style: &Style, snapshot: &Snapshot) -> f64 {
     style.force_reference.unwrap_or_else(|| {
         let mut forces: Vec<f64> = snapshot
@@ -34,12 +35,12 @@ pub(crate) fn force_reference(style: &Style, snapshot: &Snapshot) -> f64 {
     })
 }
 
-/// Half the width of a link at the reference force, pixels.
+/// Returns half of the width of a link at the reference force, pixels.
 pub(super) fn full_half_width_px(mean_diameter: f64, camera: &Camera) -> f32 {
     camera.pixels(0.5 * FORCE_WIDTH * mean_diameter)
 }
 
-/// The links of all visible contacts, the strongest on top.
+/// Returns the links of all visible contacts, the strongest on top.
 pub(super) fn force_links(
     snapshot: &Snapshot,
     style: &Style,
@@ -64,7 +65,7 @@ pub(super) fn force_links(
     shown
         .into_iter()
         .flat_map(|(contact, part)| {
-            // A contact across a periodic border is drawn on both sides.
+            // A contact across a periodic border is drawn on both sides of the period.
             let reach = [contact.from.min(contact.to), contact.from.max(contact.to)];
             let images = periodic.into_iter().flat_map(move |periodic| periodic.images(reach));
             std::iter::once(DVec2::ZERO).chain(images).map(move |by| (contact, part, by))
@@ -78,32 +79,33 @@ pub(super) fn force_links(
         .collect()
 }
 
-/// Length of the velocity arrow at the reference speed, in units of d.
+/// Length of the velocity arrow at the reference speed, in mean diameters.
 const VELOCITY_LENGTH: f64 = 2.5;
-/// Smallest velocity drawn, as a fraction of the reference. Shorter arrows would be dots.
+/// Smallest drawn velocity, as a fraction of the reference speed. Shorter arrows would look like dots.
 const LEAST_VELOCITY: f64 = 0.03;
-/// Half the width of the shaft, and the length of the two barbs, in units of d.
+/// Half of the width of an arrow's shaft, and length of the two barbs of its head, in mean diameters.
 const VELOCITY_HALF_WIDTH: f64 = 0.05;
 const VELOCITY_BARB: f64 = 0.35;
 
-/// The speed at full length, m/s: the style's own, or a round number above the fastest grain's; 0 if nothing moves.
+/// Returns the reference speed, m/s, whose arrow has the full length. It is the speed that the style states, or a round
+/// number above the speed of the fastest grain. 0 if nothing moves.
 pub(crate) fn speed_reference(style: &Style, snapshot: &Snapshot) -> f64 {
     if let Some(reference) = style.speed_reference {
         return reference;
     }
     let speeds = snapshot.grains.iter().map(|grain| grain.velocity.length());
     let fastest = speeds.filter(|speed| speed.is_finite()).fold(0.0, f64::max);
-    // Below this a pile is at rest, and arrows would show rounding errors.
+    // Below this speed a pile is at rest, and arrows would only show rounding errors.
     let least = 1e-9 * snapshot.surroundings.gravity_magnitude.max(1.0);
     if fastest > least { round_above(fastest) } else { 0.0 }
 }
 
-/// Length of the arrow at the reference speed, m.
+/// Returns the length of the velocity arrow at the reference speed, m.
 pub(super) fn full_length(snapshot: &Snapshot) -> f64 {
     VELOCITY_LENGTH * snapshot.surroundings.mean_diameter
 }
 
-/// The arrows of all visible grains.
+/// Returns the links that form the velocity arrows of all visible grains.
 pub(super) fn velocity_links(
     snapshot: &Snapshot,
     style: &Style,
@@ -139,29 +141,29 @@ pub(super) fn velocity_links(
     links
 }
 
-// All in units of the font size of the picture's labels.
+// All lengths below are in units of the font size of the picture's labels.
 
-/// Length of an arrow, and of the two barbs of its head.
+/// Length of an arrow, and length of the two barbs of its head, in font sizes.
 const LENGTH_EM: f64 = 1.7;
 const BARB_EM: f64 = 0.5;
-/// Distance between the two heads of an arrow.
+/// Distance between the two heads of an arrow for a force, in font sizes.
 const SECOND_HEAD_EM: f64 = 0.42;
-/// Half the width of an arrow's lines, and the width of the ground's colour around them.
+/// Half of the width of an arrow's lines, and width of the border in the ground's colour around them, in font sizes.
 const HALF_WIDTH_EM: f64 = 0.075;
 const HALO_EM: f64 = 0.07;
-/// Smallest distance between two arrows of one motion.
+/// Smallest distance between two arrows of one motion, in font sizes.
 const SPACING_EM: f64 = 4.0;
-/// Distance from a wall to an arrow along it.
+/// Distance from a wall to an arrow parallel to it, in font sizes.
 const BESIDE_EM: f64 = 0.75;
-/// Distance from a driven body to the middle of its force's arrow.
+/// Distance from a driven body to the middle of its force's arrow, in font sizes.
 const LOAD_EM: f64 = 1.75;
-/// Radius of the arc around a pivot, its angle, and its number of pieces.
+/// Radius of the arc around a pivot, in font sizes, its angle, rad, and its number of straight pieces.
 const ARC_EM: f64 = 0.9;
 const ARC_TURN: f64 = 0.75 * TAU;
 const ARC_PIECES: usize = 18;
-/// Bodies slower than this many mean diameters per second count as at rest.
+/// Speed below which a body counts as at rest, in mean diameters per second.
 const LEAST_DIAMETERS_PER_SEC: f64 = 1e-9;
-/// Cosine above which a direction counts as along a wall.
+/// Cosine of the angle between a motion and a wall above which the motion counts as parallel to the wall.
 const ALONG: f64 = 0.9;
 
 struct MotionArrows<'a> {
@@ -173,16 +175,17 @@ struct MotionArrows<'a> {
 }
 
 struct Spot {
-    /// Its place in the world, and in pixels from the middle of the picture.
+    /// Position in the scene, m, and in pixels from the middle of the picture.
     place: DVec2,
     at: DVec2,
-    /// For a wall: unit vector out of the body, and true if the other side is open as well.
+    /// For a wall, the unit vector out of the body, and true if there is no solid on the other side.
     normal: Option<(DVec2, bool)>,
 }
 
-/// The links of all visible motions in a picture of `size` pixels: arrows on moving bodies, arrows with two heads on
-/// bodies that a force drives, and an arc with a head around a pivot. An arrow shows the direction, not the speed:
-/// its length depends on the font size, so that a slow wall has one, too.
+/// Returns the links of arrows that show how walls and fixed discs move, in a picture of `size` pixels: arrows on
+/// moving bodies, arrows with two heads on bodies that a force drives, and an arc with a head around a pivot. An arrow
+/// shows the direction, not the speed. Its length depends on the font size, so that the arrow of a slow wall is also
+/// visible.
 pub(super) fn motion_links(
     surroundings: &Surroundings,
     palette: &Palette,
@@ -220,7 +223,7 @@ impl MotionArrows<'_> {
             if motion.surface_speed != 0.0 {
                 self.belt(spot, motion.surface_speed);
             }
-            // One force drives all bodies of a motion.
+            // One force drives all bodies of a motion together, so the force has one arrow.
             if motion.force != DVec2::ZERO && index == spots.len() / 2 {
                 let before = -LOAD_EM * self.em * motion.force.normalize_or_zero();
                 self.arrow(spot.at + before, motion.force, 2);
@@ -231,7 +234,7 @@ impl MotionArrows<'_> {
         }
     }
 
-    /// Places of a motion's arrows: on all its bodies, but not too close to each other.
+    /// Returns the positions of a motion's arrows: on all its bodies, but not too close to each other.
     fn spots(&self, motion: &MotionView, surroundings: &Surroundings) -> Vec<Spot> {
         let boundaries =
             motion.boundaries.iter().filter_map(|&index| surroundings.boundaries.get(index));
@@ -253,7 +256,8 @@ impl MotionArrows<'_> {
         spots
     }
 
-    /// The middle of an edge; on an infinite edge the place nearest to the middle of the picture.
+    /// Returns the arrow's position on an edge: the middle of the edge or, on an infinite edge, the point nearest to
+    /// the middle of the picture.
     fn spot_on(&self, edge: Edge) -> Spot {
         match edge {
             Edge::Endless { point, normal } => {
@@ -270,14 +274,15 @@ impl MotionArrows<'_> {
         }
     }
 
-    /// Offset of an arrow from its spot: beside a wall that moves along itself, inside a solid.
+    /// Returns the offset of an arrow from its position, pixels. The arrow of a wall that moves parallel to its surface
+    /// is drawn beside the wall, inside a solid.
     fn beside(&self, spot: &Spot, velocity: DVec2) -> DVec2 {
         let Some((normal, _)) = spot.normal else { return DVec2::ZERO };
         let along = velocity.normalize_or_zero().dot(normal.perp()).abs() > ALONG;
         if along { -BESIDE_EM * self.em * normal } else { DVec2::ZERO }
     }
 
-    /// Draws the motion of a surface around its body.
+    /// Draws the arrows of a surface that moves along its body, such as a conveyor belt.
     fn belt(&mut self, spot: &Spot, speed: f64) {
         let Some((normal, is_open)) = spot.normal else {
             return self.arc(spot.at, ARC_EM, speed);
@@ -285,13 +290,13 @@ impl MotionArrows<'_> {
         let sides: &[f64] = if is_open { &[1.0, -1.0] } else { &[1.0] };
         for side in sides {
             let outward = *side * normal;
-            // Outside an open wall on both sides; inside a solid.
+            // A wall without a solid has arrows on both sides; a solid has one arrow inside.
             let place = if is_open { outward } else { -outward };
             self.arrow(spot.at + BESIDE_EM * self.em * place, speed * outward.perp(), 1);
         }
     }
 
-    /// Draws an arrow with its middle at a place, pixels.
+    /// Draws an arrow whose middle is at the pixel position `middle`.
     fn arrow(&mut self, middle: DVec2, along: DVec2, heads: u32) {
         let along = along.normalize_or_zero();
         let half = 0.5 * LENGTH_EM * self.em * along;
@@ -308,7 +313,7 @@ impl MotionArrows<'_> {
         }
     }
 
-    /// Draws an arc around a place, pixels, anticlockwise for a positive rate.
+    /// Draws an arc around the pixel position `centre`. The arc runs anticlockwise if `rate` is positive.
     fn arc(&mut self, centre: DVec2, radius_em: f64, rate: f64) {
         if !centre.abs().cmple(self.reach).all() {
             return;
@@ -351,7 +356,7 @@ mod tests {
         };
         let palette = Theme::Light.palette();
         let links = motion_links(&surroundings, &palette, &CAMERA, [800, 600], 16.0);
-        // The second half is drawn on the first, which is its halo.
+        // The second half of the links is the arrows themselves; the first half is their halo.
         links[links.len() / 2..].to_vec()
     }
 
@@ -367,7 +372,7 @@ mod tests {
         assert_eq!(drawn.len(), 3, "a shaft and two barbs");
         assert_eq!(drawn[0].start[0], 0.0);
         assert!(drawn[0].start[1] > 0.0 && drawn[0].end[1] < 0.0);
-        // A second head beside the first shows a driving force.
+        // An arrow with a second head shows a driving force.
         let force = MotionView { force: DVec2::Y, ..motion.clone() };
         assert_eq!(lines(wall(), Vec::new(), force).len(), 3 + 5);
         let still = MotionView { velocity: DVec2::ZERO, ..motion };
@@ -409,7 +414,7 @@ mod tests {
         let floor = vec![Boundary::HalfSpace { point: DVec2::new(3.0, 0.0), normal: DVec2::Y }];
         let belt = MotionView { boundaries: vec![0], surface_speed: 0.5, ..MotionView::default() };
         let drawn = lines(floor, Vec::new(), belt);
-        // Leftwards on a floor, below its surface.
+        // The arrow points to the left on a floor, below the surface.
         assert!(drawn[0].end[0] < drawn[0].start[0] && drawn[0].start[1] < 0.0);
     }
 }

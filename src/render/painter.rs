@@ -1,15 +1,15 @@
-//! Pictures on a GPU: one pipeline and one instance buffer per primitive, and the order of batches.
+//! Drawing of pictures on a GPU: one pipeline and one instance buffer for discs and one for links, and the drawing
+//! order.
 //!
-//! A window calls [`Painter::prepare`] before its pass and [`Painter::draw`] inside it; so does the offscreen target.
-//! Neither depends on the target, which only needs the format for which the painter was made. The vertex index gives
-//! the four corners of an instance's quad. Instances are in a vertex buffer, because OpenGL ES 3.0 has no storage
-//! buffers in vertex shaders.
+//! A window and the offscreen target both call [`Painter::prepare`] before their render pass and [`Painter::draw`] in
+//! it. Any render target with the painter's texture format can be used. The vertex index selects the four corners of a
+//! primitive's quad. Instances are in a vertex buffer, because OpenGL ES 3.0 has no storage buffers in vertex shaders.
 
 use std::ops::Range;
 
 use super::{Batch, DiscInstance, LinkInstance, Picture};
 
-/// Place of the picture in the render target, as all shaders read it: pixels, y down.
+/// Position of the picture in the render target, in the layout of the shaders: pixels, y down.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct PictureArea {
@@ -18,37 +18,38 @@ pub(crate) struct PictureArea {
 }
 
 impl PictureArea {
-    /// A picture with its upper left corner at (`left`, `top`). The pass's viewport must be the same rectangle.
+    /// Returns the area of a picture whose upper left corner is at (`left`, `top`). The viewport of the render pass
+    /// must be the same rectangle.
     pub(crate) fn new(left: f32, top: f32, width: f32, height: f32) -> Self {
         let half_size = [width / 2.0, height / 2.0];
         Self { centre: [left + half_size[0], top + half_size[1]], half_size }
     }
 }
 
-/// Draws pictures into passes whose target has one given format.
+/// Draws pictures into render passes whose targets have one texture format.
 #[derive(Debug)]
 pub(crate) struct Painter {
-    /// The [`PictureArea`], which all shaders read.
+    /// Uniform buffer with the [`PictureArea`], which all shaders read.
     area: wgpu::Buffer,
     area_group: wgpu::BindGroup,
     /// Pipelines of discs and of links.
     primitives: [PrimitivePipeline; 2],
-    /// For each batch its primitive, and its bytes in the instance buffer.
+    /// For each batch the index of its pipeline, and its range of bytes in the instance buffer.
     order: Vec<(usize, Range<u64>)>,
 }
 
 #[derive(Debug)]
 struct PrimitivePipeline {
     name: &'static str,
-    /// Bytes of one instance.
+    /// Size of one instance, bytes.
     stride: u64,
     pipeline: wgpu::RenderPipeline,
     instances: wgpu::Buffer,
 }
 
 impl Painter {
-    /// A painter for targets of this format, which must not be an sRGB format: colours are blended and written as a
-    /// file stores them.
+    /// Returns a painter for targets of this format. The format must not be sRGB, because colours are blended and
+    /// written as a PNG file stores them.
     pub(crate) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
         let area = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("picture area"),
@@ -74,7 +75,7 @@ impl Painter {
             layout: &layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: area.as_entire_binding() }],
         });
-        // Fields in order, without gaps, as the shaders read them.
+        // The fields in order, without gaps, as the shaders read them.
         let discs = PrimitivePipeline::new::<DiscInstance>(
             device,
             format,
@@ -98,7 +99,7 @@ impl Painter {
         Self { area, area_group, primitives: [discs, links], order: Vec::new() }
     }
 
-    /// Sends a picture to the GPU, to be drawn in the given part of the target.
+    /// Sends a picture to the GPU, to be drawn in the given area of the target.
     pub(crate) fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -128,12 +129,14 @@ impl Painter {
         }
     }
 
-    /// Records the drawing of the prepared picture. The ground is the clear colour of the pass.
+    /// Records the drawing of the prepared picture. The caller must clear the render pass with the colour of the
+    /// ground.
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         for (primitive, bytes) in self.order.iter().filter(|(_, bytes)| !bytes.is_empty()) {
             let PrimitivePipeline { stride, pipeline, instances, .. } =
                 &self.primitives[*primitive];
-            // The range starts in the buffer, not in the draw call: OpenGL has no first instance.
+            // The range is applied to the buffer and not to the draw call, because OpenGL cannot draw from a first
+            // instance other than 0.
             pass.set_pipeline(pipeline);
             pass.set_bind_group(0, &self.area_group, &[]);
             pass.set_vertex_buffer(0, instances.slice(bytes.clone()));
@@ -143,7 +146,8 @@ impl Painter {
 }
 
 impl PrimitivePipeline {
-    /// A pipeline of instances `I`; `shader` is WGSL with the entry points `vertex` and `fragment`.
+    /// Returns a pipeline for instances of type `I`. `shader` is WGSL code with the entry points `vertex` and
+    /// `fragment`.
     fn new<I>(
         device: &wgpu::Device,
         format: wgpu::TextureFormat,

@@ -1,23 +1,24 @@
-//! Input of a renderer: discs and straight strokes in pixels, in drawing order, on an opaque ground.
+//! Input of a renderer: discs and links (straight lines with round ends) in pixels, in drawing order, on an opaque
+//! ground.
 //!
-//! [`super::Camera::project`] converts world positions to pixels in f64, relative to the middle of the picture, so
-//! f32 is sufficient here at any distance from the origin. `shaders/disc.wgsl` and `shaders/link.wgsl` draw the
-//! primitives on a GPU, and [`draw`] evaluates the same distance fields on the processor. It rounds to 8 bits after
-//! every instance, like a render target, and so stays within 3/255 of every GPU in every channel.
+//! [`super::Camera::project`] converts positions in the scene to pixels in f64, relative to the middle of the picture,
+//! so f32 is sufficient here at any distance from the origin. `shaders/disc.wgsl` and `shaders/link.wgsl` draw the
+//! primitives on a GPU, and [`draw`] evaluates the same distance fields on the processor. [`draw`] rounds to 8 bits
+//! after each primitive, as a GPU does, so its channels differ from every GPU's by at most 3/255.
 
 use glam::{DVec2, Vec2};
 use image::RgbaImage;
 
 use super::Colour;
 
-/// Primitives of one kind that are drawn together, first to last.
+/// A list of primitives of one kind that are drawn together, from first to last.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Batch {
     Discs(Vec<DiscInstance>),
     Links(Vec<LinkInstance>),
 }
 
-/// Everything that a renderer needs. Later batches cover earlier ones.
+/// All input of a renderer. Later batches cover earlier batches.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Picture {
     /// Colour of the ground; its opacity is ignored.
@@ -30,14 +31,14 @@ impl Picture {
         Self { background: background.with_alpha(1.0), batches: Vec::new() }
     }
 
-    /// Adds discs on top. An empty list adds no batch.
+    /// Adds discs on top of the picture. An empty list adds no batch.
     pub(crate) fn push_discs(&mut self, discs: Vec<DiscInstance>) {
         if !discs.is_empty() {
             self.batches.push(Batch::Discs(discs));
         }
     }
 
-    /// Adds links on top. An empty list adds no batch.
+    /// Adds links on top of the picture. An empty list adds no batch.
     pub(crate) fn push_links(&mut self, links: Vec<LinkInstance>) {
         if !links.is_empty() {
             self.batches.push(Batch::Links(links));
@@ -45,20 +46,20 @@ impl Picture {
     }
 }
 
-/// Smallest drawn radius. A thinner disc is drawn one pixel wide and fainter.
+/// Smallest drawn radius, pixels. A disc with a smaller radius is drawn with this radius in a fainter colour.
 const LEAST_RADIUS_PX: f32 = 0.5;
 
-/// One disc. Lengths in pixels; positions relative to the middle of the picture, y up.
+/// A disc. Lengths are in pixels; positions are relative to the middle of the picture, y up.
 #[repr(C)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DiscInstance {
     pub centre: [f32; 2],
-    /// Radius, outline included.
+    /// Radius including the outline, pixels.
     pub radius: f32,
-    /// Width of the outline, which is inside the radius; 0 for none.
+    /// Width of the outline, which is inside the radius, pixels; 0 for no outline.
     pub outline_width: f32,
-    /// Half the width of the mark from the centre to the outline; 0 for none.
+    /// Half of the width of the mark from the centre to the outline, pixels; 0 for no mark.
     pub mark_half_width: f32,
     /// Cosine and sine of the angle that the mark shows.
     pub direction: [f32; 2],
@@ -113,15 +114,17 @@ impl Shade for DiscInstance {
     }
 }
 
-/// Smallest drawn half width. A thinner link is drawn one pixel wide and fainter.
+/// Smallest drawn half width, pixels. A link with a smaller half width is drawn with this half width in a fainter
+/// colour.
 const LEAST_HALF_WIDTH_PX: f32 = 0.5;
 
-/// One link. Lengths in pixels; positions relative to the middle of the picture, y up.
+/// A link: a straight line with round ends. Lengths are in pixels; positions are relative to the middle of the picture,
+/// y up.
 #[repr(C)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LinkInstance {
-    /// One end, in the middle of its round cap.
+    /// One end of the line, at the centre of its round cap.
     pub start: [f32; 2],
     pub end: [f32; 2],
     pub half_width: f32,
@@ -156,15 +159,17 @@ impl Shade for LinkInstance {
     }
 }
 
-/// A primitive as a distance field in the plane of the picture, pixels, y up.
+/// A shape defined by a distance field in the plane of the picture, pixels, y up.
 trait Shade {
-    /// Corners of a box outside which the primitive does not affect the middle of any pixel.
+    /// Returns two corners of a box around the shape. Pixels whose centre is outside the box are not affected by the
+    /// shape.
     fn bounds(&self) -> [Vec2; 2];
-    /// Premultiplied colour of the pixel with this middle, times its covered fraction.
+    /// Returns the premultiplied colour of the shape, times the fraction of the pixel with the centre `point` that the
+    /// shape covers.
     fn shade(&self, point: Vec2) -> [f32; 4];
 }
 
-/// Covered fraction of a pixel whose middle is `distance` px outside an edge.
+/// Returns the covered fraction of a pixel whose centre is `distance` pixels outside an edge.
 fn coverage(distance: f32) -> f32 {
     (0.5 - distance).clamp(0.0, 1.0)
 }
@@ -177,7 +182,7 @@ fn mix(from: [f32; 4], to: [f32; 4], part: f32) -> [f32; 4] {
     std::array::from_fn(|channel| from[channel] * (1.0 - part) + to[channel] * part)
 }
 
-/// Draws a picture of `width` × `height` pixels.
+/// Draws a picture of `width` × `height` pixels on the processor.
 pub(super) fn draw(picture: &Picture, width: u32, height: u32) -> RgbaImage {
     let ground = picture.background.with_alpha(1.0).to_rgba8();
     let mut image = RgbaImage::from_pixel(width, height, ground);
@@ -190,7 +195,7 @@ pub(super) fn draw(picture: &Picture, width: u32, height: u32) -> RgbaImage {
     image
 }
 
-/// Blends the shaded colour over the pixels of the bounding box.
+/// Blends a primitive over the pixels of its bounding box.
 fn draw_one(image: &mut RgbaImage, primitive: &impl Shade) {
     let (width, height) = image.dimensions();
     let middle = Vec2::new(width as f32, height as f32) / 2.0;

@@ -1,4 +1,4 @@
-//! The renderer: draws a picture by Vulkan, OpenGL or the processor.
+//! The renderer, which draws a picture by Vulkan, by OpenGL or on the processor.
 
 use image::RgbaImage;
 
@@ -8,8 +8,9 @@ use super::renderer_choice::{GpuKind, RendererChoice};
 use super::{Picture, primitives};
 use crate::error::{Error, Result};
 
-/// Prevents a layer of Mesa's Vulkan from writing to stderr on systems without a desktop: the layer asks for a
-/// Wayland display, which complains if `XDG_RUNTIME_DIR` is not set. With a desktop nothing changes.
+/// Prevents Mesa's Vulkan driver from writing to stderr on systems without a desktop. A layer of the driver connects to
+/// a Wayland display, and this connection writes a message if `XDG_RUNTIME_DIR` is not set. With a desktop this
+/// function does nothing.
 ///
 /// # Safety
 /// Changes the environment, so it must run before the program starts its second thread.
@@ -20,17 +21,18 @@ pub unsafe fn quieten_drivers() {
     }
 }
 
-/// Largest side of a picture drawn by the processor, pixels. Most GPUs have the same limit, so a size that works here
-/// works there.
+/// Largest side of a picture that the processor draws, pixels. Most GPUs have the same limit, so a size that works with
+/// one renderer also works with another.
 const CPU_LARGEST_SIDE_PX: u32 = 16_384;
 
-/// Draws pictures into memory. Keep it between frames, because creating one costs more than a frame.
+/// A renderer, which draws pictures into memory. Keep it between frames, because creating a renderer takes longer than
+/// drawing a frame.
 pub struct Renderer {
     backend: Backend,
 }
 
 enum Backend {
-    // Boxed because the other variant holds nothing.
+    // Boxed because the other variant contains no data.
     #[cfg(feature = "gpu")]
     Gpu(Box<Offscreen>),
     Cpu,
@@ -61,7 +63,7 @@ impl Renderer {
             RendererChoice::Vulkan => Backend::open(GpuKind::Vulkan)?,
             RendererChoice::Gl => Backend::open(GpuKind::Gl)?,
             RendererChoice::Cpu => Backend::Cpu,
-            // A browser's page must not wait for a device.
+            // The browser version must not wait for a graphics device.
             RendererChoice::Auto if cfg!(target_arch = "wasm32") => Backend::Cpu,
             RendererChoice::Auto => Backend::open(GpuKind::Vulkan)
                 .or_else(|_| Backend::open(GpuKind::Gl))
@@ -91,7 +93,7 @@ impl Renderer {
     /// Draws a picture of `width` × `height` pixels.
     ///
     /// # Errors
-    /// Names `size` if it is empty or too large; otherwise gives the device's message.
+    /// Names `size` if it is empty or too large; other errors have the message of the graphics device.
     pub(crate) fn draw(&mut self, picture: &Picture, width: u32, height: u32) -> Result<RgbaImage> {
         self.check_size(width, height)?;
         match &mut self.backend {
@@ -104,7 +106,7 @@ impl Renderer {
     /// Checks that a picture of this size can be drawn.
     ///
     /// # Errors
-    /// Names `size`.
+    /// Names `size` if it is empty or too large.
     pub(crate) fn check_size(&self, width: u32, height: u32) -> Result<()> {
         let largest = self.largest_side();
         if (1..=largest).contains(&width) && (1..=largest).contains(&height) {

@@ -1,6 +1,6 @@
-//! The choice of a renderer, and the kinds of GPU.
+//! The renderers that a user can choose, and the kinds of GPU drivers.
 
-/// Which renderer to use.
+/// The renderer to use.
 #[derive(
     Clone,
     Copy,
@@ -25,7 +25,7 @@ pub enum RendererChoice {
     Cpu,
 }
 
-/// The kinds of GPU that can be requested.
+/// The kinds of GPU drivers that can be requested.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum GpuKind {
     Vulkan,
@@ -33,7 +33,7 @@ pub(super) enum GpuKind {
 }
 
 impl GpuKind {
-    /// Its name on the command line.
+    /// Name of the driver on the command line.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Vulkan => "vulkan",

@@ -1,5 +1,5 @@
-//! From a snapshot to a finished picture: primitives, then text, then the legend's strip. Also several scenes side by
-//! side.
+//! Draws a snapshot as a finished picture: first the shapes, then the text, then the legend's strip. Can also draw
+//! several scenes side by side.
 
 use glam::DVec2;
 use image::{RgbaImage, imageops};
@@ -14,11 +14,11 @@ use super::{Camera, Colour, DiscInstance, Picture, Renderer, Style};
 use crate::error::{Error, Result};
 use crate::sim::Snapshot;
 
-/// Draws a snapshot with scale bar and legend, `width` × `height` pixels in all. The camera shows the part left of
-/// the legend; [`Style::camera`] makes one.
+/// Draws a snapshot with scale bar and legend as a picture of `width` × `height` pixels. The camera describes the part
+/// of the picture to the left of the legend; [`Style::camera`] returns a suitable camera.
 ///
 /// # Errors
-/// Names `size` if it is empty or too large; otherwise gives the device's message.
+/// Names `size` if it is empty or too large; other errors have the message of the graphics device.
 pub fn draw_scene(
     renderer: &mut Renderer,
     snapshot: &Snapshot,
@@ -53,10 +53,10 @@ pub fn draw_scene(
 /// Opacity of the lines between scenes.
 const FRAME: f32 = 0.25;
 
-/// One scene of a picture of several.
+/// One scene of a picture that shows several scenes side by side.
 #[derive(Clone, Copy, Debug)]
 pub struct WorldPanel<'a> {
-    /// The snapshot shown.
+    /// The displayed snapshot.
     pub snapshot: &'a Snapshot,
     /// Title in the upper left corner.
     pub title: &'a str,
@@ -64,7 +64,7 @@ pub struct WorldPanel<'a> {
     pub note: &'a str,
 }
 
-/// Size of each scene on a picture of `size` pixels, with the legend on its right.
+/// Returns the size of each scene, pixels, in a picture of `size` pixels that has the legend on its right.
 pub fn panel_size(style: &Style, size: [u32; 2], count: usize, columns: usize) -> [u32; 2] {
     let [width, height] = size;
     let rows = count.div_ceil(columns.max(1)).max(1) as u32;
@@ -72,11 +72,11 @@ pub fn panel_size(style: &Style, size: [u32; 2], count: usize, columns: usize) -
     [across.max(1), (height / rows).max(1)]
 }
 
-/// Draws scenes with their words in rows of `columns`, `width` × `height` pixels in all. The camera is that of a single
-/// scene of [`panel_size`].
+/// Draws several scenes with their titles and results, in rows of `columns` scenes, as a picture of `width` × `height`
+/// pixels. The camera describes a single scene of the size [`panel_size`].
 ///
 /// # Errors
-/// If there is no scene, and the errors of [`draw_scene`].
+/// If the list of scenes is empty, and the errors of [`draw_scene`].
 pub fn draw_worlds(
     renderer: &mut Renderer,
     panels: &[WorldPanel<'_>],
@@ -110,7 +110,7 @@ pub fn draw_worlds(
         return Ok(image);
     }
     for (index, panel) in panels.iter().enumerate() {
-        // All scenes have the same scale, so one bar is enough.
+        // All scenes have the same scale, so only the first has a scale bar.
         let alone = Style { scale_bar: style.scale_bar && index == 0, ..bare.clone() };
         let mut image = draw_scene(renderer, panel.snapshot, &alone, camera, across, down)?;
         write(&mut image, panel);
@@ -129,13 +129,13 @@ pub fn draw_worlds(
     Ok(whole)
 }
 
-/// How much the borders of a cell fade towards the ground.
+/// Fraction by which the colour of periodic borders fades towards the ground.
 const BORDER_FADING: f32 = 0.4;
-/// Radius of the centre of attraction, as a fraction of the label's font size.
+/// Radius of the dot at the centre of attraction, as a fraction of the label's font size.
 const CENTRE_RADIUS_EM: f32 = 0.28;
 
-/// The picture of a snapshot without text, which [`super::draw_scene`] adds. `width` and `height` are those of the
-/// scene without the legend's strip.
+/// Returns the shapes of a snapshot as a picture without text, which [`super::draw_scene`] adds. `width` and `height`
+/// are the size of the scene without the legend's strip, pixels.
 pub(crate) fn scene_picture(
     snapshot: &Snapshot,
     style: &Style,
@@ -157,7 +157,7 @@ pub(crate) fn scene_picture(
     let boundaries = &surroundings.boundaries;
     picture.push_links(boundary_links(boundaries, camera, size, text_px, palette.boundary));
     let placed = |position: DVec2, radius: f64, angle: f64, colour: Colour| {
-        // At its place, and a period further if it reaches over a border.
+        // A disc that extends beyond a periodic border is also drawn one period away.
         let reach = [position - radius, position + radius];
         let periodic = surroundings.periodic.into_iter();
         let images = periodic.flat_map(move |periodic| periodic.images(reach));
@@ -187,7 +187,7 @@ pub(crate) fn scene_picture(
     if let Some(centre) = surroundings.centre_of_attraction {
         let radius = CENTRE_RADIUS_EM * text_px + 1.0;
         let dot = DiscInstance::plain(camera.project(centre), radius, palette.ink);
-        // The ring keeps the dot visible on a grain of its own colour.
+        // The ring in the ground's colour keeps the dot visible on a grain of the dot's colour.
         picture.push_discs(vec![DiscInstance {
             outline_width: 1.0,
             outline: palette.ground,
@@ -202,7 +202,7 @@ pub(crate) fn scene_picture(
     picture
 }
 
-/// A disc of the world, or `None` if it is outside a picture of `size` pixels.
+/// Returns a disc of the scene in pixels, or `None` if it is outside a picture of `size` pixels.
 fn disc(
     style: &Style,
     camera: &Camera,
@@ -214,7 +214,7 @@ fn disc(
 ) -> Option<DiscInstance> {
     let offset = camera.offset_px(position);
     let radius = camera.pixels(radius);
-    // Written so that a NaN position is left out.
+    // Every comparison with NaN is false, so a NaN position is left out.
     let shows = offset.abs().cmplt(half_size(size) + f64::from(radius) + 1.0).all();
     let palette = style.theme.palette();
     let fade = |colour: Colour| colour.mix(palette.ground, style.fading());

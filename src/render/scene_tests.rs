@@ -11,7 +11,7 @@ use super::*;
 use crate::sim::{ContactView, GrainView, Observables, Snapshot, Surroundings};
 use crate::world::{Boundary, Disc, Periodic};
 
-/// Four grains in a row and three contacts, `at` m from the origin.
+/// Returns a snapshot of four grains in a row with three contacts, which begins at the position `at`, m.
 fn row_of_grains(at: DVec2) -> Snapshot {
     let grain = |k: u32| GrainView {
         position: at + DVec2::new(f64::from(k), 0.25),
@@ -165,10 +165,10 @@ fn what_straddles_a_periodic_border_is_drawn_on_both_sides() {
         (discs.sum::<usize>(), chains)
     };
     let alone = drawn(&snapshot);
-    // Grains are at 0, 1, 2 and 3, links between the first three.
+    // The grains are at x = 0, 1, 2 and 3 m, and links connect the first three.
     Arc::make_mut(&mut snapshot.surroundings).periodic = Some(Periodic::along_x([0.8, 4.2]));
     let (discs, chains) = drawn(&snapshot);
-    // Beyond the left border are the first two grains, the fixed disc and the first link.
+    // Periodic images appear beyond the left border: the first two grains, the fixed disc and the first link.
     assert_eq!((discs, chains), (alone.0 + 3, alone.1 + 1));
     let borders = scene_picture(&snapshot, &style, &camera, 400, 300);
     let upright = |link: &&LinkInstance| link.start[0] == link.end[0];

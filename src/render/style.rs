@@ -1,4 +1,4 @@
-//! The style of a picture: the meaning of colours, and what is shown beside the grains.
+//! The style of a picture: the quantity that the colours show, and the items that are drawn with the grains.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 use super::camera::Margins;
 use super::{Camera, Colour};
 
-/// How much grains fade towards the ground beneath force chains.
+/// Fraction by which grains fade towards the ground if force chains are drawn on them.
 const FADING: f32 = 0.62;
 /// Free height below the scene for the scale bar, in font sizes.
 const SCALE_BAR_EM: f64 = 1.6;
 
-/// What the colour of a grain stands for.
+/// The quantity that the colour of a grain shows.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, clap::ValueEnum,
 )]
@@ -35,13 +35,13 @@ pub enum ColourBy {
 }
 
 impl ColourBy {
-    /// True if the colours stand for numbers, which need a scale.
+    /// True if the colours show numbers and therefore need a scale.
     pub(crate) fn has_scale(self) -> bool {
         !matches!(self, Self::PaperGreys | Self::Coordination | Self::Material)
     }
 }
 
-/// Ground and ink.
+/// Colours of the ground and of lines and text.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, clap::ValueEnum,
 )]
@@ -54,22 +54,22 @@ pub enum Theme {
     Dark,
 }
 
-/// Style of a picture.
+/// The style of a picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Style {
     /// Quantity that the colours of the grains show.
     pub colour_by: ColourBy,
-    /// Values at the two ends of the colours, in the units of [`ColourBy`]; taken from the snapshot if absent. Frames
-    /// of one animation should share one range.
+    /// Values at the two ends of the colour scale, in the units of [`ColourBy`]; `None` takes the range from the
+    /// snapshot. Frames of one animation should have one range.
     pub range: Option<(f64, f64)>,
-    /// True if contact forces are drawn as links, with paler grains beneath.
+    /// True if contact forces are drawn as links, with paler grains below them.
     pub show_forces: bool,
-    /// The |N| at full width, N; the 95th percentile of the snapshot if absent.
+    /// Contact force |N| whose link has the full width, N; `None` takes the 95th percentile of the snapshot's forces.
     pub force_reference: Option<f64>,
     /// True if arrows show the velocities of the grains.
     pub show_velocities: bool,
-    /// The speed at full length, m/s; a round number above the fastest grain's if absent.
+    /// Speed whose arrow has the full length, m/s; `None` takes a round number above the speed of the fastest grain.
     pub speed_reference: Option<f64>,
     /// True if arrows show how walls and fixed discs move, and the forces that drive them.
     pub show_motions: bool,
@@ -81,7 +81,7 @@ pub struct Style {
     pub scale_bar: bool,
     /// True if a legend is drawn for colours or links that need one.
     pub legend: bool,
-    /// Ground and ink.
+    /// Colours of the ground and of lines and text.
     pub theme: Theme,
 }
 
@@ -111,7 +111,8 @@ pub(crate) struct Palette {
     pub outline: Colour,
     pub fixed: Colour,
     pub boundary: Colour,
-    /// Forces that push. With `pull`, a pair that colour-blind people can distinguish (Okabe & Ito).
+    /// Colour of forces that push. `push` and `pull` are a pair of colours that colour-blind people can distinguish
+    /// (Okabe & Ito).
     pub push: Colour,
     pub pull: Colour,
 }
@@ -131,7 +132,7 @@ impl Theme {
             Self::Dark => Palette {
                 ground: Colour::hex(0x14171c),
                 ink: Colour::grey(230),
-                // Lighter than the low end of the colour map, which is as dark as the ground.
+                // The outline is lighter than the low end of the colour map, which is as dark as the ground.
                 outline: Colour::grey(150),
                 fixed: Colour::grey(95),
                 boundary: Colour::grey(170),
@@ -143,34 +144,36 @@ impl Theme {
 }
 
 impl Style {
-    /// Font size of labels on a picture of this size, pixels.
+    /// Returns the font size of the labels of a picture of this size, pixels.
     pub(crate) fn text_px(&self, width: u32, height: u32) -> f32 {
-        // 16 px at 800 × 500. Larger pictures are viewed from a longer distance, but not in proportion.
+        // The font size is 16 px at 800 × 500. Larger pictures are viewed from a larger distance, but the distance
+        // grows more slowly than the size.
         let side = f64::from(width).min(1.6 * f64::from(height));
         (16.0 * (side / 800.0).sqrt()).clamp(10.0, 48.0).round() as f32
     }
 
-    /// How much grains fade towards the ground, 0 … 1. They must fade beneath force chains.
+    /// Returns the fraction by which grains fade towards the ground, 0 to 1. Grains fade if force chains are drawn on
+    /// them.
     pub(crate) fn fading(&self) -> f32 {
         if self.show_forces { FADING } else { 0.0 }
     }
 
-    /// True if the colours, links or arrows of this style need a legend, and one is wanted.
+    /// True if a legend is requested, and if the colours, links or arrows of this style need a legend.
     pub(crate) fn has_legend(&self) -> bool {
         let needed =
             self.colour_by != ColourBy::PaperGreys || self.show_forces || self.show_velocities;
         self.legend && needed
     }
 
-    /// Width of the legend's strip on the right, pixels.
+    /// Returns the width of the legend's strip on the right, pixels.
     pub(crate) fn legend_width(&self, width: u32, height: u32) -> u32 {
         let strip = (7.0 * self.text_px(width, height)).ceil() as u32;
-        // A picture too narrow for both shows only the scene.
+        // A picture that is too narrow for scene and legend shows only the scene.
         if self.has_legend() && width > 2 * strip { strip } else { 0 }
     }
 
-    /// The camera that shows the box from `min` to `max` (m) as large as possible on a picture of this size, with
-    /// space for legend and scale bar so that they cover nothing.
+    /// Returns the camera that shows the box from `min` to `max` (m) as large as possible on a picture of this size.
+    /// Legend and scale bar have free space and cover no grain.
     pub fn camera(&self, min: DVec2, max: DVec2, width: u32, height: u32) -> Camera {
         let text = f64::from(self.text_px(width, height));
         let margin = text.min(0.05 * f64::from(width.min(height)));

@@ -1,11 +1,11 @@
-//! Every renderer draws the same picture. These tests need a graphics driver.
+//! Tests that every renderer draws the same picture. These tests need a graphics driver.
 
 use image::RgbaImage;
 use rand::{RngExt, SeedableRng};
 
 use super::*;
 
-/// All GPUs of this machine. If there is none, the test fails, because nothing would be compared.
+/// Opens all GPUs of this machine. If there are none, the test fails, because nothing would be compared.
 fn gpus() -> Vec<Renderer> {
     let found: Vec<Renderer> = [RendererChoice::Vulkan, RendererChoice::Gl]
         .into_iter()
@@ -23,7 +23,7 @@ fn largest_difference(a: &RgbaImage, b: &RgbaImage) -> u8 {
     a.as_raw().iter().zip(b.as_raw()).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
 }
 
-/// Compares all renderers with the processor; a difference of 3/255 is allowed.
+/// Compares the pictures of all GPUs with the picture of the processor. A difference of 3/255 per channel is allowed.
 fn assert_agreement(picture: &Picture, width: u32, height: u32) {
     let expected = primitives::draw(picture, width, height);
     for mut renderer in gpus() {

@@ -1,8 +1,8 @@
-//! Text on finished pictures, set on the processor so that it is the same with every renderer.
+//! Text on finished pictures. It is drawn on the processor, so that it is the same with every renderer.
 //!
-//! A [`TextBlock`] is laid out once, as a mask of pixel coverage, and can then be measured, turned and drawn
-//! anywhere. DejaVu Sans Condensed is free and has the Greek letters, superscripts and signs that physics needs. It
-//! is part of the program, so that text looks the same on every machine.
+//! A [`TextBlock`] is laid out once, as a mask of pixel coverage. It can then be measured, turned and drawn at any
+//! position. The font DejaVu Sans Condensed is free and has the Greek letters, superscripts and signs that physics
+//! needs. The font is part of the program, so that text looks the same on every machine.
 
 use std::sync::LazyLock;
 
@@ -17,7 +17,7 @@ static BOLD: LazyLock<FontRef> =
     LazyLock::new(|| embedded(include_bytes!("../../assets/fonts/DejaVuSansCondensed-Bold.ttf")));
 
 fn embedded(bytes: &'static [u8]) -> FontRef<'static> {
-    // The font is part of the program, and a test sets text in it.
+    // The font is part of the program, and a test draws text with it, so loading cannot fail.
     FontRef::try_from_slice(bytes).expect("an embedded font is a font")
 }
 
@@ -33,12 +33,12 @@ pub(crate) struct TextStyle {
     pub size_px: f32,
     pub weight: Weight,
     pub colour: Colour,
-    /// Alignment of the lines relative to each other.
+    /// Alignment of the lines of a block relative to each other.
     pub lines: Align,
 }
 
 impl TextStyle {
-    /// Regular text of a size, lines flush left.
+    /// Returns the style of regular text with left-aligned lines.
     pub(crate) fn new(size_px: f32, colour: Colour) -> Self {
         Self { size_px, weight: Weight::Regular, colour, lines: Align::Start }
     }
@@ -56,13 +56,13 @@ impl TextStyle {
             Weight::Regular => &REGULAR,
             Weight::Bold => &BOLD,
         };
-        // ab_glyph scales the height from descent to ascent, not the em.
+        // The library ab_glyph scales the height from descent to ascent, whereas a font size is the size of the em.
         let per_em = font.units_per_em().map_or(1.0, |units| font.height_unscaled() / units);
         font.as_scaled(PxScale::from(self.size_px * per_em))
     }
 
-    /// Places the letters of one line, from x = 0 on the baseline y = 0, y down. Returns them and the width. `_{…}`
-    /// sets letters below the baseline, `^{…}` above it.
+    /// Places the letters of one line, from x = 0 on the baseline y = 0, with y pointing down. Returns the letters and
+    /// the width of the line, pixels. `_{…}` makes a subscript, `^{…}` a superscript.
     pub(super) fn set(&self, line: &str) -> (Vec<Glyph>, f32) {
         let mut glyphs = Vec::new();
         let mut pen = 0.0;
@@ -83,7 +83,7 @@ impl TextStyle {
         (glyphs, pen)
     }
 
-    /// The shape of a letter that [`Self::set`] placed, after moving it; `None` for a space.
+    /// Returns the shape of a letter that [`Self::set`] placed, moved by (`x`, `y`); `None` for a space.
     pub(super) fn shape(&self, mut glyph: Glyph, x: f32, y: f32) -> Option<OutlinedGlyph> {
         glyph.position += point(x, y);
         self.font().outline_glyph(glyph)
@@ -98,7 +98,7 @@ impl TextStyle {
         self.font().ascent()
     }
 
-    /// Distance between lines, pixels.
+    /// Distance between the baselines of two lines, pixels.
     pub(crate) fn line_height(&self) -> f32 {
         self.font().height()
     }
@@ -106,7 +106,7 @@ impl TextStyle {
     /// True if the font has a shape for this letter.
     #[cfg(test)]
     fn has(&self, letter: char) -> bool {
-        // Glyph 0 is the box for missing letters.
+        // Glyph 0 is the box that fonts show for missing letters.
         self.font().glyph_id(letter).0 != 0
     }
 }
@@ -119,7 +119,7 @@ enum Script {
 }
 
 impl Script {
-    /// Size of the letters relative to those on the line.
+    /// Size of the letters relative to normal letters.
     fn size(self) -> f32 {
         if self == Self::Line { 1.0 } else { 0.7 }
     }
@@ -134,7 +134,8 @@ impl Script {
     }
 }
 
-/// Cuts a line into runs of one level. A brace without its partner is text.
+/// Splits a line into pieces that are normal text, subscripts or superscripts. A brace without its partner is normal
+/// text.
 fn runs(line: &str) -> Vec<(&str, Script)> {
     let mut found = Vec::new();
     let mut rest = line;
@@ -149,21 +150,22 @@ fn runs(line: &str) -> Vec<(&str, Script)> {
     found
 }
 
-/// Alignment of a block relative to the point at which it is drawn, along one direction; also of the lines of a block
-/// relative to each other.
+/// Alignment of a block relative to the point at which it is drawn, in one direction. The same type describes the
+/// alignment of the lines of a block relative to each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Align {
-    /// The point is at the left or top edge.
+    /// The point is at the left or top edge of the block.
     #[default]
     Start,
-    /// The point is in the middle.
+    /// The point is in the middle of the block.
     Centre,
-    /// The point is at the right or bottom edge.
+    /// The point is at the right or bottom edge of the block.
     End,
 }
 
 impl Align {
-    /// Distance from the start of something `length` long to its point.
+    /// Returns the distance from the left or top edge of a block to its alignment point, for a block that is `length`
+    /// pixels long.
     pub(super) fn share(self, length: u32) -> u32 {
         match self {
             Self::Start => 0,
@@ -173,22 +175,22 @@ impl Align {
     }
 }
 
-/// Laid-out text: a mask of pixel coverage and a colour.
+/// Text that is laid out: a mask of pixel coverage, and a colour.
 #[derive(Clone, Debug)]
 pub(crate) struct TextBlock {
     width: u32,
     height: u32,
-    /// Coverage 0 … 1, row by row.
+    /// Fraction of each pixel that the text covers, 0 to 1, row by row.
     coverage: Vec<f32>,
     colour: Colour,
 }
 
 impl TextBlock {
-    /// Lays text out; `\n` ends a line, `_{…}` lowers letters and `^{…}` raises them.
+    /// Lays text out. `\n` ends a line, `_{…}` makes a subscript and `^{…}` a superscript.
     pub(crate) fn new(text: &str, style: &TextStyle) -> Self {
         let lines: Vec<&str> = text.split('\n').collect();
         let widest = lines.iter().map(|line| style.width(line)).fold(0.0, f32::max);
-        // Slanted and accented letters may reach a pixel beyond their advance.
+        // Slanted and accented letters may extend a pixel beyond their advance width.
         let width = widest.ceil() as u32 + 2;
         let height = (style.line_height() * lines.len() as f32).ceil() as u32;
         let coverage = vec![0.0; width as usize * height as usize];
@@ -202,8 +204,8 @@ impl TextBlock {
         block
     }
 
-    /// Lays text out and breaks lines at spaces, so that none is wider than `largest_width_px`. If a single word is
-    /// wider, the text becomes smaller.
+    /// Lays text out and breaks lines at spaces, so that no line is wider than `largest_width_px`. If a single word is
+    /// wider, the font size of the whole block is reduced.
     pub(crate) fn wrapped(text: &str, style: &TextStyle, largest_width_px: f32) -> Self {
         // A block is up to three pixels wider than its longest line.
         let largest = (largest_width_px - 3.0).max(1.0);
@@ -258,13 +260,13 @@ impl TextBlock {
         self.height
     }
 
-    /// Fraction of the block that ink covers, 0 … 1.
+    /// Fraction of the block's area that letters cover, 0 to 1.
     #[cfg(test)]
     pub(crate) fn ink(&self) -> f32 {
         self.coverage.iter().sum::<f32>() / self.coverage.len().max(1) as f32
     }
 
-    /// The block turned by 90° anticlockwise: it reads upwards, like the label of a vertical axis.
+    /// Returns the block turned by 90° anticlockwise, so that it reads upwards, like the label of a vertical axis.
     pub(crate) fn turned(&self) -> Self {
         let (width, height) = (self.height, self.width);
         let mut coverage = Vec::with_capacity(self.coverage.len());
@@ -277,8 +279,8 @@ impl TextBlock {
         Self { width, height, coverage, colour: self.colour }
     }
 
-    /// Draws the block at the point (`x`, `y`), pixels from the upper left corner. Parts outside the image are left
-    /// out.
+    /// Draws the block at the point (`x`, `y`), in pixels from the upper left corner of the image. `across` and `down`
+    /// align the block at this point. Parts outside the image are left out.
     pub(crate) fn draw(&self, image: &mut RgbaImage, x: i64, y: i64, across: Align, down: Align) {
         let left = x - i64::from(across.share(self.width));
         let top = y - i64::from(down.share(self.height));

@@ -1,7 +1,8 @@
-//! Fixed shapes as thin dark lines, solids with short hatching on their inside, and periodic borders as dashes.
+//! Walls as thin dark lines, solids with short hatching inside their surface, and periodic borders as dashed lines.
 //!
-//! Lines are clipped to the picture in f64, so that an infinite wall, or one that starts a million diameters away,
-//! becomes f32 pixels without loss. Hatching has a fixed place in the world, so it moves with the camera.
+//! Lines are clipped to the picture in f64, so that an infinite wall, or a wall that starts a million diameters away,
+//! becomes f32 pixels without loss of precision. The strokes of the hatching have fixed positions in the scene, so they
+//! move with the camera.
 
 use glam::DVec2;
 
@@ -9,35 +10,37 @@ use super::camera::half_size;
 use super::{Camera, Colour, LinkInstance};
 use crate::world::{Boundary, Edge, Periodic};
 
-// All in units of the font size of the picture's labels, so that prints of all sizes look alike.
+// All lengths below are in units of the font size of the picture's labels, so that prints of all sizes look alike.
 
-/// Half the width of a wall's line.
+/// Half of the width of a wall's line, in font sizes.
 const LINE_HALF_WIDTH_EM: f64 = 0.0625;
-/// Half the width of a hatching stroke.
+/// Half of the width of a hatching stroke, in font sizes.
 const HATCH_HALF_WIDTH_EM: f64 = 0.033;
-/// Distance between hatching strokes along the wall.
+/// Distance between hatching strokes along the wall, in font sizes.
 const HATCH_SPACING_EM: f64 = 0.6;
-/// Depth of hatching in a solid, and its extent along the surface: strokes are inclined by 45°.
+/// Depth of the hatching in a solid, in font sizes. A stroke is inclined by 45°, so it extends by the same length along
+/// the surface.
 const HATCH_DEPTH_EM: f64 = 0.45;
 
-/// Half the width of a dash.
+/// Half of the width of a dash, in font sizes.
 const DASH_HALF_WIDTH_EM: f64 = 0.035;
-/// Length of a dash, and of a dash with the gap after it.
+/// Length of a dash, and distance between the beginnings of two dashes, in font sizes.
 const DASH_EM: f64 = 0.45;
 const DASH_SPACING_EM: f64 = 0.9;
 
-/// Turns fixed shapes into links for one picture.
+/// Converts walls and solids to links (thick lines) of one picture.
 struct WallLines<'a> {
     camera: &'a Camera,
     colour: Colour,
     /// Font size of the picture's labels, pixels.
     em: f64,
-    /// Half the size of the picture plus a border that hides the round caps, pixels.
+    /// Half of the picture's size plus a margin, pixels. The round ends of clipped lines are in this margin, so they
+    /// are not visible.
     reach: DVec2,
     links: Vec<LinkInstance>,
 }
 
-/// The links of all `boundaries` that are visible in a picture of `size` pixels.
+/// Returns the links of all `boundaries` that are visible in a picture of `size` pixels.
 pub(super) fn boundary_links(
     boundaries: &[Boundary],
     camera: &Camera,
@@ -59,7 +62,7 @@ impl WallLines<'_> {
         match edge {
             Edge::Endless { point, normal } => {
                 let along = -normal.normalize_or_zero().perp();
-                // Long enough to cross the picture from any point of the line nearest to it.
+                // The line is long enough to cross the picture, whatever its direction.
                 let anchor = self.camera.offset_px(point);
                 let nearest = along * -anchor.dot(along);
                 let across = along * (2.0 * self.reach.length());
@@ -73,14 +76,14 @@ impl WallLines<'_> {
             }
             Edge::Side(ends) => {
                 let [from, to] = ends.map(|end| self.camera.offset_px(end));
-                // Backwards it has the solid on its right.
+                // The solid must be on the right of the line, so the line runs backwards.
                 self.solid_edge(to, to, from);
             }
         }
     }
 
-    /// A surface from `from` to `to`, pixels, with the solid on its right, hatched at whole multiples of the spacing
-    /// from `anchor`.
+    /// Draws a surface from `from` to `to`, pixels, with the solid on its right. The hatching strokes are at whole
+    /// multiples of their spacing from `anchor`.
     fn solid_edge(&mut self, anchor: DVec2, from: DVec2, to: DVec2) {
         let Some([start, end]) = clip(from, to, self.reach) else { return };
         self.link(start, end, LINE_HALF_WIDTH_EM);
@@ -91,7 +94,7 @@ impl WallLines<'_> {
         let stroke = (-along.perp() - along) * (HATCH_DEPTH_EM * self.em);
         let spacing = HATCH_SPACING_EM * self.em;
         let number = |point: DVec2| (point - anchor).dot(along) / spacing;
-        // Strokes are inclined backwards: one at the very start would stick out of a polygon's corner.
+        // Strokes are inclined backwards, so a stroke at the very start would extend beyond the corner of a polygon.
         let first = (number(start) + HATCH_DEPTH_EM / HATCH_SPACING_EM).ceil() as i64;
         for index in first..=number(end).floor() as i64 {
             let foot = anchor + along * (index as f64 * spacing);
@@ -105,7 +108,8 @@ impl WallLines<'_> {
     }
 }
 
-/// The part of a segment inside the box from −`reach` to `reach`, if any. `None` if an end is not finite.
+/// Returns the part of a segment inside the box from −`reach` to `reach`. `None` if no part is inside or an end is not
+/// finite.
 pub(super) fn clip(from: DVec2, to: DVec2, reach: DVec2) -> Option<[DVec2; 2]> {
     let span = to - from;
     if !span.is_finite() {
@@ -126,7 +130,7 @@ pub(super) fn clip(from: DVec2, to: DVec2, reach: DVec2) -> Option<[DVec2; 2]> {
     (enter <= leave).then(|| [from + span * enter, from + span * leave])
 }
 
-/// The dashes of the borders that are visible in a picture of `size` pixels.
+/// Returns the dashes of the periodic borders that are visible in a picture of `size` pixels.
 pub(super) fn border_links(
     periodic: Periodic,
     camera: &Camera,

@@ -1,4 +1,4 @@
-"""Draws a moment of a recording with ParaView: pvpython paraview.py RECORDING TIME PICTURE.
+"""Draws one frame of a recording with ParaView: pvpython draw_in_paraview.py RECORDING TIME PICTURE.
 
 Grains are spheres of their radius. Contacts are tubes from centre to centre: the larger N is, the wider and darker; red
 pushes and blue pulls. screenshots/paraview.png is the pile of
@@ -17,12 +17,12 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 SIZE = [1280, 440]
 # Colours of the grains, in the order of the words of `kind`.
 COLOURS = {0: [0.90, 0.88, 0.84], 1: [0.56, 0.57, 0.60]}
-# A force that at most one contact in twenty exceeds has the last colour and the widest tube.
+# The force that one contact in twenty exceeds has the last colour and the widest tube.
 SHOWN_SHARE = 0.95
-# In mean radii.
+# Largest radius of a tube, in mean radii of the grains.
 WIDEST_TUBE = 0.42
 FORCE = "millinewton"
-# From pull through zero to push, as fractions of that force.
+# Colours from pull through zero to push: fraction of the force with the last colour, then red, green, blue.
 SCALE = [
     (-1.0, 0.03, 0.19, 0.42), (-0.5, 0.13, 0.45, 0.71), (-0.1, 0.50, 0.67, 0.81), (0.0, 0.72, 0.70, 0.68),
     (0.1, 0.91, 0.62, 0.50), (0.5, 0.80, 0.24, 0.20), (1.0, 0.40, 0.00, 0.12),
@@ -43,14 +43,14 @@ def main(recording, time, picture):
     radius = numpy.mean(point_values(grains, "radius"))
     draw_contacts(view, contacts, radius)
     label(view, f"t = {at:.2f} s")
-    # The first drawing of a view resets its camera.
+    # The first drawing of a view resets its camera, so the camera is set afterwards.
     simple.Render(view)
     look_at(view, grains, radius)
     simple.SaveScreenshot(picture, view, ImageResolution=SIZE, CompressionLevel="9")
 
 
 def opened(path, time):
-    """The frame of a series nearest to a time, and the time of this frame."""
+    """Return the frame of a series nearest to a time, and the time of this frame."""
     series = simple.PVDReader(FileName=path)
     series.UpdatePipelineInformation()
     nearest = min(series.TimestepValues, key=lambda found: abs(found - time))
@@ -66,7 +66,7 @@ def draw_grains(view, grains, kind, colour):
     spheres = simple.Glyph(Input=chosen, GlyphType="Sphere", GlyphMode="All Points")
     spheres.GlyphType.ThetaResolution = spheres.GlyphType.PhiResolution = 48
     spheres.OrientationArray = ["POINTS", "No orientation array"]
-    # The scaled sphere has the diameter 1.
+    # The sphere has the diameter 1 before scaling.
     spheres.ScaleArray = ["POINTS", "radius"]
     spheres.ScaleFactor = 2.0
     shown = simple.Show(spheres, view)
@@ -78,7 +78,7 @@ def draw_grains(view, grains, kind, colour):
 def draw_contacts(view, contacts, radius):
     forces = vtk_to_numpy(servermanager.Fetch(contacts).GetCellData().GetArray("normal_force"))
     strong = 1e3 * float(numpy.quantile(numpy.abs(forces), SHOWN_SHARE))
-    # No two lines share a point, so each of these has the force of its own line.
+    # No two lines share a point, so each point gets the force of its own line.
     at_ends = simple.CellDatatoPointData(Input=contacts)
     force = simple.Calculator(Input=at_ends, ResultArrayName=FORCE, Function="1000*normal_force")
     size = simple.Calculator(Input=force, ResultArrayName="size")
@@ -114,7 +114,7 @@ def label(view, words):
 
 
 def look_at(view, grains, radius):
-    """Show all moving bodies, as wide as the picture."""
+    """Set the camera so that all moving bodies are as wide as the picture."""
     data = servermanager.Fetch(grains)
     moves = point_values(grains, "kind") == 0
     places = vtk_to_numpy(data.GetPoints().GetData())[moves]

@@ -1,4 +1,4 @@
-"""MDAnalysis and ASE: positions, velocities and elements of the dumps, compared with the CSV."""
+"""Reads the dumps with MDAnalysis and ASE, and compares positions, velocities and elements with the CSV files."""
 
 import sys
 
@@ -20,7 +20,7 @@ def main(recording):
     for moment, atoms, step in zip(universe.trajectory, all_atoms, wanted["step"]):
         grains = every[every["step"] == step]
         places = grains[["x", "y"]].to_numpy()
-        # MDAnalysis has single precision, and moves the corner of the box to the origin.
+        # MDAnalysis uses single precision, and moves the corner of the box to the origin.
         found, wanted_ones = (it - it[0] for it in (moment.positions[:, :2], places))
         assert numpy.allclose(found, wanted_ones, rtol=1e-6, atol=1e-7) and moment.data["step"] == step
         metre = 1e10
@@ -37,7 +37,7 @@ def has_images(dump):
 
 
 def check_images(dump, every, wanted):
-    """Images in a periodic cell: with them a reader can unwrap the path of each grain."""
+    """Check the image numbers in a periodic cell, from which a reader can unwrap the path of each grain."""
     universe = MDAnalysis.Universe(dump, format="LAMMPSDUMP", topology_format="LAMMPSDUMP", unwrap_images=True)
     ways = 0
     for moment, step in zip(universe.trajectory, wanted["step"]):

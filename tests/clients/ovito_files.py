@@ -1,4 +1,4 @@
-"""OVITO: particles, types, radii, frames and bonds of the dumps, compared with the CSV."""
+"""Reads the dumps with OVITO, and compares particles, types, radii, frames and bonds with the CSV files."""
 
 import sys
 
@@ -22,7 +22,7 @@ def main(recording):
     pipeline = import_file(f"{recording}/ovito/grains.dump")
     assert pipeline.source.num_frames == len(wanted)
     bonds = LoadTrajectoryModifier()
-    # In the order of the file's head: the first two columns name the particles of a bond.
+    # Columns in the order of the file's head: the first two columns name the particles of a bond.
     columns = ["Particle Identifiers.1", "Particle Identifiers.2", *of_bonds(every_contact)]
     bonds.source.load(f"{recording}/ovito/contacts.dump", columns=columns)
     assert bonds.source.num_frames == len(wanted)
@@ -74,7 +74,7 @@ def check_bonds(particles, contacts, all_flags):
 
 
 def equal(found, wanted, relative=5e-16):
-    """Equal except for the last bit, because OVITO does not read decimal numbers more precisely."""
+    """Return true if numbers are equal except for the last bit: OVITO does not read decimal numbers more precisely."""
     found, wanted = numpy.asarray(found), numpy.asarray(wanted)
     return found.shape == wanted.shape and numpy.allclose(found, wanted, rtol=relative, atol=0, equal_nan=True)
 

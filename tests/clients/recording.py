@@ -1,4 +1,4 @@
-"""A recording read from its CSV files. All other formats are compared with it."""
+"""Reads a recording from its CSV files. All other formats are compared with these values."""
 
 import json
 
@@ -8,14 +8,14 @@ OF_FRAME = ["step", "time"]
 
 
 def kinds(recording, name):
-    """Kind of each column of a table: number, count, flag or word."""
+    """Return the kind of each column of a table: number, count, flag or word."""
     with open(f"{recording}/data.json") as file:
         tables = json.load(file)["tables"]
     return {column["name"]: column["values"] for column in tables[name]}
 
 
 def table(recording, name):
-    """A table: numbers as they were written, flags and words as words, None for missing values."""
+    """Return a table: numbers as they were written, flags and words as words, None for missing values."""
     of_columns = kinds(recording, name)
     numbers = {column: [""] for column, kind in of_columns.items() if kind != "word"}
     words = {column: "str" for column, kind in of_columns.items() if kind in ("word", "flag")}
@@ -26,17 +26,17 @@ def table(recording, name):
 
 
 def frames(recording):
-    """Step and time of each frame."""
+    """Return step and time of each frame."""
     found = pandas.read_csv(f"{recording}/frames.csv", comment="#", float_precision="round_trip")
     assert len(found) > 1, "one frame alone tells nothing"
     return found
 
 
 def codes(words, column):
-    """Words as indices in a list."""
+    """Return words as indices in a list."""
     return column.map({word: code for code, word in enumerate(words)}).to_numpy()
 
 
 def flags(column):
-    """True, false and missing as 1, 0 and -1."""
+    """Return flags as numbers: true, false and missing are 1, 0 and -1."""
     return column.map({"true": 1, "false": 0}).fillna(-1).to_numpy()

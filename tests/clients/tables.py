@@ -1,4 +1,4 @@
-"""pandas and polars: schemas, rows and values of the Parquet files, compared with the CSV."""
+"""Reads the Parquet files with pandas and polars, and compares schemas, rows and values with the CSV files."""
 
 import sys
 
@@ -42,13 +42,13 @@ def compare(column, kind, text, by_polars, by_pandas):
     if kind == "flag":
         here = here == "true"
     if kind == "number":
-        # Bit by bit: -0 is not 0.
+        # The comparison is bitwise, so that -0 differs from 0.
         here, there, too = (numpy.asarray(it, dtype=float).view(numpy.int64) for it in (here, there, too))
     assert (here == there).all() and (here == too).all(), column
 
 
 def described(recording, name, columns):
-    """Check that the metadata has the units and the run."""
+    """Check that the metadata contain the units of the columns and the description of the run."""
     schema = pyarrow.parquet.read_schema(f"{recording}/{name}/part-00000.parquet")
     said = {key.decode(): value.decode() for key, value in schema.metadata.items()}
     assert said["program"].startswith("slump "), said

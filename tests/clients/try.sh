@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# Reads recordings with the programs of users: pandas, polars, PyVista, MDAnalysis, ASE and OVITO from PyPI, and ParaView if
-# it is installed. Records a few small runs, reads them with each program, and fails if one reads other values.
+# Reads recordings with the programs of users: pandas, polars, PyVista, MDAnalysis, ASE and OVITO from PyPI, and
+# ParaView if it is installed. Records a few small runs, reads them with each program, and fails if a program reads
+# other values.
 #
 #   tests/clients/try.sh [--fast] [FOLDER]
 #
-# --fast leaves out OVITO and ParaView, which are large. FOLDER keeps the recordings and ParaView's picture. The Python
-# packages are installed once, to target/clients. SLUMP names an existing program; without it the program is built.
+# --fast omits OVITO and ParaView, which are large. The recordings and ParaView's picture remain in FOLDER. The Python
+# packages are installed once, to target/clients. The variable SLUMP names an existing program; without it the program
+# is built.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 cd "$here/../.."
@@ -39,11 +41,11 @@ record() {
     "$SLUMP" --headless --data "$out/$name" --overwrite --data-format parquet,csv,vtk,ovito,fields "$@" 2>"$out/$name.log" ||
         { cat "$out/$name.log" >&2; exit 1; }
 }
-# The paper's law on a base of fixed discs, bonds with their stretch, and walls of every shape.
+# Runs: the paper's law on a base of fixed discs, bonds with a stretch, and walls of every shape.
 record pile --bond 20 --dt 1e-3 --duration 0.3 --data-every 0.05
 record bonds --stepper range --bond 20 --dt 1e-3 --duration 0.02 --data-every 0.01
 record walls --scene assets/scenes/hourglass.toml --duration 0.1 --data-every 0.02
-# Grains that leave a cell whose borders wrap.
+# A run in which grains leave a periodic cell.
 record periodic --scene shear --dt 2e-3 --duration 1 --data-every 0.25
 
 for run in pile bonds walls; do

@@ -1,4 +1,4 @@
-"""PyVista, and therefore VTK: points, lines, arrays, times and metadata of the VTK files, compared with the CSV."""
+"""Reads the VTK files with PyVista, and compares points, lines, arrays, times and metadata with the CSV files."""
 
 import sys
 
@@ -7,7 +7,7 @@ import pyvista
 
 from recording import OF_FRAME, codes, flags, frames, kinds, table
 
-# Columns that are components of a vector, and the components of that vector.
+# Columns that are components of a vector: name of the vector, and number of the component.
 VECTORS = {
     "vx": ("velocity", 0), "vy": ("velocity", 1), "nx": ("normal", 0), "ny": ("normal", 1),
     "fx": ("force", 0), "fy": ("force", 1),
@@ -57,7 +57,7 @@ def fields(recording, wanted, of_grains, of_contacts):
         assert numpy.isclose(image.spacing, [*2 * [image.field_data["smoothing_width"][0] / 2], 1], rtol=0.1).all()
         masses = rows["mass"].to_numpy()
         assert numpy.isclose(area * image["density"].sum(), masses.sum(), rtol=1e-12)
-        # The image must be at the place of the grains.
+        # The grid of the fields must be at the position of the grains.
         centre = (image["density"][:, None] * image.cell_centers().points).sum(axis=0) / image["density"].sum()
         off = numpy.abs(centre[:2] - numpy.average(rows[["x", "y"]], axis=0, weights=masses))
         if (rows[["x", "y"]] == rows[["x_unwrapped", "y_unwrapped"]].to_numpy()).all(axis=None):
@@ -72,7 +72,7 @@ def read(reader, time):
 
 
 def same(found, wanted):
-    """Equal bit for bit, including missing values."""
+    """Return true if numbers are bitwise equal, including missing values."""
     found, wanted = (numpy.ascontiguousarray(it, dtype=float) for it in (found, wanted))
     return found.shape == wanted.shape and (
         (found.view(numpy.int64) == wanted.view(numpy.int64)) | (numpy.isnan(found) & numpy.isnan(wanted))

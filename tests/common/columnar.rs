@@ -1,8 +1,8 @@
-//! Handmade Parquet files in which each number can be wrong.
+//! Writes small Parquet files in which a test can make each number of the metadata wrong.
 
 #![allow(dead_code, unused_imports, reason = "every test binary uses its own part of this")]
 
-/// A structure of Thrift's compact protocol.
+/// A structure (list of numbered fields) in the compact protocol of Thrift, the encoding of Parquet's metadata.
 #[derive(Default)]
 struct Fields {
     bytes: Vec<u8>,
@@ -25,7 +25,7 @@ impl Fields {
     }
 
     fn whole(mut self, id: u8, number: i64) -> Self {
-        // i64 and i32 have the same encoding.
+        // The encodings of i64 (type 6) and i32 (type 5) differ only in the type number.
         self = self.head(id, if i32::try_from(number).is_ok() { 5 } else { 6 });
         varint(&mut self.bytes, ((number << 1) ^ (number >> 63)) as u64);
         self
@@ -64,30 +64,32 @@ impl Fields {
     }
 }
 
-/// Metadata of a file of three columns. The default is correct.
+/// Numbers that [`Columnar::bytes`] writes into a Parquet file of three columns (x, y, radius). The default numbers
+/// make a correct file.
 #[derive(Clone, Debug)]
 pub struct Columnar {
-    /// Rows of the file.
+    /// Number of rows that the file claims to have.
     pub rows: i64,
-    /// Rows of its row group.
+    /// Number of rows that its only row group claims to have.
     pub group_rows: i64,
-    /// Values of a page.
+    /// Number of values that the data page of each column claims to have.
     pub values: i64,
-    /// Columns of the schema.
+    /// Number of columns that the schema claims to have.
     pub children: i64,
-    /// Groups around the columns, each inside the previous one.
+    /// Number of nested groups in the schema around the three columns.
     pub depth: usize,
-    /// Compression: 0 none, 1 snappy.
+    /// Compression code: 0 is none, 1 is Snappy.
     pub codec: i64,
-    /// 0 plain, 8 with a missing dictionary, 6 and 7 with their own counts.
+    /// Encoding of the values: 0 is plain, 8 is an index into a dictionary (which is missing by default). Pages in the
+    /// encodings 6 and 7 (delta encodings) contain their own number of values.
     pub encoding: i64,
-    /// Bytes of an uncompressed page.
+    /// Claimed length of an uncompressed page, bytes.
     pub unpacked: i64,
-    /// Bytes of a page in the file; `None` gives the real number.
+    /// Claimed length of a page in the file, bytes. `None` writes the true length.
     pub packed: Option<i64>,
-    /// Values of a dictionary before the page, if there is one.
+    /// Number of values of a dictionary page before the data page. `None` writes no dictionary page.
     pub dictionary: Option<i64>,
-    /// Contents of a page.
+    /// Content of each page, bytes.
     pub page: Vec<u8>,
 }
 
@@ -111,7 +113,7 @@ impl Default for Columnar {
 }
 
 impl Columnar {
-    /// The bytes of the file.
+    /// Returns the content of the Parquet file.
     pub fn bytes(&self) -> Vec<u8> {
         let mut file = b"PAR1".to_vec();
         let mut columns = Vec::new();

@@ -1,5 +1,5 @@
-//! Helpers of the physics tests: common imports, short ways to build scenes and inspect runs, and comparisons that
-//! report the difference.
+//! Helpers of the physics tests: common imports, short functions that build scenes and inspect runs, and comparisons
+//! whose failure message contains the difference.
 
 #![allow(dead_code, unused_imports, reason = "every test binary uses its own part of this")]
 
@@ -18,25 +18,25 @@ pub use slump::sim::*;
 pub use slump::solver::*;
 pub use slump::world::*;
 
-/// g of the scenes made here, m/s².
+/// Gravitational acceleration g of the test scenes, m/s².
 pub const G: f64 = 9.8;
 
-/// Only the x axis.
+/// Motion along the x axis only, without friction and rotation.
 pub const LINE: Physics = Physics { axes: 1, friction: false, rotation: false, cohesion: true };
-/// The plane without friction.
+/// Motion in the plane without friction and rotation.
 pub const SMOOTH: Physics = Physics { axes: 2, friction: false, rotation: false, cohesion: true };
-/// The plane with friction and without rotation.
+/// Motion in the plane with friction and without rotation.
 pub const UNTURNING: Physics = Physics { axes: 2, friction: true, rotation: false, cohesion: true };
 
-/// Parameters with the shifted cone.
+/// Returns parameters with these four values and the default friction cone, which is the shifted cone.
 pub fn parameters(bond: f64, time_step_secs: f64, restitution: f64, friction: f64) -> Parameters {
     Parameters { bond, time_step_secs, restitution, friction, ..Parameters::default() }
 }
 
-/// δ_c of [`range`], in mean diameters.
+/// Debonding distance δ_c that [`range`] and [`ranged`] set, in mean diameters.
 pub const DISTANCE_IN_DIAMETERS: f64 = 0.01;
 
-/// Parameters for the stepper `range`, without restitution.
+/// Returns parameters for the stepper `range`, with restitution 0 and friction 0.5.
 pub fn range(bond: f64, time_step_secs: f64) -> Parameters {
     Parameters {
         debonding_distance: DISTANCE_IN_DIAMETERS,
@@ -44,7 +44,7 @@ pub fn range(bond: f64, time_step_secs: f64) -> Parameters {
     }
 }
 
-/// A scene under `range` with the default solver settings.
+/// Returns a scene with the stepper `range` and the default solver settings.
 pub fn ranged(
     physics: Physics,
     gravity: DVec2,
@@ -63,12 +63,12 @@ pub fn weightless(grain: Grain) -> Grain {
     Grain { feels_gravity: false, ..grain }
 }
 
-/// A tolerance near rounding.
+/// Returns settings that solve each step by Gauss–Seidel to a residual of 1e-12, which is close to rounding errors.
 pub fn tight() -> SolverSettings {
     to_residual(1e-12)
 }
 
-/// The default settings with a tolerance near rounding.
+/// Returns the default solver settings with a tolerance of 1e-10, which is close to rounding errors.
 pub fn certain() -> SolverSettings {
     SolverSettings { tolerance: 1e-10, ..SolverSettings::default() }
 }
@@ -81,7 +81,7 @@ pub fn to_residual(tolerance: f64) -> SolverSettings {
     SolverSettings { max_sweeps: 20_000, ..solved_by(Method::Nsgs, tolerance) }
 }
 
-/// Grains under uniform gravity.
+/// Returns a scene with these grains under uniform gravity (m/s²).
 pub fn scene(
     physics: Physics,
     gravity: DVec2,
@@ -114,7 +114,7 @@ pub fn scene(
     }
 }
 
-/// Grains under gravity g.
+/// Returns a scene with these grains under gravity g = 9.8 m/s² in −y direction.
 pub fn under_g(parameters: Parameters, grains: Vec<Grain>) -> Scene {
     scene(Physics::FULL, -G * DVec2::Y, parameters, grains)
 }
@@ -123,7 +123,7 @@ pub fn without_g(parameters: Parameters, grains: Vec<Grain>) -> Scene {
     scene(Physics::FULL, DVec2::ZERO, parameters, grains)
 }
 
-/// All steppers, each with every method if it uses methods.
+/// Returns all combinations of a stepper and a solver method. A stepper that does not use solver methods appears once.
 pub fn every_way() -> Vec<(Stepper, Method)> {
     let of = |&stepper: &Stepper| {
         let count = if stepper.uses_method() { METHODS.len() } else { 1 };
@@ -132,7 +132,8 @@ pub fn every_way() -> Vec<(Stepper, Method)> {
     Stepper::ALL.iter().flat_map(of).collect()
 }
 
-/// The pairs of [`every_way`] that move the grains by their impulses, so that momentum and energy balance.
+/// Returns the combinations of [`every_way`] without the stepper `avbd`. In these combinations only impulses move the
+/// grains, so momentum and energy are in balance.
 pub fn every_way_that_balances() -> Vec<(Stepper, Method)> {
     every_way().into_iter().filter(|way| way.0 != Stepper::Avbd).collect()
 }
@@ -141,7 +142,8 @@ pub fn start(scene: &Scene) -> Simulation {
     scene.simulation().expect("a proper scene")
 }
 
-/// Bits of all positions and velocities: `==` would take −0 for 0, and NaN for a difference.
+/// Returns the bit patterns of all positions, angles and velocities. Bit patterns differ for 0 and −0 and are equal for
+/// equal NaN; `==` treats both cases the other way round.
 pub fn bits(simulation: &Simulation) -> Vec<[u64; 6]> {
     let grains = &simulation.world().grains;
     let of = |k: usize| {
@@ -152,8 +154,8 @@ pub fn bits(simulation: &Simulation) -> Vec<[u64; 6]> {
     (0..grains.len()).map(of).collect()
 }
 
-/// Velocity error of the next step's first problem against the friction model that is solved, by the measure that
-/// stops the solver, m/s.
+/// Returns the estimated velocity error of the first contact problem of the next step, m/s. The error refers to the
+/// friction model that is solved, and its measure is the same as in the stop test of the solver.
 pub fn error_against_model(simulation: &Simulation) -> f64 {
     struct OfModel(SolverSettings);
 
@@ -179,7 +181,7 @@ pub fn moving(position: DVec2, radius: f64, velocity: DVec2) -> Grain {
     Grain { velocity, ..Grain::at_rest(position, radius) }
 }
 
-/// Panics unless the two differ by at most `tolerance` times the larger one.
+/// Panics unless two numbers differ by at most `tolerance` times the larger magnitude.
 #[track_caller]
 pub fn assert_close(found: f64, expected: f64, tolerance: f64, what: &str) {
     let scale = found.abs().max(expected.abs());
@@ -194,8 +196,8 @@ pub fn random(seed: u64) -> Pcg64 {
     Pcg64::seed_from_u64(seed)
 }
 
-/// `count` discs pressed together on a lattice over a rough base, so that about half of all neighbours overlap.
-/// Velocities and spins times radius are about `speed` (m/s).
+/// Returns a scene with `count` discs pressed together on a lattice over a rough base, so that about half of all
+/// neighbours overlap. Velocities, and angular velocities times the radius, are about `speed` (m/s).
 pub fn pressed_pile(count: usize, speed: f64, seed: u64, parameters: Parameters) -> Scene {
     let mut random = random(seed);
     let diameter = 5e-3;
@@ -222,9 +224,10 @@ pub fn pressed_pile(count: usize, speed: f64, seed: u64, parameters: Parameters)
     Scene { fixed_discs: rough_base(columns as f64 + 2.0, diameter), ..under_g(parameters, grains) }
 }
 
-/// Logs at rest; beside them a spinning disc that falls on the floor, a disc that overlaps the floor, and a disc
-/// whose stretched bond to the floor survives. These discs touch no other grain: with friction, several solutions
-/// would exist and rounding would choose one.
+/// Returns a scene with logs at rest and three discs to the side: a spinning disc that falls on the floor, a disc that
+/// overlaps the floor, and a disc with a stretched bond to the floor that does not break. The three discs touch no
+/// other grain. With friction, contacts between several grains can have several solutions, and rounding would choose
+/// between them.
 pub fn at_rest_and_falling() -> Scene {
     let mut scene = logs(1.0);
     let aside = |x: f64, y: f64| Grain::at_rest(scene.mean_diameter * DVec2::new(x, y), 0.005);
@@ -282,7 +285,7 @@ pub fn after(scene: &Scene, steps: usize) -> Simulation {
     run
 }
 
-/// The error message of a refused scene.
+/// Checks that Slump refuses a scene. Returns the error message.
 #[track_caller]
 pub fn refused(scene: &Scene) -> String {
     let said = scene.simulation().map(|_| ()).expect_err("a scene with a fault").to_string();
@@ -290,7 +293,7 @@ pub fn refused(scene: &Scene) -> String {
     said
 }
 
-/// The scene in each of these ways to step, with the name of the way.
+/// Returns a copy of the scene for each combination of stepper and method, together with the name of the combination.
 pub fn in_each_way(
     scene: &Scene,
     ways: Vec<(Stepper, Method)>,
@@ -302,8 +305,8 @@ pub fn in_each_way(
     ways.into_iter().map(of)
 }
 
-/// Takes a step. Returns its observables, the change of kinetic energy that the works do not explain, and the sum of
-/// the magnitudes of all works and both energies, J.
+/// Takes one step. Returns the observables of the step, the change of kinetic energy that the works do not explain (J),
+/// and the sum of the magnitudes of all works and of both kinetic energies (J).
 pub fn balance(run: &mut Simulation) -> (Observables, f64, f64) {
     let before = run.observables().kinetic_energy;
     let after = *run.step().expect("a finite state");
@@ -333,7 +336,7 @@ pub trait Look {
         &self.grains().velocities
     }
 
-    /// Highest speed of a grain, m/s.
+    /// Returns the highest speed of a grain, m/s.
     fn fastest(&self) -> f64 {
         self.velocities().iter().map(|velocity| velocity.length()).fold(0.0, f64::max)
     }
@@ -349,10 +352,10 @@ pub fn farthest(one: &[DVec2], other: &[DVec2]) -> f64 {
     one.iter().zip(other).map(|(one, other)| one.distance(*other)).fold(0.0, f64::max)
 }
 
-/// The steppers that do not solve a problem of the whole step and move the grains by their impulses.
+/// Steppers that do not solve one contact problem for the whole step and that move the grains by impulses only.
 pub const SCHEMES: [Stepper; 2] = [Stepper::TgsSoft, Stepper::Dem];
 
-/// [`SCHEMES`] and `avbd`, which moves bodies slightly further than their impulses.
+/// [`SCHEMES`] and the stepper `avbd`, which moves grains slightly further than the impulses would.
 pub const ALL_SCHEMES: [Stepper; 3] = [Stepper::TgsSoft, Stepper::Avbd, Stepper::Dem];
 
 pub fn by(stepper: Stepper, substeps: u32, mut scene: Scene) -> Scene {
@@ -360,7 +363,8 @@ pub fn by(stepper: Stepper, substeps: u32, mut scene: Scene) -> Scene {
     Scene { stepper, ..scene }
 }
 
-/// Two unequal discs that are about to meet, tilted against the axes unless they are on a line.
+/// Returns a scene of two unequal discs shortly before they collide. Unless the motion is along the x axis only, the
+/// line between the centres is tilted against both axes.
 pub fn meeting(physics: Physics, restitution: f64, dt: f64) -> Scene {
     let direction = if physics.axes == 1 { DVec2::X } else { DVec2::new(0.6, 0.8) };
     let grains = [(0.0, 0.15, 0.7), (0.25 + 1e-9, 0.1, -0.3)].map(|(place, radius, speed)| Grain {
@@ -370,7 +374,7 @@ pub fn meeting(physics: Physics, restitution: f64, dt: f64) -> Scene {
     scene(physics, -G * direction, parameters(0.0, dt, restitution, 0.5), grains.into())
 }
 
-/// Velocity of the second grain relative to the first, m/s.
+/// Returns the velocity of the second grain relative to the first, m/s.
 pub fn relative_velocity(simulation: &Simulation) -> DVec2 {
     let velocities = &simulation.world().grains.velocities;
     velocities[1] - velocities[0]
@@ -386,7 +390,8 @@ pub fn effective_mass(simulation: &Simulation) -> f64 {
     1.0 / (1.0 / masses[0] + 1.0 / masses[1])
 }
 
-/// Panics unless the message is `expected`, or begins with it if `expected` ends with an ellipsis.
+/// Panics unless the message `said` is equal to `expected`. If `expected` ends with an ellipsis, the message only has
+/// to begin with the text before the ellipsis.
 #[track_caller]
 pub fn assert_said(said: &str, expected: &str) {
     match expected.strip_suffix('…') {
@@ -395,10 +400,10 @@ pub fn assert_said(said: &str, expected: &str) {
     }
 }
 
-/// The expected error message, and the change that makes the scene wrong.
+/// An expected error message, and a function that makes a good scene wrong so that this message is due.
 pub type Refusal<'a> = (&'a str, &'a dyn Fn(&mut Scene));
 
-/// Checks the error messages of a scene after each of these changes.
+/// Applies each change to a copy of a good scene and checks the error message of the changed scene.
 #[track_caller]
 pub fn refuses(good: &Scene, cases: &[Refusal]) {
     for (expected, spoil) in cases {
@@ -408,7 +413,7 @@ pub fn refuses(good: &Scene, cases: &[Refusal]) {
     }
 }
 
-/// Checks a property for `cases` random inputs, which are the same each time.
+/// Checks a property for `cases` random inputs. The seed is fixed, so the inputs are the same in each run of the tests.
 pub fn for_random<S: proptest::strategy::Strategy>(
     cases: u32,
     inputs: S,
@@ -421,7 +426,8 @@ pub fn for_random<S: proptest::strategy::Strategy>(
     runner.run(&inputs, property).unwrap_or_else(|failure| panic!("{failure}"));
 }
 
-/// Finds the value up to which `holds` is true, by bisection between `low` (true) and `high` (false).
+/// Returns the value up to which the condition `holds` is true, found by bisection between `low` (true) and `high`
+/// (false).
 #[track_caller]
 pub fn border(mut low: f64, mut high: f64, halvings: u32, holds: impl Fn(f64) -> bool) -> f64 {
     assert!(holds(low) && !holds(high), "the border is between {low} and {high}");
@@ -432,7 +438,7 @@ pub fn border(mut low: f64, mut high: f64, halvings: u32, holds: impl Fn(f64) ->
     low
 }
 
-/// All pairs of two collections.
+/// Returns all pairs of an item of the first and an item of the second collection.
 pub fn pairs<A: Clone, B: Clone>(
     some: impl IntoIterator<Item = A>,
     others: impl IntoIterator<Item = B>,
@@ -442,7 +448,7 @@ pub fn pairs<A: Clone, B: Clone>(
     some.into_iter().flat_map(with_others).collect()
 }
 
-/// All triples of three collections.
+/// Returns all triples of an item of the first, second and third collection.
 pub fn triples<A: Clone, B: Clone, C: Clone>(
     some: impl IntoIterator<Item = A>,
     others: impl IntoIterator<Item = B>,

@@ -1,34 +1,38 @@
-//! An independent check of a solved step, written from the design. It uses positions, velocities and impulses, and
-//! none of the solver's arithmetic.
+//! An independent check of a solved step. It computes the natural map from positions, velocities and impulses by the
+//! equations of the documentation, and shares no arithmetic with the solver.
 
 use glam::DVec2;
 use slump::sim::Simulation;
 use slump::world::{FrictionCone, Grains, Motion, MotionCourse, Parameters};
 
-/// A contact as the design describes it, from world data only.
+/// Contact quantities that the contact law needs, computed only from positions and velocities of the bodies. Masses are
+/// in kg, the cohesion impulse in N·s.
 pub struct Judged {
     pub normal_mass: f64,
     pub tangential_mass: f64,
     pub cohesion_impulse: f64,
-    /// (v_n, v_t) at the beginning, at the end, and without contact impulses.
+    /// Relative velocity (v_n, v_t) at the beginning of the step, m/s.
     pub before: [f64; 2],
+    /// Relative velocity (v_n, v_t) at the end of the step, m/s.
     pub after: [f64; 2],
+    /// Relative velocity (v_n, v_t) at the end of the step if no contact impulse acted, m/s.
     pub free: [f64; 2],
-    /// Term that the law adds to v_n at the end, m/s: ρ times the initial v_n, or the speed that closes a gap within
-    /// the touch tolerance.
+    /// Term that the contact law adds to the normal velocity v_n at the end of the step, m/s: ρ times the initial v_n
+    /// or, for an open gap within the touch tolerance, the speed that closes the gap in one step.
     pub rebound: f64,
 }
 
-/// Gap up to which grains touch: in mean diameters, and as part of the touch tolerance.
+/// Largest gap at which grains already push each other, in mean diameters; it allows for rounding of positions. Half
+/// the touch tolerance is used instead if it is smaller.
 const ROUNDING: f64 = 1e-4;
 
-/// Velocities and spins of the grains, for [`judge`].
+/// Velocities and angular velocities of the grains.
 type Velocities = (Vec<DVec2>, Vec<f64>);
 
 const NONE: (DVec2, f64) = (DVec2::ZERO, 0.0);
 
-/// Velocity of a fixed body and speed of its surface along itself, m/s. Boundaries are half-spaces and courses are
-/// straight.
+/// Returns the velocity of a fixed body and the speed of its surface along itself, m/s. Supports only half-spaces and
+/// straight motions.
 fn wall_velocity(simulation: &Simulation, other: u32) -> (DVec2, f64) {
     let world = simulation.world();
     let body = other as usize - world.grains.len();
@@ -98,7 +102,8 @@ pub fn judge(simulation: &Simulation, before: &Grains) -> Vec<Judged> {
     .collect()
 }
 
-/// The residual's ‖error‖ and ‖scale‖, and the distance of the impulses from their cones, N·s.
+/// Returns the norms of the natural map and of its scale, whose quotient is the residual, and the largest distance of
+/// an impulse outside its friction cone, all in N·s.
 pub fn natural_map(simulation: &Simulation, before: &Grains) -> (f64, f64, f64) {
     let Parameters { friction, cone, .. } = *simulation.parameters();
     let (mut error, mut scale, mut outside) = (0.0, 0.0, 0f64);

@@ -1,4 +1,4 @@
-//! Properties of a video, read by ffprobe.
+//! Reads properties of a video file with the program ffprobe.
 
 use std::path::Path;
 use std::process::Command;
@@ -10,7 +10,7 @@ pub struct Probed {
     pub size: [u64; 2],
     pub rate_hz: String,
     pub pictures: usize,
-    /// Numbers of the key frames, from 1.
+    /// Numbers of the key frames; the first frame has number 1.
     pub key_pictures: Vec<usize>,
     pub comment: String,
 }

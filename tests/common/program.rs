@@ -1,4 +1,4 @@
-//! The program from outside: starting it, and reading its messages and files.
+//! Helpers for tests that run Slump as a separate program: starting it, and reading its messages and files.
 
 #![allow(dead_code, unused_imports, reason = "every test binary uses its own part of this")]
 
@@ -9,11 +9,12 @@ pub use std::time::{Duration, Instant};
 pub use serde_json::Value;
 pub use tempfile::TempDir;
 
-/// Longer than anything that a test waits for, even on a busy machine.
+/// Time limit for waiting. It is longer than any wait in a test, even on a busy machine.
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
-/// The program that was built with these tests, or the program that `SLUMP_PROGRAM` names: a program with fewer
-/// features is tested without rebuilding the tests. `line` has the first arguments, separated by blanks.
+/// Returns a command that starts Slump: the program named by the environment variable `SLUMP_PROGRAM` or, by default,
+/// the program that was built with the tests. With the variable, a program with fewer features is tested without
+/// rebuilding the tests. `line` has the first arguments, separated by blanks.
 pub fn slump(line: &str) -> Command {
     let built = || assert_cmd::cargo::cargo_bin!("slump").to_path_buf();
     let mut command =
@@ -24,8 +25,8 @@ pub fn slump(line: &str) -> Command {
     command
 }
 
-/// Gives a program the signal handling of a terminal, even if the tests were started with ignored signals (`nohup`, a
-/// background job of a script): programs inherit ignored signals, and Slump leaves them ignored.
+/// Gives a child process the signal handling of a terminal, even if the tests were started with ignored signals (by
+/// `nohup` or as a background job of a script). Programs inherit ignored signals, and Slump does not change them.
 #[cfg(unix)]
 fn heed_signals(command: &mut Command) {
     let default = || {
@@ -97,7 +98,7 @@ pub fn succeed(command: &mut Command) -> String {
     said
 }
 
-/// Runs a program that must end with code 2. Returns its stderr.
+/// Runs a program and checks that its exit code is 2. Returns its stderr.
 #[track_caller]
 pub fn failure(command: &mut Command) -> String {
     let output = run(command);
@@ -106,7 +107,7 @@ pub fn failure(command: &mut Command) -> String {
     said
 }
 
-/// Runs a program that must refuse with one sentence. Returns the sentence.
+/// Runs a program and checks that it fails with exit code 2 and an error message of one line. Returns the message.
 #[track_caller]
 pub fn sentence(command: &mut Command) -> String {
     let said = failure(command);
@@ -122,7 +123,7 @@ pub fn wait_for(what: &str, mut is_there: impl FnMut() -> bool) {
     }
 }
 
-/// Sends a signal to a process, or to a process group if the number is negative.
+/// Sends a signal to a process. A negative number means a process group.
 pub fn send(signal: &str, process: i64) {
     let number = match signal {
         "HUP" => libc::SIGHUP,
@@ -137,7 +138,7 @@ pub fn send(signal: &str, process: i64) {
     assert_eq!(sent, 0, "{signal} to {process}: {}", std::io::Error::last_os_error());
 }
 
-/// Waits until a program ends. Returns its exit code.
+/// Waits until a child process ends. Returns its exit code.
 pub fn ended(child: &mut Child) -> Option<i32> {
     let mut status = None;
     wait_for("the end", || {
@@ -147,7 +148,7 @@ pub fn ended(child: &mut Child) -> Option<i32> {
     status.and_then(|status| status.code())
 }
 
-/// Kills a program with SIGKILL, as a loss of power would end it.
+/// Kills a child process with SIGKILL, so that it ends as abruptly as in a power failure.
 pub fn kill(child: &mut Child) {
     child.kill().expect("kill -9");
     child.wait().expect("it ended");

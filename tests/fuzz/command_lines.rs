@@ -1,7 +1,7 @@
-//! Whole command lines: the program is started, and its messages and files are checked.
+//! Tries whole command lines: starts the program, and checks its messages and files.
 //!
-//! An input is a text with one argument per line. After an empty line comes the file that the word `FILE` in the
-//! arguments stands for. `OUT` stands for a folder.
+//! An input is a text with one argument per line. After an empty line it contains a scene file. In the arguments,
+//! `FILE` stands for the path of this file, and `OUT` for an output folder.
 
 use arbitrary::{Result, Unstructured};
 use serde_json::json;
@@ -14,10 +14,10 @@ use super::parsers::{NUMBERS, WORDS, is_legible, one_of};
 use super::scenes::scene_text;
 use crate::program::*;
 
-/// Time limit for a command, shorter than that for an input.
+/// Time limit for a command, shorter than the time limit for an input.
 const SLOWEST: Duration = Duration::from_secs(180);
 
-/// Values that must be refused, for options that make a run long: a random accepted value could take too long.
+/// Values that must be refused. They are tried instead of random values for options that can make a run long.
 const REFUSED: &str = "-1 nan inf -inf 1e300 -1e-300 much 0x10";
 
 /// Options with meaningful values.
@@ -46,7 +46,7 @@ const OPTIONS: [&str; 23] = [
     "--theme light dark",
     "--start 6 6.5 8",
 ];
-/// Options that accept large values and then take a long time.
+/// Options that accept large values, with which a run takes a long time.
 const LONG: [&str; 6] = [
     "--substeps 0 1 7",
     "--stiffness 0 10 1e4",
@@ -58,7 +58,7 @@ const LONG: [&str; 6] = [
 const SCENES: &str =
     "pile cradle collision mass-ratio squeeze moving-walls thin-wall bounce newtons-cradle";
 
-/// A good value, or in rare cases another one.
+/// Returns a good value or, in rare cases, a random or a wrong value.
 fn value(u: &mut Unstructured<'_>, good: &str, long: bool) -> Result<String> {
     let line = match (u.ratio(19, 20)?, long) {
         (true, _) => good,
@@ -68,7 +68,7 @@ fn value(u: &mut Unstructured<'_>, good: &str, long: bool) -> Result<String> {
     Ok(one_of(u, line)?.replace('\0', "0"))
 }
 
-/// Arguments for the source of the scene and the duration. Returns true if the scene is in a file.
+/// Adds arguments for the scene and the duration. Returns true if the scene is in a file.
 fn origin(u: &mut Unstructured<'_>, arguments: &mut Vec<String>) -> Result<bool> {
     let from_file = u.ratio(1, 3)?;
     if from_file {
@@ -83,7 +83,8 @@ fn origin(u: &mut Unstructured<'_>, arguments: &mut Vec<String>) -> Result<bool>
         arguments.extend(["--scene".to_owned(), value(u, SCENES, true)?]);
     }
     let time_step_secs = *u.choose(&[1e-4, 1e-3, 5e-3, 0.1])?;
-    // Few steps: each may be cut into a hundred pieces, and one of the pile takes 0.1 s if its solve stalls.
+    // Only a few steps, because each step may be divided into a hundred substeps, and a substep of the pile takes 0.1 s
+    // if its solve stalls.
     let steps = f64::from(u.int_in_range(0..=160)?) / 20.0;
     let duration = format!("{}", steps * time_step_secs);
     let time_step = format!("{time_step_secs}");
@@ -123,7 +124,7 @@ fn command_line(u: &mut Unstructured<'_>) -> Result<String> {
     Ok(format!("{}\n\n{file}", arguments.join("\n")))
 }
 
-/// Checks the properties of all command lines. Returns true if the command was accepted.
+/// Checks the properties that hold for all command lines. Returns true if the program accepted the command.
 fn check(input: &str) -> bool {
     let (arguments, file) = input.split_once("\n\n").expect("arguments, and a file or none");
     let folder = folder();
@@ -165,7 +166,7 @@ fn check(input: &str) -> bool {
     code == 0
 }
 
-/// Checks that the outputs of commands that draw nothing can be read back, or do not exist.
+/// Checks the outputs of commands that draw nothing: they can be read back, or do not exist.
 fn check_other(arguments: &[String], code: i32, stdout: &[u8], out: &Path) {
     if arguments.first().is_some_and(|word| word == "scene") && code == 0 {
         let path = out.join("scene.toml");
@@ -185,7 +186,7 @@ fn command_lines_and_what_they_leave() {
     target.fuzz(&target.corpus(), command_line, |text, _| check(text));
 }
 
-/// Checks the folder of a run that ended by itself with `code` and wrote `stderr`.
+/// Checks the folder of a run that ended by itself with the exit code `code` and wrote `stderr`.
 pub fn check_books(folder: &Path, code: i32, stderr: &str) {
     let rows = rows_of(&folder.join("observables.csv"));
     let manifest = manifest(folder);
@@ -223,7 +224,7 @@ fn alarms(run: &Value, rows: &[Observables], stderr: &str) {
     let any = |wrong: fn(&Observables) -> bool| rows.iter().any(wrong);
     let is_told = ["grain-lost", "grain-left", "placed-in-overlap"].into_iter().any(has);
     assert!(!any(|row| row.lost_grains > 0) || is_told, "{run}");
-    // The table has overlaps in mean diameters, the alarm in diameters of the smaller disc.
+    // The table has overlaps in mean diameters, but the alarm uses diameters of the smaller disc.
     assert!(!has("overlap") || any(|row| row.max_overlap > 0.0), "{run}");
     for alarm in alarms.iter().filter(|alarm| alarm["kind"] != "not-finite") {
         let message = alarm["message"].as_str().expect("a sentence");
@@ -234,7 +235,8 @@ fn alarms(run: &Value, rows: &[Observables], stderr: &str) {
     }
 }
 
-/// Checks that the folder has exactly the pictures that the manifest names, and that each shows a row of the table.
+/// Checks that the folder has exactly the pictures that the manifest names, and that each picture shows a row of the
+/// table.
 fn pictures(folder: &Path, manifest: &Value, rows: &[Observables]) {
     let listed = manifest["pictures"].as_array().expect("a list");
     for picture in listed {

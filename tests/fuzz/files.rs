@@ -1,4 +1,5 @@
-//! Carefully crafted hostile files: columnar files with a false structure, changed and resealed saved runs, and links.
+//! Tries carefully made hostile files: Parquet files with a wrong structure, saved runs with changed content and a
+//! correct checksum, and links.
 
 use slump::config::SavedState;
 use slump::data::read_grains;
@@ -10,7 +11,7 @@ use super::parsers::{NUMBERS, changed, check, is_legible, one_of};
 use crate::columnar::Columnar;
 use crate::program::*;
 
-/// Whole numbers that headers have, and some that are impossible.
+/// Whole numbers that occur in headers, and impossible ones.
 const COUNTS: [i64; 12] = [0, 1, 2, 3, 5, 8, 16, 1 << 20, 1 << 28, i32::MAX as i64, i64::MAX, -1];
 
 #[test]
@@ -41,7 +42,7 @@ fn columnar_files_by_structure() {
                 let place = u.choose_index(bytes.len())?;
                 bytes[place] ^= 1 << u.int_in_range(0..=7)?;
             }
-            // Each byte as a character, because an input is a text.
+            // Each byte becomes a character, because an input is a text.
             Ok(bytes.into_iter().map(char::from).collect())
         },
         |text, path| {
@@ -51,7 +52,7 @@ fn columnar_files_by_structure() {
     );
 }
 
-/// A file of a saved run with this content.
+/// Returns a saved run with this content and a correct checksum.
 fn sealed(whole: &[u8], content: &[u8]) -> Vec<u8> {
     let end = whole.iter().position(|&byte| byte == b'\n').expect("a first line");
     let line = std::str::from_utf8(&whole[..end]).expect("UTF-8");
@@ -112,7 +113,7 @@ fn links() {
             Ok(link.replace('\0', "0"))
         },
         |link, _| {
-            // Without a screen no window opens, but the link is read first.
+            // Without a screen no window opens, but the link is read before.
             let mut command = assert_cmd::Command::from_std(slump("--open"));
             command.arg(link).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
             let output = command.timeout(PATIENCE).output().expect("it starts");

@@ -1,10 +1,11 @@
-//! Random hostile input: nearly correct texts for every parser, absurd scenes with every stepper, method and remedy,
-//! and whole command lines. Nothing may panic, hang or fail silently.
+//! Fuzzing with random hostile input: nearly correct texts for every parser, absurd scenes with every stepper, method
+//! and remedy, and whole command lines. Nothing may panic, hang or fail silently.
 //!
-//! Each run tries the same inputs. Their number is that of the target, or `SLUMP_FUZZ_TIMES` times as many, or as
-//! many as fit into `SLUMP_FUZZ_SECS` seconds per target. Another `SLUMP_FUZZ_SEED` gives other inputs;
-//! `ARBTEST_SEED` gives the input whose seed a failure names. A failing input stays in a file that the failure names.
-//! Move it to the target's folder in `corpus/`, whose files are tried first, and leave it there.
+//! Each run tries the same inputs. A target is one kind of input, and it defines the number of its inputs.
+//! `SLUMP_FUZZ_TIMES` multiplies this number; `SLUMP_FUZZ_SECS` tries inputs for so many seconds per target instead.
+//! Another `SLUMP_FUZZ_SEED` gives other inputs. `ARBTEST_SEED` gives only the input with the seed that a failure
+//! message names. A failing input stays in a file that the failure message names. Move this file to the folder of its
+//! target in `corpus/` and keep it there: these files are tried first.
 
 #[path = "../common/columnar.rs"]
 mod columnar;
@@ -22,20 +23,21 @@ use arbitrary::Unstructured;
 use program::*;
 use trial::Trial;
 
-/// Bytes from which an input is made: more than any needs.
+/// Number of random bytes from which an input is made. No input needs more.
 const DRAWN_FROM: u64 = 1 << 16;
 
 #[derive(Clone, Copy)]
 struct Target {
     name: &'static str,
     ending: &'static str,
-    /// Inputs in the ordinary suite, for about a second.
+    /// Number of inputs in an ordinary test run, which takes about a second.
     inputs: u64,
 }
 
 impl Target {
-    /// Tries the `kept` inputs and then those that `draw` makes of random bytes, as often as requested, and prints
-    /// their number. `check` gets each input as a text and as a file, and returns true if it was accepted.
+    /// Tries the inputs in `kept` and then inputs that `draw` makes of random bytes, as often as requested, and prints
+    /// their number. `check` gets each input as a text and as a file, and returns true if the program accepted the
+    /// input.
     fn fuzz(
         self,
         kept: &[String],
@@ -67,7 +69,7 @@ impl Target {
         println!("{}: {inputs} inputs, {} of them kept, {taken} taken", self.name, kept.len());
     }
 
-    /// All inputs that ever failed, and known hostile ones.
+    /// Returns all stored inputs: those that have failed at some time, and known hostile inputs.
     fn corpus(self) -> Vec<String> {
         let ours = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/corpus");
         let folder = ours.join(self.name);
@@ -80,7 +82,7 @@ fn asked_for(variable: &str) -> Option<u64> {
     std::env::var(variable).ok().map(number)
 }
 
-/// The seed of an input of a run: random bits in the upper half, and the number of bytes in the lower half.
+/// Returns the seed of an input of a run: random bits in the upper half, and the number of bytes in the lower half.
 fn seed(run: u64, number: u64) -> u64 {
     let hash = blake3::hash(&[run.to_le_bytes(), number.to_le_bytes()].concat());
     let random = hash.as_bytes().iter().take(4).fold(0, |seed, &byte| seed << 8 | u64::from(byte));

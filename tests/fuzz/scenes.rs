@@ -1,4 +1,4 @@
-//! Absurd scenes with every stepper, method and remedy, for fifty steps.
+//! Runs absurd scenes with every stepper, method and remedy, for fifty steps.
 
 use arbitrary::{Result, Unstructured};
 use glam::DVec2;
@@ -121,7 +121,7 @@ fn scene(u: &mut Unstructured<'_>, size: f64) -> Result<Scene> {
     scene.mean_diameter = 2.0 * scene.grains[0].radius;
     scene.gap_tolerance = *u.choose(&[0.0, 0.0, 1e-9, 1e-3])? * scene.mean_diameter;
     scene.view = None;
-    // Fifty steps long, so that a run from its file is not longer.
+    // The duration is fifty steps, so that a run from the scene's file is not longer.
     scene.duration_secs = 50.0 * scene.parameters.time_step_secs;
     let discs = u.int_in_range(0..=3)?;
     let disc = |u: &mut Unstructured<'_>| {
@@ -152,7 +152,7 @@ fn scene(u: &mut Unstructured<'_>, size: f64) -> Result<Scene> {
     Ok(scene)
 }
 
-/// A motion of the first boundary by a force.
+/// Returns a motion of the first boundary by a force.
 fn driven(u: &mut Unstructured<'_>, size: f64) -> Result<Motion> {
     let drive = Drive {
         direction: point(u, size)?,
@@ -166,7 +166,7 @@ fn driven(u: &mut Unstructured<'_>, size: f64) -> Result<Motion> {
     Ok(Motion { boundaries: vec![0], drive: Some(drive), ..Motion::default() })
 }
 
-/// A motion of all fixed bodies that can move, on any course.
+/// Returns a motion of all fixed bodies that can move, on any kind of course.
 fn motion(u: &mut Unstructured<'_>, size: f64, scene: &Scene) -> Result<Motion> {
     let is_free = |index: &usize| !matches!(scene.boundaries[*index], Boundary::Piston { .. });
     let (pivot, travel) = (point(u, size)?, *u.choose(&[None, None, Some(0.0), Some(0.3)])?);
@@ -195,7 +195,7 @@ fn motion(u: &mut Unstructured<'_>, size: f64, scene: &Scene) -> Result<Motion> 
     })
 }
 
-/// The scene on the x axis only.
+/// Returns the scene in one dimension, on the x axis.
 fn on_line(mut scene: Scene) -> Scene {
     scene.physics = Physics { axes: 1, friction: false, rotation: false, ..scene.physics };
     for grain in &mut scene.grains {
@@ -214,7 +214,7 @@ fn on_line(mut scene: Scene) -> Scene {
     scene
 }
 
-/// A box around the whole scene.
+/// Returns a box around the whole scene.
 fn closed_box(size: f64) -> Boundary {
     let half = 1.5 * size;
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]];
@@ -252,9 +252,9 @@ fn random_scenes_with_everything() {
 }
 
 const STEPS: u32 = 50;
-/// Depth beyond a wall at which a grain may still be undetected, in its radii.
+/// Depth beyond a wall at which Slump may not have counted a grain as lost yet, in radii of the grain.
 const UNSEEN_IN_RADII: f64 = 0.3;
-/// Distance that is certainly outside the world, in sides of the box around the initial scene.
+/// Distance at which a grain must count as lost, in sides of the box around the initial scene.
 const FAR_IN_SIDES: f64 = 4.0;
 
 pub fn run(scene: &Scene, mut simulation: Simulation) {
@@ -291,8 +291,8 @@ fn has(simulation: &Simulation, kind: AlarmKind) -> bool {
     simulation.alarms().iter().any(|alarm| alarm.kind == kind)
 }
 
-/// Checks that all motions and measures are finite, unless there is an alarm. The residual of an unsolved step may be
-/// anything.
+/// Checks that positions and velocities are finite, and that all measured numbers are finite unless there is an alarm.
+/// The residual of an unsolved step may have any value.
 fn finite(simulation: &Simulation, stepper: Stepper, step: &Observables) {
     let grains = &simulation.world().grains;
     assert!(grains.positions.iter().chain(&grains.velocities).all(|v| v.is_finite()));
@@ -315,7 +315,8 @@ fn finite(simulation: &Simulation, stepper: Stepper, step: &Observables) {
     assert!(all.into_iter().all(f64::is_finite) || !simulation.alarms().is_empty(), "{step:?}");
 }
 
-/// Checks that a step reported as solved has a residual within its tolerance, against the model that was solved.
+/// Checks that a step that is reported as solved has a residual within its tolerance, for the friction model that was
+/// solved.
 fn solved(scene: &Scene, step: &Observables) {
     assert!(!(step.converged && step.stalled), "{step:?}");
     let to_residual = scene.solver.stop == StopTest::Residual && scene.stepper.uses_method();
@@ -326,7 +327,7 @@ fn solved(scene: &Scene, step: &Observables) {
     }
 }
 
-/// True if a grain is at a place that none can reach, provided that fixed bodies do not move.
+/// Returns true if a grain is at a position that no grain can reach. Always false if fixed bodies move.
 fn is_gone(scene: &Scene, simulation: &Simulation, grain: usize) -> bool {
     if !scene.motions.is_empty() {
         return false;
@@ -346,7 +347,7 @@ fn is_gone(scene: &Scene, simulation: &Simulation, grain: usize) -> bool {
     scene.boundaries.iter().any(beyond) || is_far(scene, to)
 }
 
-/// True if a place is far from the initial scene, if the scene is bounded.
+/// Returns true if the scene is bounded and a position is far from the initial scene.
 fn is_far(scene: &Scene, place: DVec2) -> bool {
     let mut fixed: Vec<DVec2> = scene.fixed_discs.iter().map(|disc| disc.position).collect();
     for boundary in &scene.boundaries {
@@ -364,7 +365,7 @@ fn is_far(scene: &Scene, place: DVec2) -> bool {
     fixed.extend(scene.grains.iter().map(|grain| grain.position));
     let min = fixed.iter().copied().fold(DVec2::INFINITY, DVec2::min);
     let max = fixed.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
-    // A cell with borders that wrap is part of the box: a wide cell makes the world wide, and equally high.
+    // A periodic cell is a part of the box. If the cell is wide, the allowed distance is large, in y, too.
     let Periodic { x, y, .. } = scene.periodic.unwrap_or_default();
     let [left, right] = x.unwrap_or([min.x, max.x]);
     let [below, above] = y.unwrap_or([min.y, max.y]);
@@ -374,7 +375,7 @@ fn is_far(scene: &Scene, place: DVec2) -> bool {
     !((min - room).cmple(place).all() && (max + room).cmpge(place).all())
 }
 
-/// True if a place is within a closed line: a ray from it crosses the line an odd number of times.
+/// Returns true if a position is inside a closed line: a ray from it crosses the line an odd number of times.
 fn is_within(line: &[DVec2], place: DVec2) -> bool {
     let cuts = line.windows(2).filter(|ends| {
         let [a, b] = [ends[0] - place, ends[1] - place];

@@ -1,4 +1,4 @@
-//! Trials of inputs, one after the other, each in a file while it is tried.
+//! Tries inputs one after the other. Each input is in a file while it is tried.
 
 use std::io::Write;
 use std::sync::{Arc, Mutex};
@@ -6,8 +6,8 @@ use std::sync::{Arc, Mutex};
 use super::Target;
 use crate::program::*;
 
-/// Time after which an input counts as a hang, longer than any takes on a busy machine. Fifty long steps of small
-/// grains with as many substeps as are stable take ten seconds of an idle machine.
+/// Time after which an input counts as a hang. It is longer than any input takes, even on a busy machine. Fifty long
+/// steps of small grains with as many substeps as are stable take ten seconds on an idle machine.
 const SLOWEST: Duration = Duration::from_secs(200);
 
 /// Tries inputs. A failing input stays in its file, whether it panics, hangs or ends the process.
@@ -50,15 +50,16 @@ impl Drop for Trial {
     }
 }
 
-/// Ends the process if an input hangs, because no test can.
+/// Starts a thread that ends the process if an input hangs, because a hanging test cannot end itself.
 fn watch(path: PathBuf, begun: Arc<Mutex<Option<Instant>>>) {
     std::thread::spawn(move || {
-        // The trial has the other reference.
+        // The owner of the trial has the other reference, so the loop ends with the trial.
         while Arc::strong_count(&begun) > 1 {
             std::thread::sleep(Duration::from_millis(200));
             let hangs = |begun: Instant| begun.elapsed() > SLOWEST;
             if begun.lock().expect("a time").is_some_and(hangs) {
-                // Tests hold printed lines back, and the process ends here.
+                // The test framework delays printed lines, and the process ends here, so the message is written
+                // directly.
                 let said = format!("no end after {SLOWEST:?}; the input is {}\n", path.display());
                 let _ = std::io::stderr().write_all(said.as_bytes());
                 std::process::exit(1);

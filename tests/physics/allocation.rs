@@ -1,5 +1,5 @@
-//! Steps of a pile at rest allocate nothing. Each thread counts its own allocations; a pile this small uses one
-//! thread.
+//! Checks that steps of a pile at rest allocate no memory. Each thread counts its own allocations; a pile this small
+//! uses a single thread.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

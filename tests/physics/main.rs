@@ -1,4 +1,5 @@
-//! The physics: exact solutions, properties of all scenes, methods and steppers against each other, and their limits.
+//! Tests of the physics: exact solutions, properties of all scenes, comparisons of methods and steppers with each
+//! other, and their limits.
 
 #[path = "../common/mod.rs"]
 mod common;

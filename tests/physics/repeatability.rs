@@ -1,4 +1,5 @@
-//! Equal runs are bitwise equal, and the physics does not depend on how a scene is written.
+//! Tests that equal runs are bitwise equal, and that a run does not depend on how its scene is written: position,
+//! mirror image, numbering.
 
 use crate::common::*;
 
@@ -31,11 +32,12 @@ fn a_run_repeats_bitwise_alone_and_in_pools_of_threads() {
 
 #[test]
 fn what_many_grains_do_is_shared_out_over_threads_to_the_same_bits() {
-    // The first test to arrive has made the pool. With one core there is nothing to distribute.
+    // Rayon's global thread pool exists once per process: this call fails if another test has made the pool before.
+    // Three threads are needed even on a machine with one core.
     let _ = rayon::ThreadPoolBuilder::new().num_threads(3).build_global();
     assert!(rayon::current_num_threads() > 1, "several threads");
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
-    // A lattice of discs with different velocities: some touch, others are close.
+    // A lattice of discs with different velocities. Some discs touch, others are close.
     let at = |k: usize| {
         let [column, row] = [k % 110, k / 110].map(|number| number as f64);
         let shift = 0.05 * DVec2::new((k as f64).sin(), (1.7 * k as f64).cos());
@@ -45,8 +47,8 @@ fn what_many_grains_do_is_shared_out_over_threads_to_the_same_bits() {
     for (stepper, method) in every_way() {
         let mut scene = under_g(parameters(20.0, 1e-3, 0.3, 0.5), (0..110 * 160).map(at).collect());
         (scene.stepper, scene.solver.method, scene.solver.max_sweeps) = (stepper, method, 3);
-        // Direct methods run the same code with any number of threads; three of their steps would take as long as all
-        // the rest.
+        // Direct methods run the same code with any number of threads. Three steps of them would take as long as the
+        // rest of the test.
         if stepper.uses_method() && !matches!(method, Method::Nsgs | Method::NsgsParallel) {
             continue;
         }
@@ -77,7 +79,7 @@ fn runs_repeat_bitwise_and_clones_go_on_as_the_original() {
         pile.parameters = parameters(20.0, 2e-3, 0.1, 0.5);
         (pile, 100, 20, 0.01)
     };
-    // Steps 50 to 250 of the first scene rebuild the candidate list at times that depend on the past.
+    // In the first scene, the steps 50 to 250 rebuild the list of near pairs at times that depend on earlier steps.
     let runs = ALL_SCHEMES.map(by_scheme);
     for (scene, before, later, least) in
         [(collapse(), 50, 200, 0.0), (bonded, 30, 30, -1.0)].into_iter().chain(runs)
@@ -97,7 +99,8 @@ fn runs_repeat_bitwise_and_clones_go_on_as_the_original() {
     }
 }
 
-/// A pile with overlaps, solved far enough that only the scene's symmetry decides.
+/// Returns a scene of an overlapping pile. Its steps get enough sweeps for the result to have the symmetry of the
+/// scene.
 fn pressed(bond: f64) -> Scene {
     let mut scene = pressed_pile(40, 0.05, 11, parameters(bond, 1e-3, 0.3, 0.4));
     scene.solver.max_sweeps = 200;
@@ -116,7 +119,7 @@ fn a_moved_scene_moves_alike() {
         let mut there = here.clone();
         there.grains.iter_mut().for_each(|grain| grain.position += shift);
         there.fixed_discs.iter_mut().for_each(|disc| disc.position += shift);
-        // Only a few steps, because piles are chaotic and rounding errors grow.
+        // Only a few steps are compared, because piles are chaotic and rounding errors grow.
         let (here, there) = (after(&here, 5), after(&there, 5));
         let (a, b) = (here.grains(), there.grains());
         assert!(here.observables().contacts > 60, "{}", here.observables().contacts);
@@ -143,7 +146,7 @@ fn a_mirrored_scene_moves_mirrored() {
         });
         let left = after(&scene, 30);
         let (a, b) = (right.grains(), left.grains());
-        // No operation of a step distinguishes left from right, so even rounding errors are equal.
+        // No operation of a step distinguishes left from right, so even rounding errors are mirrored.
         assert_eq!(largest_distance(&a.positions, &b.positions, mirror), 0.0);
         assert_eq!(largest_distance(&a.velocities, &b.velocities, mirror), 0.0);
         assert!(a.angles.iter().zip(&b.angles).all(|(a, b)| a == &-b));
@@ -153,8 +156,8 @@ fn a_mirrored_scene_moves_mirrored() {
 
 #[test]
 fn renumbered_grains_move_alike_where_the_solution_is_unique() {
-    // Without friction the velocities that solve a step are unique. The order of the sweep, which follows the
-    // numbering, may change them only within the tolerance.
+    // Without friction the velocities that solve a step are unique. The order of a sweep follows the numbering of the
+    // grains, and may change the velocities only within the tolerance.
     for bond in [0.0, 20.0] {
         let mut scene = Scene { physics: SMOOTH, solver: tight(), ..pressed(bond) };
         scene.grains.iter_mut().for_each(|grain| grain.angular_velocity = 0.0);
@@ -171,8 +174,9 @@ fn renumbered_grains_move_alike_where_the_solution_is_unique() {
     }
 }
 
-/// Three discs on a floor and two on top, all overlapping. When friction bounds came from sweeps in the order of the
-/// numbers, swapping the upper two in the list changed the spin of the last disc by 0.08 rad/s.
+/// Three discs lie on a floor and two on top of them; all overlap. If friction bounds came from sweeps in the order of
+/// the numbering, swapping the two upper discs in the list would change the angular velocity of the last disc by 0.08
+/// rad/s.
 #[test]
 fn by_default_a_step_does_not_depend_on_the_numbering_of_its_discs() {
     let discs = [
@@ -208,7 +212,8 @@ fn by_default_a_step_does_not_depend_on_the_numbering_of_its_discs() {
     assert!(bounded > 0.01, "bounds of friction that sweeps make: {bounded:e} rad/s apart");
 }
 
-/// A hanging chain of 12 discs: a cold start needs dozens of sweeps, the right impulses need one.
+/// Returns a scene of a hanging chain of 12 discs. From zero impulses a step needs dozens of sweeps, from the right
+/// impulses a single sweep.
 fn chain() -> Scene {
     let radius = 0.05;
     let place = |k: usize| -DVec2::Y * (k as f64 * (2.0 * radius - 1e-9));
@@ -222,7 +227,7 @@ fn chain() -> Scene {
     }
 }
 
-/// Sweeps that the next step needs to reach a residual of 1e-8.
+/// Takes one step to a residual of 1e-8. Returns the number of sweeps.
 fn sweeps_of_next_step(run: &mut Simulation, warm_start: bool) -> u32 {
     let settings = SolverSettings { warm_start, ..to_residual(1e-8) };
     run.set_solver(settings).expect("proper settings");
@@ -232,7 +237,7 @@ fn sweeps_of_next_step(run: &mut Simulation, warm_start: bool) -> u32 {
 
 #[test]
 fn a_contact_that_goes_leaves_the_others_their_impulses() {
-    // A disc that precedes the chain in the order of contacts falls off the fixed disc.
+    // An additional disc comes before the chain in the order of contacts and falls off the fixed disc.
     let mut scene = chain();
     let place = DVec2::new(0.1 - 1e-9, 0.0);
     let velocity = DVec2::new(3.0, 0.0);

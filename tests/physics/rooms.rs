@@ -1,4 +1,4 @@
-//! The registries are correct: each setting that a stepper is listed to read changes its steps.
+//! Checks the registries of steppers and settings: each setting that a stepper is listed to read changes its steps.
 
 use std::path::Path;
 
@@ -7,10 +7,11 @@ use crate::program::*;
 use slump::config::read_scene;
 use slump::setting::{About, Kind, Value};
 
-/// Enough steps for grains to meet and for warm starts.
+/// Number of compared steps: enough for grains to meet and for the second step to start warm.
 const STEPS: usize = 6;
 
-/// Piles that meet and bounce: with cohesion, without, with too few sweeps to be solved, and under bounded friction.
+/// Returns piles whose grains collide and bounce: with cohesion, without cohesion, with too few sweeps to solve a step,
+/// and with bounded friction.
 fn piles() -> [Scene; 4] {
     let pile = |bond| pressed_pile(12, 0.5, 7, parameters(bond, 1e-3, 0.3, 0.5));
     let mut unsolved = pile(0.0);
@@ -20,7 +21,7 @@ fn piles() -> [Scene; 4] {
     [pile(20.0), pile(0.0), unsolved, bounded]
 }
 
-/// Values of a setting. Some of them may be refused.
+/// Returns values to try for a setting. A stepper may refuse some of these values.
 fn values(about: &About) -> Vec<Value> {
     match about.kind {
         Kind::Number => [1e-4, 1e-3, 0.01, 0.1, 0.9, 2.0, 50.0].map(Value::Number).to_vec(),
@@ -30,7 +31,7 @@ fn values(about: &About) -> Vec<Value> {
     }
 }
 
-/// Bits of the run's grains and observables; `None` if the settings are refused.
+/// Returns positions, velocities and observables after [`STEPS`] steps as text, or `None` if the settings are refused.
 fn course(pile: &Scene, settings: Settings) -> Option<String> {
     let mut scene = pile.clone();
     scene.set_settings(settings);
@@ -42,7 +43,7 @@ fn course(pile: &Scene, settings: Settings) -> Option<String> {
     Some(format!("{:?}{:?}{:?}", grains.positions, grains.velocities, run.observables()))
 }
 
-/// True if changing a setting changes the run, or if no other value is accepted.
+/// Returns true if some other value of a setting changes the run, or if no other value is accepted.
 fn matters(about: &About, stepper: Stepper) -> bool {
     let mut taken = 0;
     for pile in piles() {

@@ -1,4 +1,4 @@
-//! Pictures of stored states and of studies, against stored pictures.
+//! Tests of pictures of stored states and of figures of studies, by comparison with stored pictures.
 
 #[path = "../common/program.rs"]
 mod program;

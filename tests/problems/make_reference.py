@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Solves problem files with Siconos and stores the velocities.
+"""Solves files of contact problems with Siconos and stores the velocities.
 
     make_reference.py PROBLEM [PROBLEM ...]     writes reference/NAME.json beside this script
     make_reference.py --time PROBLEM            times Siconos' Gauss-Seidel solvers
@@ -7,9 +7,9 @@
 Needs Siconos with its Python interface, and SciPy (Debian 12: apt install python3-siconos
 python3-scipy). Siconos is an independent implementation: V. Acary et al., https://nonsmooth.gricad-pages.univ-grenoble-alpes.fr/siconos/
 
-A plane problem is passed to Siconos' spatial solver (3D NSGS) with a third, uncoupled direction: its
-free velocity is 0, so its impulse is 0 and Coulomb's disc is the plane's interval. Cohesion in the
-shifted cone is removed by p = P_n + c0, q' = q - W (c0, 0). Velocities are scaled by 1/max|q|,
+A plane problem is passed to Siconos' spatial solver (3D NSGS) with a third, uncoupled direction. The
+free velocity in this direction is 0, so its impulse is 0 and Coulomb's disc becomes the interval of the plane problem.
+Cohesion in the shifted cone is removed by p = P_n + c0, q' = q - W (c0, 0). Velocities are scaled by 1/max|q|,
 because Siconos treats a small q as zero.
 """
 
@@ -59,7 +59,7 @@ def read_siconos(path):
 
 
 def residual(matrix, q, free, mu, p):
-    """Slump's residual: the natural map divided by the free impulses. `free` does not include cohesion."""
+    """Return Slump's residual: the natural map divided by the free impulses. `free` does not include cohesion."""
     diagonal = matrix.diagonal()
     u = matrix @ p + q
     normal, tangential = p[0::2], p[1::2]
@@ -94,7 +94,7 @@ def embedded(nc, matrix, q):
 
 
 def solve(dimension, nc, matrix, q, mu, tolerance, repeats=1):
-    """Shifted impulses, iterations and shortest time (s) of Siconos' Gauss-Seidel in 2D or 3D."""
+    """Return shifted impulses, iterations and shortest time (s) of Siconos' Gauss-Seidel in 2D or 3D."""
     scale = np.abs(q).max()
     if dimension == 3:
         big, big_q = embedded(nc, matrix, q)
@@ -125,7 +125,7 @@ def main():
         nc, matrix, free, q, mu = read(path)
         if timing:
             for dimension in [2, 3]:
-                # The largest of its tolerances with which Slump's residual reaches 1e-6.
+                # The largest tolerance of Siconos with which Slump's residual reaches 1e-6.
                 for tolerance in 1e-5 / 1.15 ** np.arange(60):
                     p, _, _ = solve(dimension, nc, matrix, q, mu, tolerance)
                     reached = residual(matrix, q, free, mu, p)

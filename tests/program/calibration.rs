@@ -1,4 +1,4 @@
-//! Calibrations: the statistics of their regions, and the command as a user starts it.
+//! Tests of the command `slump calibrate` and of the statistics of its confidence regions.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -9,28 +9,29 @@ use slump::study::{Region, mean};
 
 use crate::program::*;
 
-/// Ranges of μ and Bond.
+/// Ranges of the friction coefficient μ and the Bond number.
 const BOX: [[f64; 2]; 2] = [[0.2, 0.8], [0.0, 50.0]];
 
-/// A point of the box. Multiples of two irrational numbers fill it evenly.
+/// Returns point `number` of a sequence that fills the ranges evenly: multiples of two irrational numbers, modulo 1.
 fn point(number: usize) -> Vec<f64> {
     let share = |ratio: f64| (0.5 + (number + 1) as f64 * ratio).fract();
     let shares = [0.754_877_666_246_693, 0.569_840_290_998_053].map(share);
     BOX.iter().zip(shares).map(|([from, to], share)| from + (to - from) * share).collect()
 }
 
-/// A target: the mean of one result of several runs, and its standard error.
+/// Returns a calibration target: the mean of one result over several runs, and its standard error.
 fn target(runs: &[Vec<f64>], result: usize) -> [f64; 2] {
     let mean = mean(&runs.iter().map(|run| run[result]).collect::<Vec<_>>());
     [mean.mean, mean.standard_error]
 }
 
-/// A stand-in for a run: results that no polynomial has, with errors that are correlated and differ over the box.
+/// Returns artificial results of a run: functions of μ and Bond that are not polynomials, with correlated errors of
+/// varying size.
 fn stand_in(point: &[f64], random: &mut Pcg64) -> Vec<f64> {
     let [friction, bond] = [point[0], point[1]];
     let slump = 0.05 + 0.5 * (-bond / 18.0).exp() * (1.0 - 0.6 * (friction - 0.3));
     let angle = 12.0 + 25.0 * friction + 20.0 * (1.0 - slump);
-    // The sum of twelve uniform numbers is sufficiently normal here.
+    // A sum of twelve uniform random numbers is close enough to a normal distribution here.
     let mut normal = || (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>();
     let scatter = 0.3 + 0.7 * (-bond / 30.0).exp();
     let [one, other] = [scatter * normal(), scatter * normal()];
@@ -51,7 +52,8 @@ fn a_region_contains_the_true_parameters_in_nine_of_ten_calibrations() {
         contained += u32::from(region.misfit(&truth) <= 1.0);
         shares.push(region.share());
     }
-    // Of regions of exactly 90 %, 168 to 191 of 200 contain the truth in 99.6 % of tests.
+    // If a region contains the true parameters with a probability of exactly 90 %, then 168 to 191 of 200 regions
+    // contain them in 99.6 % of tests.
     assert!((168..=191).contains(&contained), "{contained}");
     let share = mean(&shares).mean;
     assert!(share < 0.1, "{share}");
@@ -66,7 +68,7 @@ fn targets_that_no_parameters_give_have_no_region() {
     let far = region(&[[0.9, 0.01], [30.0, 1.0]]).expect("enough runs");
     assert_eq!(far.share(), 0.0);
     assert!(far.misfit(far.best()) > 1.0);
-    // A single target has a valley along which both parameters change.
+    // With a single target, the region is a narrow band along which both parameters change.
     let valley = region(&[[0.25, 0.01]]).expect("enough runs");
     assert!((0.03..0.5).contains(&valley.share()), "{}", valley.share());
     assert!(Region::new(&BOX, &[[0.25, 0.01]], &points[..11], &results[..11]).is_none());
@@ -109,7 +111,7 @@ fn a_calibration_resumes_and_more_runs_add_to_it() {
         assert!(first.contains(part), "{part}: {first}");
     }
     let lines = || read(out.join("calibrate.jsonl")).lines().count();
-    // Each change of the method, and none, has six runs.
+    // 18 runs for the three variants of the method (two changes and none), six for each variant.
     assert_eq!(lines(), 12 + 18);
     succeed(calibrate(out, &ASKED).args(bond).args(["--runs", "12"]));
     assert_eq!(read(out.join("report.md")), first);
@@ -204,22 +206,23 @@ fn a_heap_has_the_slope_and_the_base_of_its_triangle() {
         .collect();
     scene.fixed_discs.clear();
     let shape = HeapShape::of(&scene.simulation().expect("a simulation").moment());
-    // Standard errors are 0.2° and 0.06.
+    // The standard errors are 0.2° for the angle of repose and 0.06 for the run-out.
     assert!((shape.repose_angle - 0.4f64.atan().to_degrees()).abs() < 1.0, "{shape:?}");
     assert!((shape.run_out - 5.0).abs() < 0.3, "{shape:?}");
 }
 
-/// The command that repeats the tries.
+/// Command that repeats the calibrations of [`calibrations_of_piles_contain_the_parameters_that_made_their_targets`].
 const TEST: &str = "cargo test --release --test program calibrations_of_piles -- --ignored";
 const GRAINS: usize = 60;
 const RUNS: usize = 100;
-/// Initial states of each point, number of them that a try draws, and likewise for the targets.
+/// Number of initial states at each point, and how many of them each calibration draws.
 const STATES: [usize; 2] = [8, 2];
+/// Number of initial states for the targets, and how many of them each calibration draws.
 const TARGET_STATES: [usize; 2] = [200, 50];
-/// The parameters that made the targets: μ and Bond.
+/// True parameters, with which the targets are computed: μ and Bond.
 const TRUTH: [f64; 2] = [0.5, 15.0];
 
-/// Slump and angle of repose of a small pile after half a second.
+/// Returns slump and angle of repose of a small pile after half a second.
 fn results_of(point: &[f64], seed: u64) -> Vec<f64> {
     let (grains, box_width_in_diameters) = (GRAINS, 10.5);
     let new = NewPile { grains, box_width_in_diameters, seed, ..NewPile::default() };
@@ -235,7 +238,7 @@ fn results_of(point: &[f64], seed: u64) -> Vec<f64> {
     vec![simulation.observables().slump, HeapShape::of(&simulation.moment()).repose_angle]
 }
 
-/// Draws some of the first numbers, each at most once.
+/// Draws `count` different numbers below `all`.
 fn drawn([all, count]: [usize; 2], random: &mut Pcg64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..all).collect();
     for place in 0..count {
@@ -245,9 +248,9 @@ fn drawn([all, count]: [usize; 2], random: &mut Pcg64) -> Vec<usize> {
     order
 }
 
-/// Calibrates μ and Bond to slump and angle of repose of piles made with [`TRUTH`]. Each of 20 tries draws a quarter of
-/// the runs at each point, and of those for the targets, so that two tries share a quarter of their runs.
-/// `SLUMP_REPORT=FILE` stores the tries.
+/// Calibrates μ and Bond to the slump and the angle of repose of piles made with [`TRUTH`]. Each of 20 calibrations
+/// draws a quarter of the runs at each point and a quarter of the runs for the targets, so two calibrations have a
+/// quarter of their runs in common. `SLUMP_REPORT=FILE` writes the results to a file.
 #[test]
 #[ignore = "takes six core minutes"]
 fn calibrations_of_piles_contain_the_parameters_that_made_their_targets() {

@@ -1,8 +1,8 @@
-//! The program as a user starts it: its output, and its messages about bad input.
+//! Tests of the program `slump` as a user starts it: its output, and its error messages about bad input.
 
 use crate::program::*;
 
-/// The line in which the program refuses the arguments.
+/// Runs the program and checks that it refuses the arguments. Returns the error message.
 fn refusal(arguments: &[&str]) -> String {
     sentence(slump("").args(arguments))
 }
@@ -90,7 +90,8 @@ fn only_settings_that_change_nothing_are_told_of_as_such() {
     }
 }
 
-/// A step of the shipped pile that has two solutions, which differ at grain 82. Bounded friction leads the pile there.
+/// The built-in pile has a step whose contact problem has two solutions, which differ most at grain 82. The pile
+/// reaches this step if the earlier steps are solved with bounded friction.
 #[test]
 fn a_step_with_two_solutions_is_told_to_have_them() {
     let folder = folder();
@@ -149,7 +150,7 @@ fn broken_files_are_refused_with_their_line() {
     assert!(said.contains("line 2"), "{said}");
 }
 
-/// A cradle in motion, with links and colours.
+/// Arguments of a run of the cradle whose pictures show forces and speeds.
 const DRAWN: &str = "--headless --scene cradle --dt 1e-3 --duration 0.2 --fps 20 --size 320x90 \
     --show forces --colour speed";
 
@@ -247,7 +248,7 @@ fn the_shipped_initial_state_is_reproduced_bit_for_bit() {
 #[test]
 fn a_run_that_blows_up_leaves_its_frames_and_says_so_in_its_manifest() {
     let folder = folder();
-    // Springs in a box, with a substep far above the critical one.
+    // The substep of the springs is far above the critical time step.
     let line = "--headless --scene squeeze --stepper dem --substeps 1 --dt 0.02 --duration 20 \
                 --times 0,0.02,0.04,20 --size 100x100 --renderer cpu --frames";
     let said = failure(slump(line).arg(folder.path()));
@@ -262,7 +263,7 @@ fn a_run_that_blows_up_leaves_its_frames_and_says_so_in_its_manifest() {
     let alarm = alarms.iter().find(|alarm| alarm["kind"] == "not-finite").expect("the alarm");
     let message = alarm["message"].as_str().expect("words");
     assert!(message.contains("try 0 substeps"), "{message}");
-    // The step that became unstable is the last row, and counts like all others.
+    // The step that became unstable is the last row of the table, and counts like all other steps.
     let steps = run["tally"]["steps"].as_u64().expect("a number");
     assert!((3..1000).contains(&steps), "it blows up on the way: {steps} steps");
     assert_eq!(alarm["step"].as_u64(), Some(steps));
@@ -271,7 +272,8 @@ fn a_run_that_blows_up_leaves_its_frames_and_says_so_in_its_manifest() {
 
 #[test]
 fn waiting_for_a_common_scale_changes_no_picture() {
-    // All states together, and a single state with its own scale, which is the last frame's scale.
+    // One run draws all states with a common scale. The other draws a single state with its own scale, which must be
+    // the scale of the last frame.
     let (all, last) = (folder(), folder());
     let draw = |out: &Path, times: &str| {
         let line = "--headless --size 160x120 --renderer cpu --dt 1e-3 --show forces,angles --colour overlap";
@@ -330,7 +332,7 @@ fn run_is_headless_with_the_scene_as_a_word() {
         let said = sentence(slump(line).current_dir(folder.path()));
         assert!(said.contains(named), "{line}: {said}");
     }
-    // Without --headless these options are refused.
+    // These options are refused without `--headless`.
     for line in [
         "--data out",
         "--gif a.gif",
@@ -353,7 +355,8 @@ fn the_version_says_the_commit() {
     let version = String::from_utf8(output.stdout).expect("text");
     let plain = format!("slump {}", env!("CARGO_PKG_VERSION"));
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    // An archive of the sources has no commit, and in another repository the commit would be a different one.
+    // An archive of the sources has no commit. If the archive is inside another repository, the commit would be a wrong
+    // one.
     if !root.join(".git").exists() {
         assert_eq!(version.trim(), plain);
         return;

@@ -1,4 +1,4 @@
-//! Error budgets as a user starts them.
+//! Tests of the command `slump budget`, which estimates the contributions to the error of a result (an error budget).
 
 use crate::program::*;
 
@@ -8,13 +8,13 @@ fn budget(out: &Path, more: &[&str]) -> Command {
     command
 }
 
-/// The report of a budget.
+/// Runs the command. Returns the report of the error budget.
 fn answer(out: &Path, more: &[&str]) -> String {
     succeed(&mut budget(out, more));
     read(out.join("report.md"))
 }
 
-/// The cells of the table that do not depend on the clock.
+/// Returns the cells of the table, without the column `cost`, which depends on the machine.
 fn table(out: &Path) -> Vec<Vec<String>> {
     let text = read(out.join("budget.csv"));
     let mut rows = csv::Reader::from_reader(text.as_bytes());
@@ -27,7 +27,7 @@ fn table(out: &Path) -> Vec<Vec<String>> {
     rows.records().map(row).collect()
 }
 
-/// The values of a cause in a column.
+/// Returns the numbers in a column of the table, from the rows of one cause of error.
 fn cell(rows: &[Vec<String>], cause: &str, column: usize) -> Vec<f64> {
     let of_cause = rows.iter().filter(|row| row[2] == cause);
     of_cause.filter_map(|row| row[column].parse().ok()).collect()
@@ -95,8 +95,8 @@ fn parts_of_a_budget_join_to_what_one_machine_comes_to_and_cost_it_nothing() {
     assert!(2 * runs(&joined) < all, "{} runs of {all} were its own", runs(&joined));
 }
 
-/// A disc in free fall from rest: y = −g t (t + Δt)/2 with semi-implicit steps, so the height lost at t is known,
-/// with an error that is linear in Δt.
+/// A scene of a disc that falls freely from rest. With semi-implicit steps its position is y = −g t (t + Δt)/2 (g:
+/// gravity), so the lost height at the time t is known exactly, and the error of the height is proportional to Δt.
 const FALL: &str = "
 name = 'fall'
 mean_diameter = 1.0
@@ -133,7 +133,7 @@ fn the_time_step_of_a_falling_disc_has_the_share_that_theory_gives_it() {
 fn a_scene_that_comes_to_nothing_has_no_number() {
     let folder = folder();
     let out = folder.path().join("out");
-    // The disc flies through the wall.
+    // With this time step the disc flies through the wall, so the quantity has no value.
     let lost = ["--scene", "thin-wall", "--dt", "0.1", "--quantity", "kinetic_energy"];
     let said = answer(&out, &lost);
     assert!(

@@ -1,10 +1,10 @@
-//! Other people's files: the program reads only plain files, stops reading files without an end, and removes only
-//! files that it wrote.
+//! Tests of files that Slump did not write: the program reads only regular files, stops reading endless files, and
+//! removes only files that it wrote itself.
 #![cfg(unix)]
 
 use crate::program::*;
 
-/// The sentence in which the program refuses, within the time limit.
+/// Runs the program and checks that it refuses within the time limit. Returns the error message.
 fn refusal(words: &[&str]) -> String {
     let program = slump("").get_program().to_owned();
     sentence(Command::new("timeout").arg("30").arg(program).args(words))
@@ -80,7 +80,7 @@ fn an_edited_manifest_has_no_other_file_removed() {
     write(at("manifest.json"), told);
     succeed(&mut brief_run(folder.path(), &["--overwrite"]));
     assert_eq!(read(at("thesis.tex")), "mine");
-    // A file that has the name of a run's file but other contents would be overwritten.
+    // A file with the name of a run's file but other contents would be overwritten, so the command is refused.
     for name in ["frame_00007.png", "observables.csv", "checkpoint.slump"] {
         let before = std::fs::read(at(name)).ok();
         write(at(name), "mine as well");

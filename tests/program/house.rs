@@ -1,20 +1,20 @@
-//! Rules for the sources that the compiler cannot check.
+//! Checks rules for the source files that the compiler cannot check.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::import_arrows::{arrows, circles};
 
-/// Longest file, lines. Longer files rarely contain one concept.
+/// Largest number of lines in a source file. A longer file usually contains several concepts.
 const LONGEST_FILE: usize = 500;
 
-/// All Rust files of the package and its crates except tests, by path.
+/// Returns all Rust files of the package and its crates except tests: path and content.
 fn sources() -> BTreeMap<String, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     files_below(&[root.join("src"), root.join("crates")])
 }
 
-/// All Rust files below some folders of the package, by path.
+/// Returns all Rust files below some folders of the package: path and content.
 fn files_below(folders: &[PathBuf]) -> BTreeMap<String, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut found = BTreeMap::new();
@@ -34,7 +34,7 @@ fn files_below(folders: &[PathBuf]) -> BTreeMap<String, String> {
     found
 }
 
-/// The names after a keyword that begins an item.
+/// Returns the names that follow a keyword (such as `mod` or `fn`) at the beginning of an item.
 fn named<'a>(text: &'a str, keyword: &str) -> impl Iterator<Item = &'a str> {
     let keyword = format!("{keyword} ");
     text.lines().filter_map(move |line| {
@@ -166,8 +166,8 @@ fn documents_name_files_that_are_there() {
     assert!(gone.is_empty(), "{gone:#?}");
 }
 
-/// Phrases of a private vocabulary that a reader must decode. Each has a plain word: again, depends on, reports, also,
-/// continues, if, is not solved.
+/// Phrases that readers do not understand at once. Each phrase has a plain replacement: again, depends on, reports,
+/// also, continues, if, is not solved.
 const PRIVATE_PHRASES: [&str; 11] = [
     " anew",
     "hangs on",
@@ -211,7 +211,8 @@ fn comments_and_documents_use_plain_words() {
     assert!(found.is_empty(), "plain words instead of: {found:#?}");
 }
 
-/// Of 0.0 and -0.0, `f64::max` and `f64::min` may return either; [`slump_core::number::Parts`] always returns the same.
+/// For 0.0 and -0.0, `f64::max` and `f64::min` may return either of the two; [`slump_core::number::Parts`] always
+/// returns the same.
 #[test]
 fn no_sign_of_a_zero_depends_on_the_compiler() {
     let sources = sources();
@@ -228,7 +229,8 @@ fn no_sign_of_a_zero_depends_on_the_compiler() {
     );
 }
 
-/// `cargo test -- --ignored with_driver with_ffmpeg` selects the tests that need more than Rust by their names.
+/// Tests that need another program or a graphics driver have this in their names. So `cargo test -- --ignored
+/// with_driver with_ffmpeg` selects them.
 #[test]
 fn tests_that_need_a_program_have_it_in_their_name() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -1,9 +1,9 @@
-//! The rule that imports point one way: in each folder of a crate, the arrows among its files and subfolders form no
-//! circle.
+//! Checks that imports have one direction: in each folder of a crate, the dependencies between its files and subfolders
+//! form no cycle.
 //!
-//! An arrow points from a file to the file that defines an item that the first file names, in a `use` or in a path
-//! that begins with `crate`, `self` or `super`. Re-exports of a `mod.rs` or `lib.rs` are followed to the defining
-//! file and are no arrows themselves. Test modules do not count.
+//! A dependency is called an arrow here. It points from a file to the file that defines an item named by the first
+//! file, in a `use` or in a path that begins with `crate`, `self` or `super`. Re-exports by a `mod.rs` or `lib.rs` are
+//! followed to the defining file and are not arrows themselves. Test modules do not count.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -13,20 +13,20 @@ use syn::{Item, UseTree, Visibility};
 
 type Module = Vec<String>;
 
-/// The paths in a file that lead into its own crate.
+/// Paths in a file that lead to items of its own crate.
 struct Imports<'a> {
     modules: &'a BTreeMap<Module, String>,
     own_names: &'a [&'a str],
     module: Module,
-    /// Absolute paths, without the name of the crate.
+    /// Absolute paths of the named items, without the name of the crate.
     paths: Vec<Module>,
-    /// For each public `use`: the name that it exports (`*` for all), and the absolute path of the item.
+    /// For each public `use`: the exported name (`*` for all names), and the absolute path of the item.
     exports: Vec<(String, Module)>,
     defined: BTreeSet<String>,
 }
 
 impl Imports<'_> {
-    /// An absolute path in the crate; `None` if the path leads out of it.
+    /// Returns the absolute path of a path in the crate, or `None` if the path leads to another crate.
     fn absolute(&self, path: &[String]) -> Option<Module> {
         let (first, mut rest) = path.split_first()?;
         let mut base = self.module.clone();
@@ -90,7 +90,7 @@ impl Imports<'_> {
 impl<'ast> Visit<'ast> for Imports<'_> {
     fn visit_item(&mut self, item: &'ast Item) {
         let name = match item {
-            // Test modules in the file; modules of other files have no content here.
+            // Omits test modules. The modules of other files have no content here.
             Item::Mod(_) => return,
             Item::Use(used) => {
                 let is_public = !matches!(used.vis, Visibility::Inherited);
@@ -109,7 +109,7 @@ impl<'ast> Visit<'ast> for Imports<'_> {
     }
 
     fn visit_visibility(&mut self, _: &'ast Visibility) {
-        // `pub(in super::super)` uses nothing.
+        // A visibility such as `pub(in super::super)` is not a dependency.
     }
 
     fn visit_path(&mut self, path: &'ast syn::Path) {
@@ -129,7 +129,8 @@ fn module_of(file: &str) -> Module {
     module
 }
 
-/// The file that defines the item of an absolute path: the file of the deepest module, or the target of its re-export.
+/// Returns the module that defines the item of an absolute path: the deepest module on the path, or the target of its
+/// re-export.
 fn definer(path: &[String], imports: &BTreeMap<Module, Imports<'_>>, depth: u32) -> Option<Module> {
     let length = (0..=path.len()).rev().find(|&length| imports.contains_key(&path[..length]))?;
     let (module, rest) = path.split_at(length);
@@ -150,7 +151,8 @@ fn definer(path: &[String], imports: &BTreeMap<Module, Imports<'_>>, depth: u32)
     Some(module.to_vec())
 }
 
-/// All arrows between files of a crate, whose names are relative to `sources` (a crate's `src`).
+/// Returns all arrows between the files of a crate. `sources` contains the files by their names relative to the folder
+/// `src`.
 pub fn arrows(
     sources: &BTreeMap<String, String>,
     own_names: &[&str],
@@ -188,7 +190,7 @@ pub fn arrows(
     arrows
 }
 
-/// All circles: the folder, and the arrows among its files and subfolders that lead back.
+/// Returns all cycles: for each, the folder and the arrows between its files and subfolders that form the cycle.
 pub fn circles(arrows: &BTreeSet<(String, String)>) -> Vec<String> {
     let files = arrows.iter().flat_map(|(from, to)| [from, to]);
     let folders: BTreeSet<&str> = files

@@ -1,5 +1,5 @@
-//! Input that needs more than any machine has is refused at once, in a sentence that names it. The cost of refusing
-//! and planning grows with the size of the input.
+//! Tests that Slump refuses at once, in one sentence that names the cause, any input that needs more resources than any
+//! machine has. The time for refusing and planning grows in proportion to the size of the input.
 
 use std::fmt::Write as _;
 
@@ -9,17 +9,17 @@ use slump::study::Study;
 use crate::common::*;
 use crate::program::*;
 
-/// Time limit, s: far more than a refusal takes, and far less than the work would take.
+/// Time limit of a refusal, s: far more than a refusal takes, and far less than the computation would take.
 const AT_ONCE: &str = "30";
 
-/// The sentence in which the program refuses within [`AT_ONCE`].
+/// Runs the program and checks that it refuses within [`AT_ONCE`]. Returns the error message.
 #[track_caller]
 fn refusal(arguments: &[&str]) -> String {
     let program = slump("").get_program().to_owned();
     sentence(Command::new("timeout").arg(AT_ONCE).arg(program).args(arguments))
 }
 
-/// The refusal of a pile with these initial discs.
+/// Runs a pile with these initial discs (CSV rows) and checks that it is refused. Returns the error message.
 #[track_caller]
 fn refusal_of_discs(lines: &str) -> String {
     let folder = folder();
@@ -62,7 +62,7 @@ fn many_discs_in_one_place_are_refused_with_two_of_them() {
         assert!(said.contains("grains[1].position is [0, 0.01] m, 0 m from that of grains[0]"));
         assert!(said.contains("at least 0.00125 m from it"), "{said}");
     }
-    // Very different sizes use another search for pairs.
+    // If the sizes are very different, Slump uses another algorithm to find pairs.
     let mut lines = "0.5,0.2,0.1\n".to_owned();
     for index in 0..50_000 {
         let _ = writeln!(lines, "0,0.01,{}", 1e-3 + 1e-9 * f64::from(index));
@@ -196,7 +196,7 @@ fn every_message_of_the_command_line_says_what_is_allowed() {
     assert!(refusal(&["--seed", "\u{1b}[31mred\u{7}"]).contains("\\u{1b}[31mred\\u{7}"));
 }
 
-/// Passes a file with this text as the last argument, and checks the message.
+/// Runs the program with a file of this content as the last argument, and checks the error message.
 fn check(arguments: &[&str], name: &str, text: impl AsRef<[u8]>) {
     let folder = folder();
     let path = folder.path().join(name);
@@ -295,13 +295,13 @@ fn more_runs_than_anyone_can_wait_for_are_refused_before_they_take_room() {
         "name = \"many\"\n[base]\nscene = \"cradle\"\n[vary]\nbond = {range}\nduration = {range}\n\
          start = {range}\nmu = {range}\n"
     );
-    // The axes after the second are not evaluated.
+    // The number of runs is too large after two axes, so the other axes are not evaluated.
     let said = Study::parse(&text, "many.toml".as_ref(), false).map(|_| ());
     let said = said.expect_err("too many").to_string();
     assert!(said.contains("vary is 4000000 runs with vary.duration, but must be"), "{said}");
 }
 
-/// The scene file of a pile that this rain makes.
+/// Returns the scene file of a pile that is made by the deposition `rain`.
 fn rained(rain: &NewPile, duration_secs: f64) -> String {
     let mut scene = built_in("pile").expect("a scene");
     scene.grains.clear();

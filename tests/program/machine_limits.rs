@@ -1,4 +1,5 @@
-//! Missing resources of the machine: threads, and space in files. Each gives one sentence, and written files stay.
+//! Tests of missing resources of the machine: threads, and space in files. Each failure is reported in one sentence,
+//! and files that are already written remain.
 #![cfg(unix)]
 
 use crate::program::*;
@@ -7,7 +8,7 @@ const STUDY: &str =
     "name = 'two'\n[base]\nscene = 'cradle'\nduration = 0.1\n[vary]\ndt = [1e-3, 2e-3]\n";
 
 const DRAWN: &str = "--headless --scene cradle --duration 0.1 --renderer cpu --size 16x16";
-/// Bytes of a stack that no machine can provide, so that no thread can start.
+/// Stack size of a thread in bytes that no machine can provide, so that no thread can start.
 const NO_ROOM: &str = "70368744177664";
 
 #[test]
@@ -42,7 +43,7 @@ fn more_threads_than_any_machine_has_are_refused() {
     assert!(said.contains("RAYON_NUM_THREADS is 100000, but must be"), "{said}");
 }
 
-/// The program under a limit of the shell (`ulimit`).
+/// Returns a command that runs the program under a limit of the shell (`ulimit`).
 fn limited(limit: &str, line: &str, out: &Path) -> Command {
     let mut command = Command::new("sh");
     command.args(["-c", &format!("ulimit {limit}; exec \"$@\""), "sh"]);
@@ -115,7 +116,7 @@ fn a_step_that_is_longer_than_the_run_is_refused() {
     let run = "--headless --scene cradle --dt 2 --duration 0.5 --renderer cpu --frames";
     let said = sentence(slump(run).arg(folder.path().join("out")));
     assert!(said.contains("dt is 2 s where duration is 0.5 s, but must be such that"), "{said}");
-    // A refused duration is named as such.
+    // A refused duration is named in the error message.
     let run = "--headless --scene cradle --duration 1e6 --renderer cpu --frames";
     let said = sentence(slump(run).arg(folder.path().join("out")));
     assert!(said.contains("duration is 1000000, but must be such that its pictures"), "{said}");

@@ -1,4 +1,5 @@
-//! The program from outside: options, refusals, files, studies, and runs that are stopped, saved and resumed.
+//! Tests of the program `slump` from outside: options, error messages, files, studies, and runs that are stopped, saved
+//! and resumed.
 
 #[path = "../common/mod.rs"]
 mod common;

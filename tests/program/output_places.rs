@@ -1,4 +1,4 @@
-//! Destinations of results: links, pipes, devices, closed streams, and names that are not UTF-8.
+//! Tests of destinations of results: links, pipes, devices, closed streams, and names that are not UTF-8.
 #![cfg(unix)]
 
 use std::ffi::{OsStr, OsString};
@@ -9,7 +9,7 @@ use crate::program::*;
 
 const PROBLEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/problems/bond_0.json");
 
-/// Writes a solution to `out`.
+/// Solves a contact problem and writes the solution to `out`.
 fn solve_to(out: &Path) -> Output {
     run(slump("problem solve --overwrite").arg(PROBLEM).arg("--out").arg(out))
 }
@@ -51,7 +51,7 @@ fn a_pipe_and_a_device_are_written_to_and_stay() {
     let folder = folder();
     let pipe = folder.path().join("pipe");
     assert!(Command::new("mkfifo").arg(&pipe).status().expect("mkfifo").success());
-    // The time limit ends the reader if nobody opens the pipe.
+    // If nobody opens the pipe for writing, the time limit ends the reader.
     let reader = Command::new("timeout")
         .args(["20", "cat"])
         .arg(&pipe)
@@ -62,7 +62,7 @@ fn a_pipe_and_a_device_are_written_to_and_stay() {
     assert!(pipe.symlink_metadata().expect("a pipe").file_type().is_fifo(), "it stays a pipe");
     assert!(output.status.success(), "{}", said(&output));
     assert!(is_solution(&reader.wait_with_output().expect("cat").stdout));
-    // A link, so that a program that replaces the file does not harm the system.
+    // The test uses a link to `/dev/full`, so that a program that replaced the file would not harm the system.
     let full = folder.path().join("full");
     std::os::unix::fs::symlink("/dev/full", &full).expect("a link");
     let output = solve_to(&full);
@@ -93,7 +93,7 @@ fn permissions_follow_the_umask_or_what_was_there() {
     assert!(is_solution(&bytes(&private)));
 }
 
-/// Runs to the end, or fails the test after a time far shorter than the work.
+/// Runs the program. Fails if it takes longer than a time that is far shorter than the computation.
 fn at_once(arguments: &[&str], out: &Path) -> Output {
     let mut command = assert_cmd::Command::from_std(slump(""));
     command.args(arguments).arg(out).timeout(Duration::from_secs(10)).output().expect("it starts")
@@ -105,7 +105,7 @@ fn where_nothing_can_be_written_is_told_before_the_work() {
     let kept = folder.path().join("kept");
     write(&kept, "mine");
     std::fs::set_permissions(&kept, PermissionsExt::from_mode(0o444)).expect("mode");
-    // Each of these would take minutes.
+    // Each of these commands would take minutes.
     let works: [&[&str]; 5] = [
         &["generate", "--grains", "5000", "--out"],
         &["problem", "dump", "--at", "1000", "--dt", "1e-4", "--out"],
@@ -175,7 +175,7 @@ fn a_file_that_is_there_is_kept_unless_it_is_to_be_replaced() {
         assert_eq!((read(&out).as_str(), names_in(folder.path()).len()), ("mine", 1), "{line}");
         succeed(slump(line).arg(&out).arg("--overwrite"));
         assert!(bytes(&out).len() > 40, "{line}");
-        // An empty file is replaced, because nothing is lost with it.
+        // An empty file is replaced, because its replacement loses nothing.
         write(&out, "");
         succeed(slump(line).arg(&out));
         assert!(bytes(&out).len() > 40, "{line}");
@@ -197,7 +197,7 @@ fn a_folder_has_a_name() {
 fn a_run_that_saves_its_state_alone_has_any_number_of_pictures() {
     let folder = folder();
     let saved = folder.path().join("saved.slump");
-    // At 25 pictures per second this run would exceed the limit on pictures.
+    // With 25 pictures per second this run would exceed the limit on the number of pictures.
     let line = "run collision --dt 100 --duration 10000 --save";
     succeed(slump(line).arg(&saved));
     assert!(saved.exists());
@@ -313,7 +313,7 @@ fn work_goes_on_when_stderr_goes_away() {
         command.stdout(Stdio::null()).status().expect("it starts")
     };
     assert!(sweep(&["--shard", "1/2"]).success());
-    // This call writes to stderr that some runs were there.
+    // In this call, stderr reports that some runs were already there.
     assert!(sweep(&[]).success());
     assert_eq!(read(out.join("runs.csv")).lines().count(), 1 + 3);
 }

@@ -1,4 +1,5 @@
-//! Values that no scene can have are refused in one sentence. Good scenes can be written and read again.
+//! Tests that Slump refuses scenes with impossible values in one sentence, and that good scenes are equal after writing
+//! and reading.
 
 use slump::config::{parse_discs, read_scene, scene_to_toml, write_discs};
 use slump::error::Error;
@@ -11,7 +12,7 @@ fn good() -> Scene {
     under_g(parameters(20.0, 1e-3, 0.1, 0.5), grains)
 }
 
-/// Makes a good scene wrong and compares the message.
+/// Makes a good scene wrong by `spoil` and compares the error message.
 #[track_caller]
 fn check(spoil: impl FnOnce(&mut Scene), expected: &str) {
     let mut scene = good();
@@ -77,7 +78,7 @@ fn bodies_and_lengths_outside_their_range_are_named() {
         check(spoil, &is("fixed_discs[0].radius", "m"));
     }
     check(|s| s.grains.clear(), "grains is 0, but must be at least one disc");
-    // Lengths in units other than metres.
+    // A scene whose lengths are not in metres is refused.
     for (factor, expected) in [
         (1e-3, ", a hundredth of the mean diameter of the grains"),
         (1e3, "100 times the diameter of the largest grain"),
@@ -169,7 +170,7 @@ fn a_bad_line_of_discs_is_named() {
     bad("", "one that names x, y and radius");
 }
 
-/// Writes a file into a folder of its own and reads it as a scene.
+/// Writes a text to a new file and reads it as a scene.
 fn read_text(text: &str) -> Result<Scene, String> {
     let folder = folder();
     let path = folder.path().join("test.toml");
@@ -282,7 +283,7 @@ fn written_discs_read_back_bit_for_bit() {
     }
 }
 
-/// The required fields of a scene file.
+/// The smallest valid scene file: it has only the required fields.
 const LEAST: &str = "name = \"least\"
 mean_diameter = 0.2
 duration_secs = 1.0

@@ -1,4 +1,4 @@
-//! Distributions of diameters: moments, sieves, refusals, and piles that come to rest.
+//! Tests of distributions of grain diameters: moments, sieve tables, error messages, and piles that come to rest.
 
 use slump::config::{Config, read_scene};
 use slump::scene::{Deposition, NewPile, Sizes, settle, start_of};
@@ -6,12 +6,13 @@ use slump::scene::{Deposition, NewPile, Sizes, settle, start_of};
 use crate::program::*;
 
 const DIAMETER: f64 = 5e-3;
-/// Standard errors by which a sample moment may differ from the exact one: of 30 comparisons of a correct program, one
-/// fails in 5,000 tests.
+/// Largest allowed deviation of a sample moment from the exact moment, in standard errors. With a correct program, one
+/// of the 30 comparisons fails in one of 5,000 random test runs.
 const ERRORS: f64 = 4.5;
 const COUNT: usize = 20_000;
-/// Hashes of the piles that the program made before it had this option.
+/// Hash of the pile made by rain, from the version before the option `sizes` existed.
 const RAIN: u64 = 0x539b_adf8_4444_897f;
+/// Hash of the pile made by drop and roll, from the version before the option `sizes` existed.
 const ROLL: u64 = 0x6c11_af30_2490_f32f;
 
 fn sizes(text: &str) -> Sizes {
@@ -28,19 +29,19 @@ fn pile(text: &str, seed: u64) -> NewPile {
     }
 }
 
-/// Diameters of a new pile, d.
+/// Returns the diameters of the grains in a new pile, in mean diameters d.
 fn diameters(pile: &NewPile) -> Vec<f64> {
     start_of(pile).iter().map(|grain| 2.0 * grain.radius / DIAMETER).collect()
 }
 
-/// Integral by the midpoint rule.
+/// Returns the integral of a function, by the midpoint rule with 20,000 intervals.
 fn integral(from: f64, to: f64, value: impl Fn(f64) -> f64) -> f64 {
     let step = (to - from) / 20_000.0;
     (0..20_000).map(|k| step * value(from + (f64::from(k) + 0.5) * step)).sum()
 }
 
-/// Moments 1 to 4 of a diameter that is a function of a number with this density between two bounds, divided by the
-/// powers of their mean.
+/// Returns the moments 1 to 4 of a diameter, each divided by the same power of the mean. The diameter is a function of
+/// a random number, which has the given density between two bounds.
 fn moments(
     bounds: [f64; 2],
     density: impl Fn(f64) -> f64,
@@ -57,7 +58,8 @@ fn moments(
 fn diameters_have_the_moments_of_their_distribution_and_the_mean_d() {
     let normal = |x: f64| (-0.5 * x * x).exp();
     let two = |power: i32| (0.7 + 0.3 * 1.4f64.powi(power)) / (0.7 + 0.3 * 1.4f64).powi(power);
-    // Mass fractions 0.3 and 0.7 between the diameters 1, 2 and 4: the number of grains is mass over D².
+    // The mass fractions are 0.3 between the diameters 1 and 2, and 0.7 between 2 and 4. The number of grains is mass
+    // over D².
     let graded = |size: f64| if size < 2.0 { 0.3 / size.powi(2) } else { 0.35 / size.powi(2) };
     let cases = [
         ("uniform:0.2", moments([0.8, 1.2], |_| 1.0, |x| x)),
@@ -88,7 +90,7 @@ fn a_table_of_sieves_reproduces_its_mass_fractions() {
     let text = format!("sieves:{}", rows.join(","));
     for seed in 1..=4 {
         let drawn = diameters(&pile(&text, seed));
-        // The unit of the table is arbitrary: the largest possible grain has the last diameter.
+        // The unit of the sieve table is arbitrary. The diameters are scaled so that the mean is d.
         let number =
             |[low, high]: [f64; 2], power: f64| (high.powf(power) - low.powf(power)) / power;
         let rate = |power: f64| {
@@ -105,7 +107,7 @@ fn a_table_of_sieves_reproduces_its_mass_fractions() {
             let is_below = |drawn: &f64| *drawn * unit <= size;
             let below: f64 =
                 drawn.iter().filter(|size| is_below(size)).map(|size| size * size).sum();
-            // Standard error of a ratio of sums, from the residuals (Taylor).
+            // Standard error of a ratio of sums, by first-order propagation of the residuals.
             let residual = |drawn: &f64| {
                 let mass = drawn * drawn;
                 (if is_below(drawn) { mass } else { 0.0 }) - passes * mass
@@ -113,7 +115,8 @@ fn a_table_of_sieves_reproduces_its_mass_fractions() {
             let squares: f64 = drawn.iter().map(|size| residual(size).powi(2)).sum();
             let error = squares.sqrt() / mass;
             let off = below / mass - passes;
-            // 12 comparisons: one fails in 12,000 tests of a correct program. Both ends are exact.
+            // Of these 12 comparisons, one fails in one of 12,000 random test runs with a correct program. At both ends
+            // of the table the mass fraction is exact.
             assert!(
                 off.abs() <= ERRORS * error + 1e-12,
                 "seed {seed}: {off} of {passes} at {size}"

@@ -1,11 +1,11 @@
-//! Runs that are stopped or killed, or that fill the disk: their results stay and are reported.
+//! Tests of runs that are stopped or killed, or that fill the disk: their results remain and are reported.
 #![cfg(unix)]
 
 use std::io::{BufRead, BufReader};
 
 use crate::program::*;
 
-/// A run of several minutes with a picture every 40 steps, without the option for its output.
+/// Arguments of a run of several minutes with a picture every 40 steps. The option for the output folder is missing.
 const LONG: &str =
     "--headless --scene cradle --dt 1e-3 --duration 3000 --size 64x18 --renderer cpu --solver nsgs";
 
@@ -15,14 +15,14 @@ fn start(out: &Path, more: &[&str]) -> Child {
     command.spawn().expect("the program starts")
 }
 
-/// Starts a long run and waits for its fourth picture.
+/// Starts a run with the arguments [`LONG`] and waits for its fourth picture.
 fn start_and_wait(out: &Path, more: &[&str]) -> Child {
     let child = start(out, more);
     wait_for("the fourth picture", || out.join("frame_00003.png").exists());
     child
 }
 
-/// Checks that a table has only whole rows with consecutive numbers. Returns their number.
+/// Checks that a table contains only whole rows with consecutive numbers. Returns the number of rows.
 fn rows_of(table: &Path) -> u64 {
     let text = read(table);
     assert!(text.ends_with('\n'), "a half row at the end");
@@ -57,7 +57,7 @@ fn a_signal_ends_a_run_with_all_that_it_came_to() {
             let mut child = start(folder.path(), more);
             let rows = folder.path().join("observables.csv");
             wait_for("rows", || rows.metadata().is_ok_and(|rows| rows.len() > 100_000));
-            // Pictures with links wait for a common scale.
+            // Pictures that show forces wait for a common scale, so none has been written yet.
             assert_eq!(pictures_in(folder.path()) > 0, more.is_empty());
             send(signal, child.id().into());
             assert_eq!(ended(&mut child), Some(code), "{signal} {more:?}");
@@ -95,14 +95,14 @@ fn a_run_that_is_killed_keeps_its_rows_and_pictures_and_locks_nothing() {
         assert!(folder.path().join(format!("frame_{number:05}.png")).exists(), "{picture}");
     }
     let table = folder.path().join("observables.csv");
-    // A kill may cut the last row.
+    // A kill may leave an incomplete last row.
     let text = read(&table);
     write(&table, &text[..=text.rfind('\n').expect("rows")]);
     let rows = rows_of(&table);
     assert!(rows >= 40 * (pictures - 1), "{rows} rows at picture {pictures}");
     let names = names_in(folder.path());
     assert!(!names.iter().any(|name| name.contains(".tmp")), "{names:?}");
-    // While a file replaces another, it briefly has a second name.
+    // While a file replaces another file, it briefly has a second name.
     let hidden = |name: &&String| name.ends_with(".part");
     let left: Vec<_> = names.iter().filter(hidden).collect();
     assert!(left.len() <= 1 && left.iter().all(|name| name.starts_with('.')), "{left:?}");
@@ -135,8 +135,8 @@ fn an_ignored_signal_stays_ignored() {
     assert_eq!(ended(&mut child), Some(143));
 }
 
-/// Starts a program whose files are limited to `blocks` blocks of 512 bytes. As on a full disk, the part that fits is
-/// written.
+/// Starts a program whose files are limited to `blocks` blocks of 512 bytes. As on a full disk, the part of a file that
+/// fits is written.
 fn on_a_small_disk(blocks: u32, option: &str, out: &Path) -> String {
     let mut small = Command::new("sh");
     let script = format!("ulimit -f {blocks}; exec \"$@\"");
@@ -168,7 +168,7 @@ fn a_full_disk_leaves_whole_rows_and_pictures_and_the_animation_so_far() {
     assert!(frames.expect("whole pictures to the end").len() > 3);
 }
 
-/// A short run with these further arguments.
+/// Returns the command of a short run with these additional arguments.
 fn short_run(out: &Path, more: &[&str]) -> Command {
     let mut command =
         slump("--headless --scene cradle --dt 1e-3 --size 64x18 --renderer cpu --frames");
@@ -176,7 +176,7 @@ fn short_run(out: &Path, more: &[&str]) -> Command {
     command
 }
 
-/// A run of 0.05 s with two pictures.
+/// Returns the command of a run of 0.05 s with two pictures.
 fn brief_run(out: &Path, more: &[&str]) -> Command {
     short_run(out, &[&["--duration", "0.05"], more].concat())
 }
@@ -212,7 +212,7 @@ fn a_folder_with_an_earlier_runs_files_is_refused_or_cleared() {
     assert!(said.contains("--overwrite"), "{said}");
     assert_eq!(bytes(folder.path().join("manifest.json")), before);
     assert_eq!(pictures_in(folder.path()), 6);
-    // A command that is refused for another reason removes nothing.
+    // A command that is refused for another reason removes no files.
     failure(&mut brief_run(folder.path(), &["--overwrite", "--bond", "-1"]));
     assert_eq!(pictures_in(folder.path()), 6);
 
@@ -261,8 +261,8 @@ fn a_scale_that_is_none_or_of_nothing_is_refused() {
     assert!(!folder.path().join("out").exists());
 }
 
-/// A chain of frictionless contacts, each of which pushes the next. Each sweep transmits a push by one contact, so a
-/// long chain needs millions of sweeps.
+/// Writes a contact problem: a chain of frictionless contacts, each of which pushes the next contact. Each sweep
+/// transmits a push by one contact, so a long chain needs millions of sweeps.
 fn chain(contacts: usize, path: &Path) {
     let (mut row, mut col, mut val) = (Vec::new(), Vec::new(), Vec::new());
     let mut add = |at: [usize; 2], value: f64| {
@@ -301,7 +301,7 @@ fn a_long_solve_says_how_far_it_is_and_whether_its_budget_ended_it() {
     assert!(stdout.contains("no: all 5000 sweeps were used; --max-sweeps allows more"), "{stdout}");
     assert_eq!(stderr.lines().count(), 1, "{stderr}");
     assert!(stderr.starts_with("slump: after 4096 sweeps the residual is "), "{stderr}");
-    // The number of sweeps that the sentence recommends.
+    // The number of sweeps that the error message recommends.
     let (stdout, stderr) = solved("1000000");
     assert!(stdout.contains("converged       yes"), "{stdout}");
     assert!(stderr.lines().count() > 1, "{stderr}");

@@ -1,8 +1,8 @@
-//! Videos of the command line: their contents, repeating them, and refusals.
+//! Tests of videos that the command line writes: their contents, making the same video again, and error messages.
 
 use crate::program::*;
 
-/// A cradle in motion, drawn by the processor.
+/// Arguments of a run of the scene `cradle` whose pictures are drawn by the processor.
 const CRADLE: &str =
     "--headless --scene cradle --dt 1e-3 --duration 0.2 --size 320x90 --renderer cpu";
 
@@ -58,7 +58,7 @@ fn what_ffmpeg_says_last_is_told_where_it_fails() {
     let tools = folder();
     let script = tools.path().join("ffmpeg");
     let lists = "case $* in *-encoders*) echo ' V..... libx264 H.264'; exit;; esac";
-    // One encoder that stops at once, and one that first takes all pictures.
+    // Scripts in place of the encoder `ffmpeg`: one stops at once, the other reads all pictures first.
     for takes in ["", "cat > /dev/null"] {
         let text =
             format!("#!/bin/sh\n{lists}\n{takes}\necho one >&2\necho 'no room' >&2\nexit 1\n");
@@ -92,11 +92,11 @@ mod with_ffmpeg {
         let folder = folder();
         let first = folder.path().join("first.mp4");
         let told = made(&["--fps", "50", "--show", "forces"], &first);
-        // The first picture at 0 and the last at 0.2 s.
+        // The first picture shows t = 0, the last t = 0.2 s.
         assert_eq!((told.pictures, &*told.rate_hz, told.size), (11, "50/1", [320, 90]));
         assert_eq!(told.key_pictures, [1], "one a second");
         assert_eq!([&*told.codec, &told.pixels, &told.colours], ["h264", "yuv420p", "bt709"]);
-        // The command in the file's comment makes the same file, bitwise.
+        // The command in the comment of the video file makes the same file, bitwise.
         let line = told
             .comment
             .lines()
@@ -117,7 +117,7 @@ mod with_ffmpeg {
     fn a_slower_video_has_more_pictures_of_the_same_stretch() {
         let folder = folder();
         let told = made(&["--video-speed", "0.5"], &folder.path().join("slow.mp4"));
-        // 25 pictures per second of video, 50 per simulated second.
+        // 25 pictures per second of video are 50 pictures per simulated second.
         assert_eq!((told.pictures, &*told.rate_hz), (11, "25/1"));
         assert!(told.comment.contains("--video-speed 0.5"), "{}", told.comment);
     }
@@ -133,7 +133,7 @@ mod with_ffmpeg {
         pictures.retain(|name| name.ends_with(".png"));
         assert_eq!(told.pictures, pictures.len());
         assert_eq!(told.key_pictures, [1]);
-        // Decoded according to the standard.
+        // The video is decoded with the colour matrix and range that its standard (BT.709) demands.
         let mut decoder = Command::new("ffmpeg");
         decoder.args(["-v", "error", "-i"]).arg(&video);
         decoder.args(["-vf", "scale=in_color_matrix=bt709:in_range=tv,format=rgb24"]);
@@ -169,7 +169,7 @@ mod with_ffmpeg {
 
         let mut child = run(stopped.path()).process_group(0).spawn().expect("the program starts");
         wait_for("pictures", || stopped.path().join("frame_00003.png").exists());
-        // Like a terminal: to the program and to all programs that it has started.
+        // The signal goes to the program and to all programs that it has started, as from a terminal.
         send("INT", -i64::from(child.id()));
         assert_eq!(ended(&mut child), Some(130));
         let video = stopped.path().join("a.mp4");

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Tries a study on a real Slurm: one node, Debian's packages (apt install slurm-wlm munge), as root.
-# Sixty runs in six tasks; one task is killed in the middle and the study sent again; the merged table
-# must be that of one machine, bit for bit. Then a budget in three parts.
+# Tests a study on a real Slurm: one node, Debian's packages (apt install slurm-wlm munge), as root. Computes sixty runs
+# in six tasks, kills one task in the middle, and submits the study again. The merged table must be bitwise equal to the
+# table of one machine. Then computes an error budget in three tasks.
 #
 #   cargo build --release && tests/slurm/try.sh
 #
-# Starts its own munged, slurmctld and slurmd with files in a temporary folder and ends them again.
+# Starts its own munged, slurmctld and slurmd with files in a temporary folder, and ends them.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 export SLUMP=$PWD/target/release/slump
@@ -24,7 +24,7 @@ chmod 755 "$work"
 dd if=/dev/urandom of="$work/munge/key" bs=1024 count=1 status=none
 chmod 700 "$work/munge" && chmod 600 "$work/munge/key"
 socket=$work/munge.socket
-# Its own folder of keys is private; the socket must be reached by all.
+# The folder of keys is private, but all processes must be able to reach the socket.
 munged --foreground --force --key-file="$work/munge/key" --socket="$socket" \
     --pid-file="$work/munge/pid" --log-file="$work/munge/log" --seed-file="$work/munge/seed" 2> "$work/munged.log" &
 pids+=($!)
@@ -66,7 +66,7 @@ for _ in $(seq 30); do
 done
 sinfo
 
-# Waits until a job and all its tasks are out of the queue.
+# Waits until a job and all its tasks have left the queue.
 ended() {
     while [ -n "$(squeue --noheader --jobs="$1" 2>/dev/null)" ]; do sleep 0.2; done
 }
@@ -93,7 +93,8 @@ cat "$out/task-1.log"
 cmp "$out/runs.csv" "$work/one/runs.csv"
 echo "$(($(wc -l < "$out/runs.csv") - 1)) runs, bit for bit those of one machine"
 
-# A budget in three tasks: joined, it is that of one machine but for its clocks.
+# An error budget in three tasks: after joining, it equals the error budget of one machine, except for the measured
+# times.
 ask=(budget --scene cradle --duration 1 --quantity 'max(max_overlap)' --within 1e-4)
 parts=$(sbatch --parsable --array=1-3 --output="$work/part-%a.log" <<JOB
 #!/bin/sh

@@ -1,4 +1,4 @@
-//! Alarms in the window, and the button that applies their advice.
+//! Tests of alarms in the window, and of the button that applies their advice.
 
 use crate::robot::*;
 
@@ -23,7 +23,7 @@ fn an_alarm_stands_in_the_status_bar_until_the_run_is_reset() {
 fn whoever_points_at_an_alarm_reads_it_whole_and_once() {
     let mut robot = Robot::open(scene("thin-wall"));
     robot.take_steps(40);
-    // So narrow that the line is cut.
+    // The window is so narrow that the line of the alarm is cut.
     robot.harness.set_size(egui::vec2(800.0, 700.0));
     robot.frames(3);
     let count = |robot: &Robot| robot.harness.query_all_by_label_contains("▲").count();
@@ -120,7 +120,7 @@ fn a_stalled_step_of_the_stepper_range_is_told_of() {
     config.solver = SolverChanges {
         method: Some(Method::Nncg),
         stop: Some(StopTest::Residual),
-        // Below the rounding error of any step of a pile.
+        // This tolerance is below the rounding error of any step of a pile.
         tolerance: Some(1e-18),
         max_sweeps: Some(100_000),
         ..SolverChanges::default()

@@ -1,4 +1,4 @@
-//! Sliders, fields, buttons and keys reach the solver's thread.
+//! Tests that sliders, fields, buttons and keys of the window change the simulation in the solver's thread.
 
 use crate::robot::*;
 use slump::config::SceneSource;
@@ -34,7 +34,8 @@ fn springs_are_set_in_the_panel_which_tells_what_follows() {
     robot.settle();
     assert_eq!(robot.settings().parameters.stiffness, 2000.0);
     let (mass, g, d) = (std::f64::consts::PI * 6.25e-6, 9.8, 5e-3);
-    // C₀²/2k of two grains whose mass is near that of a disc of the mean diameter.
+    // The expected work of fracture is C₀²/2k (C₀: cohesion force, k: stiffness) of two grains with about the mass of a
+    // disc of the mean diameter.
     let expected = (20.0 * 0.5 * mass * g).powi(2) / 4000.0 / (mass * g * d);
     let told = robot.world().fracture_work.expect("bonds").over_mgd;
     assert!((told / expected - 1.0).abs() < 0.05, "{told} is not {expected}");
@@ -44,7 +45,7 @@ fn springs_are_set_in_the_panel_which_tells_what_follows() {
     }
 }
 
-/// Sliders sense drags only.
+/// Sliders react only to dragging, so the help must not mention double clicks.
 #[test]
 fn help_promises_no_double_click_on_a_slider() {
     let mut robot = Robot::open(pile());
@@ -140,7 +141,7 @@ fn what_makes_no_sense_is_refused_visibly() {
     assert!(!robot.shows("is not a number"));
 }
 
-/// The command line of the run that is shown, and the scene that the next start would open.
+/// Returns the command line of the run that is shown, and the scene that the next start of the program would open.
 fn identity(robot: &Robot) -> (Option<String>, Config) {
     (robot.state().run.command_line(), robot.state().preferences.scene.clone())
 }
@@ -189,7 +190,7 @@ fn a_new_pile_can_be_given_up() {
 
 #[test]
 fn a_run_that_blows_up_pauses_says_so_and_can_be_scrubbed_back() {
-    // No number of sweeps holds a grain that a step moves to infinity.
+    // If a step moves a grain to infinity, no number of sweeps can help.
     let mut robot = Robot::open(pile());
     robot.key(egui::Key::ArrowRight);
     robot.set(|settings| settings.parameters.time_step_secs = 1e200);
@@ -274,7 +275,7 @@ fn piles_of_every_size_begin_with_solved_steps_and_what_fast_leaves_is_told() {
     assert!(robot.shows("All 1 step are solved as asked"));
     robot.clicks(&["Law, solver", "Fast"]);
     robot.take_steps(1);
-    // The page took the place of the answer.
+    // The page "Law, solver" has replaced the page with the answer.
     robot.harness.get_by_label_contains("Can I trust this?").click();
     robot.frames(5);
     assert!(
@@ -299,7 +300,7 @@ fn a_large_pile_is_solved_as_on_the_command_line_and_says_what_is_left() {
         assert_eq!(robot.settings().solver, slump::solver::SolverSettings::DEFAULT);
         robot.take_steps(3);
         let last = robot.observables();
-        // Standing piles are solved; falling ones keep an error, which is reported.
+        // Steps of standing piles are solved. Steps of falling piles keep an error, which is reported.
         assert_eq!(last.converged, bond > 0.0, "{last:?}");
         let falling_speed = (9.81 * robot.world().snapshot.surroundings.mean_diameter).sqrt();
         assert!(last.velocity_error < 0.03 * falling_speed, "{last:?}");

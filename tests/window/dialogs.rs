@@ -1,5 +1,6 @@
-//! Dialogs that choose a file or a folder. A script stands in for the program `zenity`, which shows them on a desktop
-//! without a portal; each test runs in a process of its own, because the script is found through `PATH`.
+//! Tests of the dialogs that choose a file or a folder. On a desktop without a portal the program `zenity` shows these
+//! dialogs, and a script replaces `zenity` here. Each test runs in its own process, because the script is found through
+//! the variable `PATH`.
 
 #![cfg(target_os = "linux")]
 
@@ -8,7 +9,7 @@ use std::process::Command;
 
 use crate::robot::{Robot, folder, pile, write};
 
-/// Runs a test of this program with a script in place of `zenity`.
+/// Runs a test of this test program in a process that finds a script instead of `zenity`.
 fn with_zenity(test: &str, script: Option<&str>, answer: &Path) {
     use std::os::unix::fs::PermissionsExt;
     let programs = folder();

@@ -1,4 +1,4 @@
-//! Exports of the window's recording.
+//! Tests of data that the window exports from its recorded run.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use crate::tables::{Cell, Columns, number, parquet, steps, whole};
 
 #[test]
 fn the_window_exports_what_data_writes() {
-    // The first has rough ground and cohesion, the second loses a grain, and the third has moving walls.
+    // The first scene has rough ground and cohesion, the second loses a grain, and the third has moving walls.
     for (scene, duration_secs) in [("pile", 0.03), ("thin-wall", 0.04), ("moving-walls", 0.03)] {
         let folder = folder();
         let (exported, written) = (folder.path().join("window"), folder.path().join("headless"));
@@ -23,7 +23,7 @@ fn the_window_exports_what_data_writes() {
         let mut robot = open(config, &exported, &formats);
         let steps = (duration_secs * 1e3).round() as u64;
         robot.take_steps(steps);
-        // The position of the timeline does not matter.
+        // The export must not depend on the position of the timeline.
         robot.seek(0.01);
         let told = export(&mut robot);
         assert_eq!(told, format!("{} frames of data in {}", steps + 1, exported.display()));
@@ -61,7 +61,7 @@ fn frames_are_at_the_times_that_data_has_them_at() {
     assert_same(&exported, &written);
 }
 
-/// Positions of all grains after each step of a table.
+/// Returns the positions (bit patterns) of all grains after each step of a table.
 fn places(grains: &Columns) -> BTreeMap<u64, Vec<[u64; 2]>> {
     let mut places = BTreeMap::<u64, Vec<_>>::new();
     for (row, step) in grains["step"].iter().enumerate() {
@@ -78,8 +78,8 @@ fn place_of(simulation: &Simulation) -> Vec<[u64; 2]> {
     places.map(|place| place.to_array().map(f64::to_bits)).collect()
 }
 
-/// A run of 80 steps with changed settings and a pulled grain. Returns the times of all steps, and the state of an
-/// equally treated simulation after each.
+/// Runs 80 steps with changed settings and a pulled grain. Returns the times of all steps, and the positions after each
+/// step in a simulation without a window that is treated in the same way.
 fn changed_run(robot: &mut Robot) -> (Vec<f64>, BTreeMap<u64, Vec<[u64; 2]>>) {
     let scene = pile().scene(|_| true).expect("a scene");
     let mut simulation = scene.simulation().expect("a sound scene");
@@ -106,7 +106,7 @@ fn changed_run(robot: &mut Robot) -> (Vec<f64>, BTreeMap<u64, Vec<[u64; 2]>>) {
     (times, moments)
 }
 
-/// Chooses the interval between two times.
+/// Selects the time interval that is exported.
 fn choose(robot: &mut Robot, stretch: [f64; 2]) {
     for (label, secs) in ["From here", "To here"].into_iter().zip(stretch) {
         robot.seek(secs);
@@ -131,7 +131,7 @@ fn a_stretch_has_its_own_moments_and_tells_what_was_changed_in_it() {
     assert_eq!([time_steps[7], time_steps[8]], [1e-3, 2e-3], "of steps 40 and 41");
 
     let about = facts(folder.path());
-    // A change before the interval is not among its changes.
+    // A change before the interval belongs to the initial settings, not to the list of changes.
     assert_eq!(about["parameters.friction"], "0.3");
     assert_eq!(about["parameters.bond"], "20.0");
     let changes: serde_json::Value = serde_json::from_str(&about["changes"]).expect("JSON");
@@ -142,7 +142,7 @@ fn a_stretch_has_its_own_moments_and_tells_what_was_changed_in_it() {
     assert_eq!(changes, expected);
     assert_eq!(about["pulled_by_hand"], "grain 100 in steps 46 to 55");
     assert_eq!(about["exported"], format!("from the window, from step 33 to {} s", times[60]));
-    // A change after the interval is not among its changes, even at its last frame.
+    // A change after the interval is not in the list of changes, even if the interval ends at the change.
     choose(&mut robot, [times[20], times[40]]);
     robot.click("Overwrite");
     let told = export(&mut robot);
@@ -150,7 +150,7 @@ fn a_stretch_has_its_own_moments_and_tells_what_was_changed_in_it() {
     let about = facts(folder.path());
     assert_eq!(about.get("changes"), None);
     assert_eq!(about.get("pulled_by_hand"), None);
-    // An empty interval leaves existing files alone.
+    // An empty interval leaves existing files unchanged.
     choose(&mut robot, [times[41], times[40]]);
     robot.click("Overwrite");
     let told = export(&mut robot);
@@ -178,7 +178,7 @@ fn a_run_goes_on_while_it_is_exported() {
     robot.until("the export", |state| !state.is_writing());
     assert!(robot.state().run.frame.playing && robot.steps() > asked);
     let mut scene = pile().scene(|_| true).expect("a scene");
-    // The window solves steps with other settings, and the number of steps depends on the machine.
+    // The window has other solver settings than the scene, and the number of steps depends on the machine.
     scene.set_settings(robot.settings());
     let mut simulation = scene.simulation().expect("a sound scene");
     let text = said_in(&folder.path().join("csv/grains.csv"));
@@ -198,7 +198,7 @@ fn an_export_that_is_stopped_leaves_whole_frames() {
     let index = folder.path().join("frames.csv");
     let is_row = |line: &&str| line.starts_with(|first: char| first.is_ascii_digit());
     let rows = || std::fs::read_to_string(&index).map_or(0, |it| it.lines().filter(is_row).count());
-    // The last row may be incomplete.
+    // While the program writes, the last row may be incomplete.
     robot.until("frames", |_| rows() > 10);
     robot.click("Stop export");
     let told = robot.written();
@@ -222,7 +222,7 @@ fn what_cannot_be_exported_is_refused_as_data_refuses_it() {
     robot.take_steps(3);
     assert!(export(&mut robot).starts_with("4 frames of data"));
     let before = bytes(there.join("csv/grains.csv"));
-    // An earlier recording, and a place at which no folder can be made.
+    // Two refused folders: one with an earlier recording, and one that cannot be created.
     robot.take_steps(2);
     let file = folder.path().join("file");
     write(&file, "");
@@ -233,14 +233,14 @@ fn what_cannot_be_exported_is_refused_as_data_refuses_it() {
         assert!(refused.contains("but must be a folder"), "{refused}");
     }
     assert_eq!(bytes(there.join("csv/grains.csv")), before);
-    // Like --overwrite, once.
+    // The button has the effect of the option `--overwrite`, but only for one export.
     robot.state_mut().preferences.data.folder = there;
     robot.click("Overwrite");
     assert!(export(&mut robot).starts_with("6 frames of data"));
     assert!(export(&mut robot).contains("without an earlier recording"));
     let shown = robot.harness.query_all_by_label_contains("without an earlier recording");
     assert_eq!(shown.count(), 2, "in the status bar and beside the button");
-    // If no format is chosen, nothing can be exported.
+    // Without a selected format, nothing can be exported.
     robot.clicks(&["Text (CSV)", "Export data"]);
     assert!(!robot.state().is_writing());
 }

@@ -1,10 +1,11 @@
-//! The first view: the visible controls, the central gesture, and the statement on trust.
+//! Tests of the first view of the window: the visible controls, the central gesture (dragging the time step), and the
+//! statement on trust.
 
 use crate::robot::*;
 use egui::Role;
 use slump::app::lessons::LESSONS;
 
-/// A window as it opens, with sliders that restart the run.
+/// Opens a window in which a changed slider restarts the run, as in a new installation.
 fn open(config: Config) -> Robot {
     let mut robot = Robot::open(config);
     robot.state_mut().preferences.starts_again = true;
@@ -59,7 +60,8 @@ fn the_ghost_is_at_the_simulated_time_of_the_run_and_says_what_it_is() {
         let label = format!("earlier run (grey): Δt 1 ms, at {:.1} ms", 1e3 * ghost.time_secs);
         assert!(texts.iter().any(|text| text.text == label), "{label}");
     }
-    // Beyond its end it stays there, and a run that comes back has all of its moments.
+    // After its last step the earlier run stays at its end. If the user undoes the change, the earlier run comes back
+    // with all recorded states.
     robot.take_steps(12);
     let ghost = robot.state().run.frame.ghosts[0].clone();
     assert!((ghost.observables.time_secs - 0.04).abs() < 1e-9);
@@ -91,7 +93,8 @@ fn a_number_that_is_typed_starts_the_pile_again_as_well() {
     assert!(robot.state().run.frame.playing && robot.state().run.frame.past.len() == 1);
 }
 
-/// Walls driven by a force, grains that do not move, one axis: each scene has a start to return to.
+/// Restarts every scene with a new time step. Some scenes have walls driven by a force, grains that do not move, or one
+/// dimension.
 #[test]
 fn every_scene_starts_again_with_the_new_value() {
     let mut robot = open(pile());
@@ -137,7 +140,7 @@ fn switched_off_the_run_goes_on_and_the_hint_says_what_is_true_then() {
     assert!(robot.shows("A new value acts from the next step on"));
 }
 
-/// All controls that can be clicked, dragged or typed into. A slider and its number count as one.
+/// Returns all controls that can be clicked, dragged or typed into. A slider and its number field count as one control.
 fn controls(robot: &Robot) -> Vec<(Role, String)> {
     let is_control = |role: Role| {
         matches!(
@@ -252,7 +255,7 @@ fn the_list_behind_the_word_has_a_budget_of_the_run_that_is_shown() {
     };
     let before = told(&robot);
     assert!(before.contains("kinetic_energy"), "{before}");
-    // Other settings have an error budget of their own, which may arrive at once.
+    // Other settings have their own error budget (the estimated contributions to the error), which may arrive at once.
     let mut settings = robot.settings();
     settings.parameters.time_step_secs *= 0.5;
     robot.change(0, settings);
@@ -272,7 +275,7 @@ fn a_budget_is_computed_to_its_end_though_its_list_is_closed() {
         robot.harness.hover_at(at);
         robot.button(at, pressed);
     }
-    // The answer is drawn before the button that closes it.
+    // The answer is drawn before the button that closes the page.
     robot.frames(2);
     assert!(!robot.shows("Idle cores compute an error budget"), "the list is closed");
     let begun = Instant::now();
@@ -281,7 +284,7 @@ fn a_budget_is_computed_to_its_end_though_its_list_is_closed() {
         robot.harness.step();
         std::thread::sleep(Duration::from_millis(20));
     }
-    // Other settings have no budget until somebody asks.
+    // Other settings have no error budget until the user asks for one.
     let mut settings = robot.settings();
     settings.parameters.time_step_secs *= 0.5;
     robot.change(0, settings);
@@ -320,7 +323,8 @@ fn numbers_beyond_all_reason_are_refused() {
     assert!(robot.shows("ρ is 2, but must be between 0 and 1"));
 }
 
-/// A file, or a window that was closed with them, can contain such numbers.
+/// Opens a window with extreme numbers (such as Bond 1e308), which can come from a scene file or from the stored
+/// preferences of the last window. The numbers must not widen the panel.
 #[test]
 fn numbers_beyond_all_reason_widen_nothing_though_a_window_opens_with_them() {
     let places = |config: Config| {

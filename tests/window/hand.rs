@@ -1,4 +1,4 @@
-//! The mouse in the scene: pinning, dragging, adding, removing and drawing.
+//! Tests of the mouse in the scene: pinning, dragging, adding and removing grains, and dragging walls.
 
 use egui::{Event, Modifiers, PointerButton, Pos2};
 
@@ -12,7 +12,7 @@ fn press(robot: &mut Robot, at: Pos2, pressed: bool) {
 }
 
 fn shift_click(robot: &mut Robot, at: Pos2) {
-    // Two clicks in quick succession would count as a double click.
+    // Two clicks in quick succession would count as a double click, so the clock is advanced.
     robot.harness.input_mut().time = Some(robot.harness.input().time.unwrap_or(0.0) + 2.0);
     robot.harness.hover_at(at);
     press(robot, at, true);
@@ -69,7 +69,7 @@ fn a_click_puts_a_grain_where_there_is_room_and_another_takes_it_out() {
     assert!((added.radius - 0.75 * diameter).abs() < 1e-12 && added.velocity == DVec2::ZERO);
     assert_eq!(robot.bits()[..grains], before, "the others stay as they are");
     assert!(!robot.world().is_even, "no command line makes this");
-    // It falls, and its path is recorded.
+    // The new grain falls, and its path is recorded.
     robot.take_steps(40);
     let fallen = robot.bits();
     assert!(robot.world().snapshot.grains[grains].position.y < added.position.y - 1e-3);
@@ -81,7 +81,7 @@ fn a_click_puts_a_grain_where_there_is_room_and_another_takes_it_out() {
     robot.seek(0.005);
     assert_eq!(count(&robot), grains, "before, it was not there");
     robot.seek(end);
-    // A click on a grain removes it.
+    // A click on a grain with the shift key removes it.
     let taken = robot.world().snapshot.grains[60].position;
     let there = at(&robot, taken);
     shift_click(&mut robot, there);
@@ -96,7 +96,7 @@ fn a_grain_that_finds_no_room_is_refused_with_a_notice() {
     robot.take_steps(2);
     let grains = count(&robot);
     robot.state_mut().preferences.new_grain_diameters = 5.0;
-    // Just above the heap: the middle is free, and the rim is not.
+    // The position is just above the heap: its centre is free, but the large new grain would overlap others.
     let grains_then = robot.world().snapshot.grains.iter();
     let top = grains_then.map(|it| it.position.y + it.radius).fold(0.0, f64::max);
     let edit = Edit::Add(slump::world::Disc { position: DVec2::new(0.0, top), radius: 0.0125 });
@@ -117,7 +117,7 @@ fn what_a_hand_changes_in_the_past_leaves_the_run_that_was_there() {
     assert!((robot.state().run.frame.recorded_secs() - 0.01).abs() < 1e-9);
     robot.take_steps(5);
     assert_eq!(robot.steps(), 15);
-    // A session restores all of it.
+    // A saved session restores the changes.
     let folder = folder();
     let path = robot.save_session(folder.path());
     let now = robot.bits();
@@ -126,7 +126,7 @@ fn what_a_hand_changes_in_the_past_leaves_the_run_that_was_there() {
     again.seek(0.0);
     again.seek(again.state().run.frame.recorded_secs());
     assert_eq!(again.bits(), now, "and its way");
-    // A link states that it does not contain these changes.
+    // The notice about a copied link says that the link does not contain these changes.
     let context = robot.harness.ctx.clone();
     robot.state_mut().copy_link(&context);
     robot.until("the link", |state| {
@@ -152,7 +152,7 @@ fn a_wall_follows_the_mouse_while_time_passes_and_stays_when_let_go() {
 
     let from = at(&robot, DVec2::new(-0.02, 0.02));
     let to = at(&robot, DVec2::new(0.01, 0.02));
-    // While time is stopped, a text says what to do.
+    // While the simulation is paused, a notice says that walls move only in a running simulation.
     robot.harness.hover_at(from);
     press(&mut robot, from, true);
     robot.harness.hover_at(to);
@@ -175,7 +175,7 @@ fn a_wall_follows_the_mouse_while_time_passes_and_stays_when_let_go() {
     assert!((there.y - ends[0].y).abs() < 1e-3, "and went straight: {there}");
 }
 
-/// Screen position of a place (m) in a view that shows the whole scene.
+/// Returns the screen position of a point (m) in a view that shows the whole scene.
 fn at(robot: &Robot, point: DVec2) -> Pos2 {
     let rect = robot.state().controls["scene"];
     let style = slump::render::Style { legend: false, ..robot.state().preferences.style.clone() };
@@ -222,7 +222,8 @@ fn exported_data_has_the_new_grain_and_says_who_put_it_there() {
     assert!(told.ends_with("grain 3 removed after step 10"), "{told}");
 }
 
-/// A scene with one grain in the middle of its view.
+/// Writes a scene with one grain in the middle of its view. Returns the folder of its file, and the configuration that
+/// opens it.
 fn in_the_middle() -> (tempfile::TempDir, Config) {
     one_grain(|scene| {
         scene.name = "one".into();
@@ -237,7 +238,7 @@ fn a_click_pins_a_grain_and_another_lets_it_go() {
     let mut robot = Robot::open(config);
     let at = robot.place("scene", 0.5, 0.5);
     for expected in [Some(GrainRef { world: 0, grain: 0 }), None] {
-        // Two clicks in quick succession would count as a double click.
+        // Two clicks in quick succession would count as a double click, so the clock is advanced.
         robot.harness.input_mut().time = Some(robot.harness.input().time.unwrap_or(0.0) + 2.0);
         robot.harness.hover_at(at);
         robot.button(at, true);

@@ -1,4 +1,4 @@
-//! Scenes that are made to break methods: their right answers, and where they are found.
+//! Tests of scenes that are made to break methods: the window shows the right answer and a verdict.
 
 use crate::robot::*;
 use slump::solver::SolverSettings;
@@ -20,7 +20,7 @@ fn a_scene_that_is_made_to_break_methods_shows_its_right_answer_and_a_verdict() 
     robot.frames(2);
     assert!(robot.shows("✗ 1: largest displacement in diameters"));
     assert!(robot.shows("✓ 2: largest displacement in diameters"));
-    // Another law has another right answer.
+    // With another contact law the right answer is unknown.
     let mut other = base;
     other.parameters.restitution = 0.7;
     robot.send(Command::Compare(vec![other]));

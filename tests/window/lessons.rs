@@ -1,15 +1,16 @@
-//! The statements of the lessons are true in runs of the pile shown and of sixteen others.
+//! Tests that the statements of the lessons are true for the pile that is shown and for sixteen other piles.
 
 use crate::robot::*;
 use slump::app::lessons::{LESSONS, Lesson};
 
-/// The lesson with this title.
+/// Returns the lesson with this title, and its number.
 fn lesson(title: &str) -> (usize, &'static Lesson) {
     let found = LESSONS.iter().enumerate().find(|(_, lesson)| lesson.title == title);
     found.expect("a lesson")
 }
 
-/// Final states of a lesson's worlds without a window, from other grains if some are given.
+/// Runs all simulations that a lesson compares, without a window. Returns their final states. `grains` replaces the
+/// grains of the lesson's pile.
 fn run_lesson(lesson: &Lesson, grains: Option<&[slump::world::Grain]>) -> Vec<Simulation> {
     let (config, mut scene) = lesson.scene().expect("a scene");
     if let Some(grains) = grains {
@@ -34,14 +35,14 @@ fn slumps(lesson: &Lesson, grains: Option<&[slump::world::Grain]>) -> Vec<f64> {
     final_rows(lesson, grains).iter().map(|row| row.slump).collect()
 }
 
-/// The answer that rows of a run give to the question of a lesson.
+/// Returns the right answer to the question of a lesson, computed from the final observables of its simulations.
 fn right_answer(lesson: &Lesson, rows: &[Observables]) -> &'static str {
     let question = lesson.question.as_ref().expect("a question");
     let (right, _) = (question.result)(rows).expect("a result");
     question.answers[right]
 }
 
-/// The answer that agrees with the last page.
+/// Returns the answer that the last page of a lesson gives.
 fn lesson_answer(title: &str) -> &'static str {
     match title {
         "Two time steps" => "not alike",
@@ -54,16 +55,17 @@ fn lesson_answer(title: &str) -> &'static str {
     }
 }
 
-/// A lesson's statement about two of its worlds.
+/// A statement of a lesson about two of the simulations that it compares.
 struct Claim {
     lesson: &'static str,
-    /// Indices of the worlds: the first slumps more than the second.
+    /// Indices of the two simulations: the first slumps more than the second.
     worlds: [usize; 2],
-    /// Bounds on the mean difference over piles (95 %).
+    /// The 95 % interval of the mean difference of slumps, over many piles, must be within these bounds.
     between: [f64; 2],
 }
 
-/// Each difference was measured over sixteen piles, of seeds 1 to 18 without 8 and 15 (docs/window.md).
+/// Statements of the lessons. Each difference was measured over sixteen piles, with the seeds 1 to 18 except 8 and 15
+/// (docs/window.md).
 const CLAIMS: [Claim; 6] = [
     Claim { lesson: "Two time steps", worlds: [0, 1], between: [0.1, 0.3] },
     Claim { lesson: "The solver's part", worlds: [0, 2], between: [0.1, 0.4] },
@@ -87,17 +89,17 @@ fn the_pile_that_is_shown_does_what_the_lesson_says() {
         let slumps: Vec<f64> = rows.iter().map(|row| row.slump).collect();
         for Claim { worlds: [more, less], between: [low, high], .. } in claims {
             let difference = slumps[*more] - slumps[*less];
-            // At Bond 8 the pile that is shown is an odd one under range, and differs by −0.043.
+            // At Bond 8 under `range` the pile that is shown differs from most other piles: its difference is −0.043.
             let [low, high] = if *low < 0.0 { [low - 0.01, high + 0.01] } else { [*low, *high] };
             assert!((low..high).contains(&difference), "{title}: {slumps:?}");
         }
     }
 }
 
-/// Number of the sixteen piles that must give the answer of the lesson.
+/// Least number of the sixteen piles that must give the answer of the lesson.
 const MOST: usize = 14;
 
-// About five minutes on two cores.
+// The test takes about five minutes on two cores.
 #[test]
 #[ignore = "sixteen piles under every lesson: cargo test --release --test window lessons -- --ignored"]
 fn sixteen_piles_do_what_the_lessons_say_and_the_one_that_is_shown_is_none_of_the_odd_ones() {
@@ -125,7 +127,7 @@ fn sixteen_piles_do_what_the_lessons_say_and_the_one_that_is_shown_is_none_of_th
             let mean = differences.iter().sum::<f64>() / count;
             let variance =
                 differences.iter().map(|one| (one - mean).powi(2)).sum::<f64>() / (count - 1.0);
-            // From tables: t(0.975; 15) = 2.131.
+            // Student's t for 95 % and 15 degrees of freedom, from tables: t(0.975; 15) = 2.131.
             let half = 2.131 * (variance / count).sqrt();
             println!("{title}: worlds {more} and {less} differ by {mean:.3} ± {half:.3}");
             let [low, high] = claim.between;
@@ -135,7 +137,8 @@ fn sixteen_piles_do_what_the_lessons_say_and_the_one_that_is_shown_is_none_of_th
             let below = all.iter().filter(|slumps| slumps[world] < shown).count();
             println!("{title}, world {world}: {below} of {} slump less than {shown:.3}", all.len());
             let odd = below < all.len() / 4 || below > all.len() - all.len() / 4;
-            // At Bond 8 the pile that is shown slumps less than most; its differences are tested.
+            // At Bond 8 the pile that is shown slumps less than most other piles. Its differences are tested in another
+            // test.
             let may_be_odd = title == "Bonds with a length";
             assert!(!odd || may_be_odd, "{title}: world {world} is an odd one");
         }
@@ -154,7 +157,7 @@ fn a_smaller_time_step_moves_nothing_of_a_pile_that_stands() {
     let moved = run.observables().slump - stood;
     assert!(moved.abs() < 1e-3, "a slump of {stood} changes by {moved}");
     assert_eq!(right_answer(lesson, &[before, *run.observables()]), lesson_answer(lesson.title));
-    // Used from the start, the same time step makes another pile.
+    // If the smaller time step is used from the start, the final pile is different.
     let [small, large] = slumps(&LESSONS[0], None)[..] else { panic!("two worlds") };
     assert!(large == stood && small > stood + 0.1, "{small}, {large}, {stood}");
 }
@@ -240,7 +243,7 @@ fn a_lesson_says_nothing_of_worlds_that_were_changed_and_its_list_has_them_as_th
     robot.click("1. Two time steps");
     robot.frames(2);
     assert!(robot.shows("One pile twice") && !robot.shows("A number was changed"));
-    // The change that a lesson asks for leaves its statements true.
+    // The change that the lesson asks for does not invalidate the statements of the lesson.
     robot.state_mut().visit(1);
     robot.settle();
     robot.type_number("Δt, time step", "0.1");
@@ -281,7 +284,7 @@ fn a_lesson_asks_first_and_then_says_if_the_prediction_was_right() {
     let verdict =
         format!("✓ You said: no. At the end the largest overlap was {overlap:.1} % of a diameter");
     assert!(robot.shows(&verdict), "{verdict}");
-    // A moment before the end leaves the verdict; the next run asks again.
+    // Going back to an earlier time does not remove the verdict. After the next run a new answer is judged.
     robot.seek(0.01);
     assert!(robot.shows("✓ You said: no."));
     robot.key(egui::Key::R);
@@ -321,22 +324,22 @@ fn the_last_page_has_the_predictions_and_a_link() {
     assert_eq!((robot.state().preferences.lesson.at, asked(&robot)), (0, &["answers"][..]));
 }
 
-/// The controls that the lesson asks for next.
+/// Returns the names of the controls that the user must use next in the lesson.
 fn asked(robot: &Robot) -> &'static [&'static str] {
     let state = robot.state();
     (LESSONS[state.preferences.lesson.at].asks_for)(&state.run, &state.preferences)
 }
 
-/// True if the window shows the whole control.
+/// Returns true if the window shows the whole control.
 fn is_in_view(robot: &Robot, name: &str) -> bool {
     let window = egui::Rect::from_min_size(egui::Pos2::ZERO, SMALL);
     robot.state().controls.get(name).is_some_and(|rect| window.contains_rect(*rect))
 }
 
-/// The smallest window that must show them.
+/// Size of the smallest window in which all controls that a lesson needs must be visible, in points.
 const SMALL: egui::Vec2 = egui::vec2(1024.0, 700.0);
 
-/// Settings of the front, and the labels of their sliders.
+/// Settings in the first view, and the labels of their sliders.
 const SLIDERS: [(&str, &str); 4] = [
     ("bond", "Bond, cohesion slider"),
     ("dt", "Δt, time step slider"),

@@ -1,4 +1,4 @@
-//! Views, comparisons and questions other than the pile itself, and controls that stay in place.
+//! Tests of plots, comparisons and other views in the window, and of controls that must stay in place.
 
 use egui_kittest::kittest::Queryable;
 
@@ -21,7 +21,7 @@ fn histograms_count_the_moment_that_is_shown() {
     let mut robot = Robot::open(pile());
     robot.key(egui::Key::ArrowRight);
     robot.clicks(&["Compare", "Distributions", "contacts"]);
-    // Each grain is counted.
+    // The histogram must count each grain.
     let counted = "contacts of a grain: 138 in all";
     let start = std::time::Instant::now();
     while !robot.shows(counted) {
@@ -117,7 +117,7 @@ fn where_the_time_of_a_step_goes_is_told_of_every_stepper() {
         }
         robot.click("Measure this step");
         wait_for_words(&mut robot, "% finding contacts");
-        // Springs need no solver.
+        // Springs need no solver, so the panel shows no time for solving.
         assert_eq!(robot.shows(" 0 % solving"), name == "dem", "{name}");
         assert_eq!(robot.shows("measured here"), name != "dem", "{name}: the methods");
     }
@@ -173,7 +173,7 @@ fn grains_and_contacts_are_a_table_that_is_filtered_and_pins() {
     assert_eq!(pinned, Some(GrainRef { world: 0, grain: grain as usize }));
 }
 
-/// True if the panel states the residual of the last step.
+/// Returns true if the panel shows this residual.
 fn tells(robot: &Robot, residual: f64) -> bool {
     robot.shows(&format!("{residual:.1e}"))
 }
@@ -289,7 +289,7 @@ fn what_hardly_moves_rests_and_is_told_in_units_that_one_knows() {
     assert!(robot.shows("0.000 m/s, 0.000 m/s"), "grain {grain}");
 }
 
-/// Opens all pages in turn and asserts that no text contains an internal word.
+/// Opens all pages in turn and checks that no text contains an internal name such as `rho`.
 fn words_are_as_one_reads_them(robot: &mut Robot) {
     for page in Page::ALL {
         robot.state_mut().preferences.page = Some(page);
@@ -310,7 +310,7 @@ fn words_are_as_one_reads_them(robot: &mut Robot) {
 
 #[test]
 fn symbols_and_ordinals_are_written_as_one_reads_them() {
-    // More rows than a curve can have.
+    // The run would have more rows than a curve can have.
     let mut config = Config::of_scene("cradle");
     config.source.duration = Some(1e6);
     let mut robot = Robot::open(config);

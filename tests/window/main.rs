@@ -1,9 +1,8 @@
-//! The window's real panels with a real solver thread, driven through their accessibility tree.
+//! Tests of the window: the real panels with a real solver thread, controlled through their accessibility tree.
 //!
-//! Pictures of panels are stored in `tests/pictures/golden/window-*.png`; they may differ by 2/255 in any channel and
-//! in 1 % of the
-//! pixels at all. After an intended change, look at the pictures that a failure writes to `target/golden/` and renew
-//! the files with
+//! Pictures of panels are compared with the files `tests/pictures/golden/window-*.png`. Each colour channel of a pixel
+//! may differ by 2 of 255, and 1 % of the pixels may differ at all. After an intended change, look at the pictures that
+//! a failure writes to `target/golden/`, and write the files again with
 //!
 //! ```text
 //! SLUMP_BLESS=1 cargo test --release --test window -- --ignored with_driver

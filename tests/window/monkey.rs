@@ -1,5 +1,5 @@
-//! Random clicks, drags, texts and keys, at all controls. The window must neither panic nor hang, and memory must not
-//! grow without limit.
+//! Random clicks, drags, texts and keys at all controls. The window must neither panic nor hang, and its memory must
+//! not grow without limit.
 
 use egui::{Key, Role};
 use rand::seq::IndexedRandom;
@@ -8,7 +8,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::robot::*;
 
-/// Texts typed into fields.
+/// Texts that are typed into fields.
 const TEXTS: [&str; 9] =
     ["0", "-3", "nonsense", "", "0.5", "1e-4", "N > 0 and y < 2", "force > 1e-3", "1e9"];
 const KEYS: [Key; 12] = [
@@ -39,7 +39,7 @@ fn is_control(role: Role) -> bool {
     )
 }
 
-/// Performs one random action. Returns the name of its control.
+/// Performs one random action. Returns the name of the key or control.
 fn act(robot: &mut Robot, random: &mut Pcg64Mcg) -> String {
     if random.random_ratio(1, 6) {
         let key = *KEYS.choose(random).expect("some keys");
@@ -93,7 +93,7 @@ fn act(robot: &mut Robot, random: &mut Pcg64Mcg) -> String {
     format!("{role:?} {name}")
 }
 
-/// Acts for a while. Returns the actions and the largest memory, MiB.
+/// Performs random actions for a while. Returns the names of the actions, and the largest memory of the process, MiB.
 fn play(seed: u64, duration: Duration) -> (Vec<String>, usize) {
     let files = folder();
     let mut robot = Robot::open(Config::default());
@@ -106,7 +106,7 @@ fn play(seed: u64, duration: Duration) -> (Vec<String>, usize) {
     let mut answered = Instant::now();
     while begun.elapsed() < duration {
         let done = act(&mut robot, &mut random);
-        // The random text in the folder's field must not be used.
+        // Random text in the field of the output folder must not be used.
         robot.state_mut().preferences.folder = files.path().to_owned();
         robot.frames(2);
         std::thread::sleep(Duration::from_millis(random.random_range(0..40)));
@@ -117,7 +117,7 @@ fn play(seed: u64, duration: Duration) -> (Vec<String>, usize) {
         }
         assert!(answered.elapsed() < PATIENCE, "the solver's thread is silent after {acts:?}");
     }
-    // The solver's thread still carries out commands.
+    // The solver's thread must still carry out commands.
     robot.send(Command::CancelLoading);
     robot.load(Config::of_scene("cradle"));
     robot.take_steps(3);
@@ -125,7 +125,7 @@ fn play(seed: u64, duration: Duration) -> (Vec<String>, usize) {
     (acts, most)
 }
 
-/// Resident memory of the process, MiB; 0 if the system does not report it.
+/// Returns the resident memory of the process, MiB; 0 if the system does not report it.
 fn resident_mib() -> usize {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
@@ -139,7 +139,7 @@ fn somebody_without_a_plan_breaks_nothing() {
     assert!(acts.len() > 40, "{} acts", acts.len());
 }
 
-/// Runs one pile to its end repeatedly. Prints the memory after a few runs and after many.
+/// Runs one pile to its end twenty times. Prints the memory after each run.
 #[test]
 #[ignore = "part of an_earlier_run_that_is_kept_needs_little_memory, which starts it in a process of its own"]
 fn twenty_runs() {
@@ -155,7 +155,7 @@ fn twenty_runs() {
         after.push(resident_mib());
     }
     println!("MiB after each: {after:?}");
-    // Each run that can be called up again needs about 1.2 MiB: its beginning, its end and 512 rows.
+    // Each earlier run that can be restored needs about 1.2 MiB: its initial state, its final state and 512 rows.
     let per_run = after[19].saturating_sub(after[5]) as f64 / 14.0;
     assert!(after[5] > 10 && per_run < 1.5, "{after:?}");
 }
@@ -169,7 +169,7 @@ fn an_earlier_run_that_is_kept_needs_little_memory() {
     assert!(output.status.success() && said.contains("1 passed"), "{said}");
 }
 
-/// `SLUMP_SEED=7 cargo test --release --test window ten_minutes -- --ignored --nocapture`
+/// Command with another seed: `SLUMP_SEED=7 cargo test --release --test window ten_minutes -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes ten minutes"]
 fn ten_minutes_without_a_plan_need_less_than_600_mib() {

@@ -1,12 +1,13 @@
-//! New piles while they are made, and the mean over other piles: which world it belongs to, and when it exists.
+//! Tests of new piles while they are computed, and of the mean over other piles with the same settings (an ensemble),
+//! which the window computes on idle cores.
 
 use crate::robot::*;
 
-/// Time limit for other piles, whose threads have low priority.
+/// Time limit for the other piles, whose threads have low priority.
 const PATIENCE: Duration = Duration::from_secs(600);
-/// Label of the switch.
+/// Label of the switch for the other piles.
 const OTHERS: &str = "Other piles, on idle cores";
-/// Number of grains of a pile that settles at once.
+/// Number of grains of a small pile, which comes to rest at once.
 const GRAINS: usize = 12;
 const WIDTH: f64 = 5.0;
 
@@ -27,7 +28,8 @@ fn open(cache: &Path) -> Robot {
     robot
 }
 
-/// Waits until all other piles of a world have ended. Returns their mean at a time.
+/// Waits until all other piles of a compared simulation have ended. Returns the mean of their slump at a time, half of
+/// its confidence interval, and the number of piles.
 fn mean(robot: &mut Robot, world: usize, time_secs: f64) -> (f64, f64, usize) {
     let begun = Instant::now();
     loop {
@@ -36,13 +38,15 @@ fn mean(robot: &mut Robot, world: usize, time_secs: f64) -> (f64, f64, usize) {
             return told;
         }
         assert!(begun.elapsed() < PATIENCE, "waited in vain for eight piles: {told:?}");
-        // A command shows that someone is looking; if nothing happens for long, nothing is computed.
+        // The window stops computing other piles if nothing happens for a long time. A command shows that somebody is
+        // looking.
         robot.send(Command::SetPull(0, None));
         std::thread::sleep(Duration::from_millis(50));
     }
 }
 
-/// Mean and half width of the interval of the final slump of runs with the same seeds, without a window.
+/// Runs piles with the same seeds without a window. Returns the mean of their final slump, and half the width of its 95
+/// % interval.
 fn headless(settings: &Settings) -> (f64, f64) {
     let slump = |seed: u64| {
         let pile =
@@ -57,7 +61,7 @@ fn headless(settings: &Settings) -> (f64, f64) {
     let slumps = [1, 3, 4, 5, 6, 7, 9, 10].map(slump);
     let mean = slumps.iter().sum::<f64>() / 8.0;
     let variance = slumps.iter().map(|slump| (slump - mean).powi(2)).sum::<f64>() / 7.0;
-    // From tables: t(0.975; 7) = 2.364624.
+    // Student's t for 95 % and 7 degrees of freedom, from tables: t(0.975; 7) = 2.364624.
     (mean, 2.364_624 * (variance / 8.0).sqrt())
 }
 
@@ -77,7 +81,7 @@ fn the_mean_is_that_of_the_same_seeds_without_a_window() {
     assert_near(at_end, expected);
     let kept: Vec<_> = std::fs::read_dir(cache.path()).expect("a folder").collect();
     assert_eq!(kept.len(), 8, "initial states are kept");
-    // The run does not affect the mean, which is shown beside the run's own number.
+    // The run does not affect the mean of the other piles, which is shown next to the value of the run.
     robot.state_mut().run.live.send(Command::SetPace(slump::live::Pace::Max));
     robot.state_mut().run.live.send(Command::Play);
     robot.until("the end", |state| !state.run.frame.playing && state.run.frame.time_secs() > 0.09);
@@ -85,7 +89,7 @@ fn the_mean_is_that_of_the_same_seeds_without_a_window() {
     assert_near(mean(&mut robot, 0, 0.1), expected);
     robot.harness.step();
     assert!(robot.shows("(n = 8)"));
-    // With other settings the piles start again, from the stored states.
+    // With other settings the other piles start again, from the stored initial states.
     let mut other = settings;
     other.parameters.bond = 0.0;
     robot.change(0, other);
@@ -95,7 +99,8 @@ fn the_mean_is_that_of_the_same_seeds_without_a_window() {
     assert_near(mean(&mut robot, 0, 0.1), headless(&other));
 }
 
-/// Saves the points of Fig. 5a: Δt, mean, half the interval and number of piles of each.
+/// Saves the points of the paper's Fig. 5a. Returns for each point Δt, the mean slump, half of its interval and the
+/// number of piles.
 fn saved_points(robot: &mut Robot) -> Vec<(f64, (f64, f64, usize))> {
     robot.click("CSV");
     let table = read(robot.saved());
@@ -140,7 +145,7 @@ fn released_piles_leave_a_point_each_though_the_next_is_released_before_their_ot
     robot.harness.step();
     let said = "Δt 1 ms → 2 ms: slump ";
     assert!(robot.shows(said) && robot.shows(", eight piles each; difference "), "{said}");
-    // The pile that is shown keeps its point.
+    // The point of the pile that is shown remains.
     robot.click("Clear");
     robot.harness.step();
     assert_eq!(saved_points(&mut robot).len(), 1);
@@ -179,7 +184,7 @@ fn switched_off_there_is_no_thread() {
     robot.clicks(&["Compare", OTHERS]);
     assert_eq!(robot.state().ensemble.threads(), 0);
     assert_eq!(robot.state().ensemble.mean_at(0, 0.0), None);
-    // A scene that is not a pile has no switch either.
+    // For a scene that is not a pile, the switch is not shown.
     robot.click(OTHERS);
     robot.until("a thread", |state| state.ensemble.threads() > 0);
     robot.load(Config::of_scene("cradle"));
@@ -188,7 +193,7 @@ fn switched_off_there_is_no_thread() {
     assert!(robot.harness.query_by_label(OTHERS).is_none());
 }
 
-/// A pile of so many grains that they fall for a while.
+/// Returns the configuration of a pile with so many grains that its deposition takes a while.
 fn rain() -> Config {
     let mut config = pile();
     config.source.grains = Some(400);
@@ -227,7 +232,7 @@ fn grains_are_seen_as_they_rain_and_the_world_before_comes_back() {
     assert!(robot.state().controls.contains_key("pile in the making"), "it is drawn");
     let shown = robot.harness.query_all_by_label_contains("Raining a new pile of 400").count();
     assert!(shown >= 1, "and told");
-    // Nothing can be played, and no request waits.
+    // While the new pile is computed, keys have no effect, and their commands are not carried out later.
     for key in [egui::Key::Space, egui::Key::ArrowRight, egui::Key::R] {
         robot.harness.key_press(key);
         robot.harness.step();

@@ -1,4 +1,4 @@
-//! The recording reproduces the computed states bitwise.
+//! Tests that the recorded run reproduces all computed states bitwise.
 
 use crate::robot::*;
 use slump::live::LiveStart;
@@ -23,7 +23,7 @@ fn a_run_that_goes_on_from_an_earlier_moment_ends_bitwise_equal() {
     assert_eq!(robot.steps(), 90);
     let uninterrupted = robot.bits();
     let curve = curve_of(&robot);
-    // Drag the timeline to a moment before both changes, and continue.
+    // Drags the timeline to a time before both changes, and continues from there.
     let (from, to) = (robot.place("timeline", 0.99, 0.5), robot.place("timeline", 0.1, 0.5));
     robot.drag(from, to);
     robot.button(to, false);
@@ -33,12 +33,12 @@ fn a_run_that_goes_on_from_an_earlier_moment_ends_bitwise_equal() {
     let settings = robot.settings();
     assert_eq!((settings.parameters.bond, settings.parameters.time_step_secs), (20.0, 1e-3));
     assert_eq!(robot.state().run.frame.recorded_secs(), curve[90].time_secs, "nothing is lost yet");
-    // To the end again without stepping: a replay of the recording.
+    // Going forward without new steps replays the recording.
     robot.seek(curve[90].time_secs);
     assert_eq!(robot.bits(), uninterrupted);
     let parameters = robot.settings().parameters;
     assert_eq!((parameters.bond, parameters.time_step_secs), (80.0, 2e-3));
-    // Stepping from step 60: a continuation.
+    // New steps from step 60 continue the run from there.
     robot.seek(curve[60].time_secs);
     assert_eq!(robot.steps(), 60);
     robot.take_steps(30);
@@ -64,7 +64,7 @@ fn a_step_in_the_past_deletes_nothing() {
     assert_eq!((robot.steps(), robot.world().curve.len()), (51, 52));
 }
 
-/// The number in the field of the time step.
+/// Returns the text in the field of the time step.
 fn typed(robot: &Robot) -> String {
     let field = robot.harness.get_by_role_and_label(egui::Role::TextInput, "Δt, time step");
     field.accesskit_node().value().expect("a text")
@@ -98,7 +98,7 @@ fn a_run_that_goes_on_differently_leaves_the_old_one_to_be_gone_back_to() {
     assert!(robot.shows("↷ Bond 20, Δt 5 ms, ρ 0.1, μ 0.5, slump 0.0"));
     let past = robot.state().run.frame.past.clone();
     assert_eq!(past[0].worlds[0].controls.settings.parameters.time_step_secs, 5e-3);
-    // An undone action can be repeated, any number of times.
+    // An undone change can be made again any number of times.
     robot.send(Command::Return(past[0].number));
     assert_eq!(robot.world().curve.len(), 22);
 }
@@ -112,7 +112,7 @@ fn a_reset_keeps_the_run_and_undo_and_redo_go_through_all_of_them() {
         assert_eq!(robot.steps(), 0);
         assert_eq!(robot.state().run.frame.past.len() as u64, round);
     }
-    // A reset without recorded steps keeps no run.
+    // A reset without recorded steps does not keep a run.
     robot.key(egui::Key::R);
     let lengths: Vec<usize> =
         robot.state().run.frame.past.iter().map(|run| run.worlds[0].curve.len()).collect();
@@ -133,7 +133,7 @@ fn a_reset_keeps_the_run_and_undo_and_redo_go_through_all_of_them() {
     assert_eq!(go(&mut robot, &[undo; 7]), [18, 15, 12, 9, 6, 3, 3]);
     assert_eq!(go(&mut robot, &[redo[0], redo[1], redo[0]]), [6, 9, 12]);
     assert_eq!(go(&mut robot, &[undo, redo[1]]), [9, 12]);
-    // A new run takes the place of none of them.
+    // After a reset, a new run does not replace any of the earlier runs.
     robot.key(egui::Key::R);
     robot.take_steps(1);
     let past = robot.state().run.frame.past.clone();
@@ -221,7 +221,7 @@ fn play_shows_stored_moments_and_computes_where_they_end() {
     }
     let at = |robot: &Robot| robot.steps() as usize;
     robot.seek(0.0);
-    // Slowly, so that there is time to look.
+    // The replay is slow, so that the test can observe it.
     robot.state_mut().run.live.send(Command::SetPace(Pace::RealTime(0.02)));
     robot.state_mut().run.live.send(Command::Play);
     robot.until("stored moments", |state| {
@@ -230,14 +230,14 @@ fn play_shows_stored_moments_and_computes_where_they_end() {
     let shown = at(&robot);
     assert_eq!(robot.bits(), recorded[shown]);
     assert!(robot.state().run.frame.playing && robot.state().run.frame.replaying);
-    // If stopped on the way, the run can continue from that moment.
+    // If the user stops the replay, the run can continue from the shown state.
     robot.key(egui::Key::Space);
     let stopped = at(&robot);
     assert!(!robot.state().run.frame.stored && (shown..30).contains(&stopped), "step {stopped}");
     assert_eq!(robot.bits(), recorded[stopped]);
     robot.key(egui::Key::ArrowRight);
     assert_eq!(robot.bits(), recorded[stopped + 1]);
-    // After playing again, a change branches off at the moment shown.
+    // After the replay, a change of settings starts a branch at the shown time.
     robot.state_mut().run.live.send(Command::SetPace(Pace::RealTime(0.5)));
     robot.state_mut().run.live.send(Command::Play);
     robot.until("its end, and more", |state| {
@@ -272,7 +272,7 @@ fn runs_have_the_names_that_they_are_given() {
     robot.click("↶ first try");
     assert_eq!((robot.steps(), &*robot.state().run.frame.name), (3, "first try"));
     assert_eq!(robot.state().run.frame.past[0].name, "second");
-    // A branch is another run.
+    // A branch is a new run and has no name.
     robot.seek(0.001);
     let mut settings = robot.settings();
     settings.parameters.bond = 3.0;

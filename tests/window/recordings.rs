@@ -1,4 +1,4 @@
-//! Recordings exported by the window, against those that the program writes without a window.
+//! Helpers that compare recordings exported by the window with recordings that the program writes without a window.
 
 use crate::robot::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,7 +9,7 @@ use crate::tables::parquet;
 
 pub const TABLES: [&str; 5] = ["grains", "contacts", "steps", "measures", "histograms"];
 
-/// A window with the panel open that exports each step into a folder.
+/// Opens a window with the panel that exports each step into a folder.
 pub fn open(config: Config, folder: &Path, formats: &[FormatName]) -> Robot {
     let mut robot = Robot::open(config);
     let data = DataChoices { folder: folder.to_owned(), each_step: true, ..DataChoices::default() };
@@ -29,7 +29,7 @@ pub fn headless(arguments: &[&str], folder: &Path) -> String {
     said(&run(command.args(arguments).arg("--data").arg(folder)))
 }
 
-/// All files of a recording, by their relative paths.
+/// Returns the relative paths of all files of a recording.
 pub fn files(folder: &Path) -> BTreeSet<PathBuf> {
     let mut found = BTreeSet::new();
     let mut folders = vec![folder.to_owned()];
@@ -46,7 +46,7 @@ pub fn files(folder: &Path) -> BTreeSet<PathBuf> {
     found
 }
 
-/// Lines of a text file without the facts about its origin.
+/// Returns the lines of a text file without the lines about its origin.
 pub fn said_in(path: &Path) -> Vec<String> {
     let text = read(path);
     let is_origin = |said: &str| {
@@ -57,13 +57,13 @@ pub fn said_in(path: &Path) -> Vec<String> {
     said.filter(|said| !is_origin(said)).map(str::to_owned).collect()
 }
 
-/// The facts in a recording's manifest, including those of the scene.
+/// Returns the facts in the manifest of a recording, including those about the scene.
 pub fn facts(folder: &Path) -> BTreeMap<String, String> {
     let manifest = json(folder.join("data.json"));
     serde_json::from_value(manifest["about"].clone()).expect("words by words")
 }
 
-/// The arrays of a `.vtp` file by name, without the facts about its origin.
+/// Returns the arrays of a `.vtp` file by name, without the facts about its origin.
 fn arrays(path: &Path) -> BTreeMap<String, Vec<u8>> {
     let bytes = bytes(path);
     let start = bytes.windows(2).position(|two| two == b" _").expect("the arrays") + 2;

@@ -1,4 +1,4 @@
-//! A run that is computed remotely, by exchange of bytes only, equals a run on a thread.
+//! Tests that a remote simulation, which exchanges only bytes with the window, equals a simulation in a thread.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -11,11 +11,11 @@ use slump::live::{
 };
 use slump::sim::Settings;
 
-/// Both sides, with the messages between them.
+/// Window and remote simulation, and the messages between them.
 struct Remote<S = LiveStart> {
     live: Live,
     engine: RemoteEngine<S>,
-    /// Messages, each with true if a start is to be given up for it.
+    /// Messages of the window, each with true if it cancels the loading of a scene.
     requests: Receiver<(Vec<u8>, bool)>,
     replies: Receiver<Vec<u8>>,
     to_window: Sender<Vec<u8>>,
@@ -43,7 +43,7 @@ impl<S: StartSource + DeserializeOwned> Remote<S> {
         Self { live, engine, requests, replies, to_window, bytes: 0, interruptions: 0 }
     }
 
-    /// Lets both sides work until a frame fulfils a condition.
+    /// Processes messages on both sides until a frame fulfils a condition. Returns the frame.
     fn until(&mut self, wanted: impl Fn(&LiveFrame) -> bool) -> LiveFrame {
         let begun = std::time::Instant::now();
         loop {
@@ -89,7 +89,7 @@ fn start() -> LiveStart {
     }
 }
 
-/// Commands of a window, in order.
+/// Returns a sequence of commands as a window sends them.
 fn commands(settings: Settings) -> Vec<Command> {
     let mut commands = vec![Command::Load(Box::new(start())), Command::Compare(vec![settings; 2])];
     commands.extend((0..30).map(|_| Command::Step));
@@ -197,10 +197,10 @@ fn what_cannot_be_made_remotely_is_refused_in_a_sentence() {
     assert_eq!(&*refusal, "start is here alone, but must be one that can be sent");
 }
 
-/// True if the window has asked for something that makes the present start pointless.
+/// True if the window has sent a command that makes the present loading pointless.
 static IS_POINTLESS: AtomicBool = AtomicBool::new(false);
 
-/// A pile that rains until it is given up, or one that exists already.
+/// Source of a pile: a deposition that continues until it is cancelled, or a pile that exists already.
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Rain {
     is_endless: bool,
@@ -212,7 +212,7 @@ impl StartSource for Rain {
             return Ok(start());
         }
         for told in 1.. {
-            // No message arrives meanwhile; the window uses another way to end it.
+            // While a scene is loaded, no message arrives. The window signals the cancellation in another way.
             IS_POINTLESS.store(told == 100, Ordering::Relaxed);
             if !tell(LoadingProgress::default()) {
                 assert_eq!(told, 100, "given up when it was asked for");
@@ -236,7 +236,7 @@ fn a_start_that_is_made_remotely_is_given_up_though_no_message_comes_in() {
     assert_eq!((remote.done().loads, remote.interruptions), (1, 1));
     remote.live.send(Command::Load(Box::new(Rain { is_endless: true })));
     remote.done();
-    // The command that asked for the end arrives after it.
+    // The message of the command that cancels the loading arrives after the loading has ended.
     remote.live.send(Command::CancelLoading);
     let frame = remote.done();
     assert!(frame.loading.is_none() && frame.refusal.is_none(), "giving up is no failure");

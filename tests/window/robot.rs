@@ -1,4 +1,4 @@
-//! A simulated user who waits for the solver's thread before looking.
+//! A simulated user of the window. It waits for the solver's thread before it looks at the result.
 
 pub use egui_kittest::kittest::{NodeT, Queryable};
 pub use glam::DVec2;
@@ -24,12 +24,12 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// A window of 1000 × 700 points with a scene open.
+    /// Opens a window of 1000 × 700 points with a scene.
     pub fn open(config: Config) -> Self {
         Self::build(config, Preferences::default(), |window| window)
     }
 
-    /// A window that opens a saved file.
+    /// Opens a window with a saved session or run.
     pub fn open_saved(path: &Path) -> Self {
         let mut robot = Self::open(Config::of_scene("cradle"));
         robot.state_mut().load_saved(path);
@@ -37,7 +37,7 @@ impl Robot {
         robot
     }
 
-    /// A window with the panel of data open, whose files go into a folder.
+    /// Opens a window with the panel for saving data. Its files are written into a folder.
     pub fn open_in(folder: &Path, config: Config) -> Self {
         let mut robot = Self::open(config);
         robot.state_mut().preferences.folder = folder.to_owned();
@@ -45,7 +45,7 @@ impl Robot {
         robot
     }
 
-    /// Like [`Self::open`], with the ability to draw pictures of the window.
+    /// Opens a window like [`Self::open`] that can also draw pictures of itself, with these preferences.
     pub fn open_with_gpu(config: Config, preferences: Preferences) -> Self {
         Self::build(config, preferences, HarnessBuilder::wgpu)
     }
@@ -57,19 +57,19 @@ impl Robot {
     ) -> Self {
         let mut robot = Self::begin(config, preferences, renderer);
         robot.until("a scene", |state| !state.run.frame.worlds.is_empty());
-        // The sliders of a scene move the controls above them.
+        // The sliders of a scene change the positions of the controls above them.
         robot.frames(2);
         robot
     }
 
-    /// A window whose first scene is being loaded.
+    /// Opens a window that has not finished loading its first scene.
     pub fn begin(
         config: Config,
         preferences: Preferences,
         renderer: fn(HarnessBuilder<AppState>) -> HarnessBuilder<AppState>,
     ) -> Self {
         let live = Live::spawn(LiveOptions::default()).unwrap();
-        // Only tests that ask for other piles compute them.
+        // Only tests that ask for other piles compute them, because they take much time.
         let preferences = Preferences { ensemble: false, starts_again: false, ..preferences };
         let state = AppState::new(live, config, preferences);
         let window = Harness::builder()
@@ -110,7 +110,7 @@ impl Robot {
         self.harness.query_all_by_label_contains(words).count() > 0
     }
 
-    /// All texts of the last frame: position, visible area, and true if dots replace a part.
+    /// Returns all texts of the last frame: position, visible area, and true if dots replace a part of the text.
     pub fn painted_texts(&self) -> Vec<PaintedText> {
         let mut all = Vec::new();
         for clipped in &self.harness.output().shapes {
@@ -119,7 +119,7 @@ impl Robot {
         all
     }
 
-    /// The texts that are not completely visible.
+    /// Returns the texts that are not completely visible.
     pub fn cut_texts(&self) -> Vec<String> {
         let is_cut =
             |text: &PaintedText| text.elided || !text.within.contains_rect(text.rect.shrink(1.0));
@@ -180,7 +180,7 @@ impl Robot {
         self.settle();
     }
 
-    /// Waits until a file is written. Returns the notice about it.
+    /// Waits until a file is written. Returns the notice about the file.
     pub fn written(&mut self) -> String {
         self.until("the file", |state| !state.is_writing());
         self.notice()
@@ -213,7 +213,7 @@ impl Robot {
         {
             self.click("More ▾");
         }
-        // Panels may still be opening, and the control may be below the edge of the sidebar.
+        // Panels may still be opening, and the control may be below the visible part of the sidebar.
         self.harness.get_by_label(label).scroll_to_me();
         for _ in 0..10 {
             self.harness.step();
@@ -249,7 +249,7 @@ impl Robot {
         self.settle();
     }
 
-    /// Types into a number field and presses enter.
+    /// Types text into a number field and presses the enter key.
     pub fn type_number(&mut self, label: &str, text: &str) {
         self.harness.get_by_role_and_label(egui::Role::TextInput, label).focus();
         self.harness.step();
@@ -261,13 +261,13 @@ impl Robot {
         self.settle();
     }
 
-    /// A position within a control, as fractions of its width and height.
+    /// Returns a position within a control, from fractions of its width and height.
     pub fn place(&self, control: &str, across: f32, down: f32) -> Pos2 {
         let rect = self.state().controls[control];
         rect.min + rect.size() * egui::vec2(across, down)
     }
 
-    /// Presses the mouse button at one place and moves to another.
+    /// Presses the mouse button at one position and moves the mouse to another position.
     pub fn drag(&mut self, from: Pos2, to: Pos2) {
         self.harness.hover_at(from);
         self.button(from, true);
@@ -284,13 +284,13 @@ impl Robot {
     }
 }
 
-/// A painted text.
+/// A text that the window has painted.
 pub struct PaintedText {
     pub text: String,
     pub rect: egui::Rect,
-    /// Visible area; the rest is cut.
+    /// Visible area. The part of the text outside this area is cut.
     pub within: egui::Rect,
-    /// True if dots replace a part of it.
+    /// True if dots replace a part of the text.
     pub elided: bool,
 }
 
@@ -322,7 +322,7 @@ impl egui::DroppedFile for File {
     }
 }
 
-/// Bits of the positions and velocities of all grains.
+/// Returns the bit patterns of positions and velocities of all grains.
 pub fn bits(world: &WorldFrame) -> Vec<[u64; 6]> {
     let bits = |grain: &GrainView| {
         let (at, velocity) = (grain.position, grain.velocity);
@@ -331,14 +331,15 @@ pub fn bits(world: &WorldFrame) -> Vec<[u64; 6]> {
     world.snapshot.grains.iter().map(bits).collect()
 }
 
-/// The paper's pile, solved accurately enough for a test.
+/// Returns the configuration of the paper's pile, solved accurately enough for the tests.
 pub fn pile() -> Config {
     let mut config = Config::default();
     (config.solver.tolerance, config.solver.max_sweeps) = (Some(1e-3), Some(500));
     config
 }
 
-/// A scene of one grain in place of the pile, changed by `change`, in its own file.
+/// Writes a scene of one grain without gravity, changed by `change`. Returns the folder of its file, and the
+/// configuration that opens it.
 pub fn one_grain(change: impl FnOnce(&mut Scene)) -> (tempfile::TempDir, Config) {
     let folder = folder();
     let mut scene = pile().scene(|_| true).expect("a scene");

@@ -1,13 +1,14 @@
-//! Sessions, links and saved runs: opening the present state again later or elsewhere.
+//! Tests of sessions, links and saved runs, which open the present state again later or on another machine.
 
 use crate::robot::*;
 
-/// Everything recorded of a window's worlds, and their present states.
+/// Returns step, recorded time and present state of each compared simulation of a window.
 fn shown(robot: &Robot) -> Vec<(u64, f64, Vec<[u64; 6]>)> {
     robot.of_worlds(|world| (world.snapshot.observables.step, world.recorded_secs, bits(world)))
 }
 
-/// Two worlds with a change in the middle, shown before their end, and an earlier run.
+/// Opens a window with two compared simulations, a change of settings during the run, a position before the end of the
+/// run, and an earlier run.
 fn two_worlds() -> Robot {
     let mut robot = Robot::open(pile());
     let base = robot.settings();
@@ -38,13 +39,13 @@ fn a_session_brings_back_worlds_record_past_and_window() {
     assert_eq!((again.state().run.frame.past.len(), past), (1, 1), "the run before is there");
     assert_eq!(again.state().preferences.theme, egui::ThemePreference::Dark);
     assert!(!again.state().preferences.plots);
-    // The panel that was open is open again: its contents are there.
+    // The panel that was open before is open again, so its contents are visible.
     use egui_kittest::kittest::Queryable;
     for window in [&mut robot, &mut again] {
         window.frames(20);
         assert!(window.harness.query_by_label("Solved").is_some());
     }
-    // Every recorded moment, and the steps after it, are equal.
+    // All recorded states, and the states of further steps, are equal.
     for window in [&mut robot, &mut again] {
         window.seek(0.024);
     }
@@ -97,7 +98,7 @@ fn a_file_that_is_no_whole_session_is_refused_in_a_sentence() {
         let notice = robot.notice();
         assert!(notice.contains(expected), "{name}: {notice}");
         assert_eq!(robot.steps(), 3, "the run before is still there");
-        // The same before a window opens.
+        // The program reports the same error if the file is given on the command line.
         let output = run(slump("--session").arg(&file));
         assert_eq!((output.status.code(), said(&output)), (Some(2), format!("slump: {notice}\n")));
     }
@@ -135,7 +136,7 @@ fn a_link_opens_the_moment_that_it_was_copied_at() {
     assert_eq!(places(&again), places(&robot), "{text}");
     let settings = |robot: &Robot| robot.of_worlds(|world| world.controls.settings);
     assert_eq!(settings(&again), settings(&robot));
-    // It is an ordinary run: its link is equal, and it continues in the same way.
+    // The run of a link is an ordinary run: a link made from it is equal, and further steps are equal.
     assert_eq!(copied(&mut again), text);
     for window in [&mut robot, &mut again] {
         window.take_steps(3);
@@ -239,11 +240,11 @@ fn an_earlier_moment_is_saved_as_it_was() {
     robot.take_steps(60);
     let end = saved(&mut robot);
     robot.state_mut().run.live.send(Command::Seek(at_secs));
-    // The seek may still be running when this is requested.
+    // The save is requested while the window may still be going back in time.
     let again = saved(&mut robot);
     assert!(again != then && then != end, "no file replaces another");
     assert!(bytes(&again) == bytes(&then));
-    // It continues like the run, also without a window.
+    // The saved run continues like the original run, also without a window.
     let state = SavedState::open(&again).expect("a state");
     assert_eq!(state.scene.parameters.time_step_secs, 2e-3);
     let mut simulation = state.simulation;
@@ -274,7 +275,7 @@ fn a_state_that_is_saved_can_be_opened_and_is_a_run_of_its_own() {
     saved(&mut robot);
     robot.take_steps(10);
     let end = robot.bits();
-    // The panel offers the file that was just saved.
+    // The panel offers the file that has just been saved.
     robot.click("Open");
     assert_eq!((robot.steps(), robot.bits()), (25, before.clone()));
     assert_eq!(robot.world().recorded_from_secs, robot.state().run.frame.time_secs());
@@ -282,7 +283,7 @@ fn a_state_that_is_saved_can_be_opened_and_is_a_run_of_its_own() {
     assert_eq!(robot.bits(), end);
     robot.key(egui::Key::R);
     assert_eq!((robot.steps(), robot.bits()), (25, before), "reset goes back to the file");
-    // The sums over all steps since t = 0 are included.
+    // The sums over all steps since t = 0 are a part of the saved run.
     robot.take_steps(1);
     assert_eq!(SavedState::open(&saved(&mut robot)).expect("a state").tally.steps, 26);
 }

@@ -1,6 +1,7 @@
-//! The browser version. The page draws and sends commands; its web worker, another instance of this module, computes.
+//! The browser version of Slump. The page draws and sends commands. Its web worker, another instance of this module,
+//! computes the simulation.
 //!
-//! Both exchange only messages of bytes, which `static/page.js` and `static/worker.js` pass on.
+//! The page and the worker exchange only messages of bytes, which `static/page.js` and `static/worker.js` pass on.
 
 use std::cell::RefCell;
 use std::path::PathBuf;
@@ -14,25 +15,26 @@ use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
 extern "C" {
-    /// Sends a message from the page to its worker. If `interrupts`, the worker cancels the load that is under way.
+    /// Sends a message from the page to its worker. If `interrupts` is true, the worker cancels the loading of a scene
+    /// that is under way.
     fn slump_ask(message: Vec<u8>, interrupts: bool);
-    /// True if the worker must cancel that load.
+    /// Returns true if the worker must cancel the loading.
     fn slump_gives_up() -> bool;
     /// Sends a message from the worker to its page.
     fn slump_answer(message: Vec<u8>);
     /// Makes the browser save a file.
     fn slump_save(name: &str, bytes: Vec<u8>);
-    /// Stores the page's preferences.
+    /// Stores the preferences of the page.
     fn slump_store(text: &str);
 }
 
-/// The engine in the worker.
+/// The simulation engine in the web worker.
 #[wasm_bindgen]
 pub struct Engine(RemoteEngine<Opening>);
 
 #[wasm_bindgen]
 impl Engine {
-    /// An engine with nothing loaded.
+    /// Returns an engine without a scene.
     #[wasm_bindgen(constructor)]
     #[allow(clippy::new_without_default, reason = "a page asks for it by `new`")]
     pub fn new() -> Self {
@@ -40,7 +42,7 @@ impl Engine {
         Self(browser::engine(Box::new(slump_answer), slump_gives_up))
     }
 
-    /// Handles a message of the page.
+    /// Handles a message from the page.
     ///
     /// # Errors
     /// If the message is invalid.
@@ -48,25 +50,27 @@ impl Engine {
         self.0.receive(message).map_err(|error| JsError::new(&error.to_string()))
     }
 
-    /// Does what is due. Returns the time until something is due again, ms; −1 if only a message changes that.
+    /// Does all work that is due. Returns the time until more work is due, ms; −1 if only a message can cause more
+    /// work.
     pub fn turn(&mut self) -> f64 {
         self.0.turn().map_or(-1.0, |wait| 1e3 * wait.as_secs_f64())
     }
 }
 
-/// Computes the run of a link and returns the hash of its last state, for programs without a page.
+/// Computes the run that a link describes, and returns the hash of its last state. This is for programs that have no
+/// page.
 ///
 /// # Errors
-/// Names the fault of the link.
+/// If the link is invalid. The error names the fault.
 #[wasm_bindgen]
 pub fn state_of(link: &str) -> Result<String, JsError> {
     browser::state_of(link).map_err(|error| JsError::new(&error.to_string()))
 }
 
-/// Dropped files that have been read.
+/// Dropped files that have been read: name and content.
 type Dropped = Rc<RefCell<Vec<(PathBuf, Vec<u8>)>>>;
 
-/// The window in the page.
+/// The window in the browser page.
 #[wasm_bindgen]
 pub struct Page {
     answers: Sender<Vec<u8>>,
@@ -76,14 +80,14 @@ pub struct Page {
 
 #[wasm_bindgen]
 impl Page {
-    /// Handles a message of the worker.
+    /// Handles a message from the worker.
     pub fn receive(&self, message: Vec<u8>) {
-        // Sending fails only after the page is gone.
+        // Sending fails only if the page has been closed.
         let _ = self.answers.send(message);
         self.context.request_repaint();
     }
 
-    /// State of the page and its run as JSON, for tests.
+    /// Returns the state of the page and its run as JSON, for tests.
     pub fn told(&self) -> String {
         let (size, scale) = (self.context.content_rect().size(), self.context.pixels_per_point());
         let pixels = [size.x * scale, size.y * scale].map(|side| side as u32);

@@ -1,4 +1,4 @@
-//! Factorisations of the library faer, on one thread, in its own elimination order (minimum degree).
+//! Factorisations by the library faer, on one thread, in faer's own elimination order (minimum degree).
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::SupernodalThreshold;
@@ -11,12 +11,12 @@ use faer::{Conj, Mat, Par, Side};
 use crate::matrix::Matrix;
 use crate::{Told, least_secs};
 
-/// Factorises one column at a time.
+/// Times the simplicial Cholesky factorisation, which factorises one column at a time.
 pub fn simplicial(matrix: &Matrix) -> Told {
     tell("faer simplicial", matrix, SupernodalThreshold::FORCE_SIMPLICIAL)
 }
 
-/// Factorises columns of similar structure together.
+/// Times the supernodal Cholesky factorisation, which factorises columns of similar structure together.
 pub fn supernodal(matrix: &Matrix) -> Told {
     tell("faer supernodal", matrix, SupernodalThreshold::FORCE_SUPERNODAL)
 }
@@ -76,7 +76,7 @@ fn lower(matrix: &Matrix) -> SparseColMat<usize, f64> {
         }
     }
     for (&(i, j), block) in matrix.pairs.iter().zip(&matrix.off_diagonal) {
-        // The later body's rows lie below.
+        // The lower triangle is stored, and the rows of the later body are the lower rows.
         for (column, entries_of_row) in block.iter().enumerate() {
             for (row, &entry) in entries_of_row.iter().enumerate() {
                 entries.push(Triplet::new(3 * j as usize + row, 3 * i as usize + column, entry));

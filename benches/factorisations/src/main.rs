@@ -1,6 +1,7 @@
-//! Factorises the matrices of an interior-point method, M + Σ Hᵀ K H over the contacts of recorded piles, in four ways:
-//! by Slump's block LU (used by `newton`) and block Cholesky (used by `interior-point`), and by faer's simplicial and
-//! supernodal Cholesky. Prints one row for each pile and factorisation: counts first, then times.
+//! Benchmark: factorises the matrices of an interior-point method, M + Σ Hᵀ K H over the contacts of recorded piles
+//! (masses M, contact stiffnesses K, contact directions H), in four ways: by Slump's block LU (used by `newton`) and
+//! block Cholesky (used by `interior-point`), and by the simplicial and supernodal Cholesky of the library faer. Prints
+//! one row for each pile and factorisation: counts first, then times.
 //!
 //! `slump-factorisations pile/csv/contacts.csv …` reads the last frame of recordings that
 //! `slump --headless --data pile/ --data-format csv` writes.
@@ -16,10 +17,10 @@ use std::time::{Duration, Instant};
 
 use matrix::Matrix;
 
-/// Time for which each factorisation is repeated. Reported times are the least of all repeats.
+/// Time for which each factorisation is repeated. The shortest time of all repeats counts.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Cost of one factorisation of one matrix.
+/// Cost of one factorisation of one matrix: size, operations, times and error.
 pub struct Told {
     /// Name of the factorisation.
     pub name: &'static str,
@@ -28,17 +29,17 @@ pub struct Told {
     /// Floating-point operations of a factorisation, multiplications and additions counted separately; `None` if
     /// unknown.
     pub flops: Option<f64>,
-    /// Time to find the order and the structure of the factors, s.
+    /// Time to find the elimination order and the structure of the factors, s.
     pub analysis_secs: f64,
-    /// Time to fill in and factorise the matrix, s.
+    /// Time to fill in the matrix and to factorise it, s.
     pub factors_secs: f64,
-    /// Time of a solution with the factors, s.
+    /// Time to solve for one right-hand side with the factors, s.
     pub solution_secs: f64,
-    /// ‖Ax − b‖ / ‖b‖.
+    /// Relative error of the solution x of Ax = b: ‖Ax − b‖ / ‖b‖.
     pub error: f64,
 }
 
-/// Least time of a call, s, over as many calls as fit into `PATIENCE`.
+/// Returns the shortest time of a call, s, over as many calls as fit into [`PATIENCE`].
 pub fn least_secs(mut call: impl FnMut()) -> f64 {
     let (begun, mut least) = (Instant::now(), f64::INFINITY);
     while begun.elapsed() < PATIENCE {

@@ -1,33 +1,34 @@
-//! The matrix of an interior-point method near convergence: unit masses, and contacts whose stiffness varies by many
-//! orders of magnitude.
+//! Matrix of an interior-point method near convergence: unit masses, and contacts whose stiffness varies by many orders
+//! of magnitude.
 
 use std::collections::BTreeMap;
 use std::error::Error;
 
 use crate::linear::Block;
 
-/// Range of the contact stiffness relative to the masses, in orders of magnitude.
+/// Smallest and largest contact stiffness relative to the masses, as powers of ten.
 const STIFFNESS: [f64; 2] = [-6.0, 6.0];
 
-/// M + Σ Hᵀ K H in blocks of three: two axes and the spin, in units in which a disc has mass 1 and moment of inertia ½.
+/// Matrix M + Σ Hᵀ K H (masses M, contact stiffnesses K, contact directions H) in blocks of three rows: two axes and
+/// the spin. In its units a disc has the mass 1 and the moment of inertia ½.
 pub struct Matrix {
     /// Number of bodies.
     pub bodies: usize,
-    /// Pairs of bodies in contact, the smaller number first.
+    /// Pairs of bodies in contact, each with the smaller number first.
     pub pairs: Vec<(u32, u32)>,
-    /// One block per body.
+    /// Diagonal blocks, one per body.
     pub diagonal: Vec<Block<3>>,
-    /// One block per pair; its rows belong to the first body.
+    /// Off-diagonal blocks, one per pair. The rows of a block belong to the first body of its pair.
     pub off_diagonal: Vec<Block<3>>,
-    /// A right-hand side.
+    /// Right-hand side, one block per body.
     pub right_side: Vec<[f64; 3]>,
 }
 
 impl Matrix {
-    /// Reads the matrix of the last frame of a table of contacts.
+    /// Builds the matrix from the contacts of the last frame in a CSV table of contacts, with random stiffnesses.
     ///
     /// # Errors
-    /// If the file cannot be read, or is not a table of contacts.
+    /// Fails if the file cannot be read or is not a table of contacts.
     pub fn read(path: &str) -> Result<Self, Box<dyn Error>> {
         let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(path)?;
         let header = reader.headers()?.clone();
@@ -63,14 +64,15 @@ impl Matrix {
         let bodies = last.map_or(0, |last| last as usize + 1);
         let mut random = 1u64;
         let mut fraction = || {
-            // Any well-mixed sequence will do (Knuth's multiplier).
+            // Any well-mixed pseudorandom sequence is suitable here (Knuth's multiplier).
             random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             (random >> 11) as f64 / (1u64 << 53) as f64
         };
         let mut diagonal = vec![[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.5]]; bodies];
         let mut blocks: BTreeMap<(u32, u32), Block<3>> = BTreeMap::new();
         for &(i, j, [x, y]) in contacts {
-            // The gradients of v_n and v_t; that of v_t includes the rim velocities of both bodies.
+            // Gradients of v_n and of v_t with respect to the velocities of the two bodies. The gradient of v_t
+            // includes the spins of both bodies.
             let rows = [([x, y, 0.0], [-x, -y, 0.0]), ([-y, x, 1.0], [y, -x, 1.0])];
             for (on_i, on_j) in rows {
                 let stiffness = 10f64.powf(STIFFNESS[0] + (STIFFNESS[1] - STIFFNESS[0]) * fraction());
@@ -88,7 +90,7 @@ impl Matrix {
         Self { bodies, pairs, diagonal, off_diagonal, right_side }
     }
 
-    /// ‖Ax − b‖ / ‖b‖.
+    /// Returns the relative error of a solution x of Ax = b: ‖Ax − b‖ / ‖b‖.
     pub fn error(&self, solution: &[[f64; 3]]) -> f64 {
         let mut rest = self.right_side.clone();
         let mut subtract = |to: usize, block: &Block<3>, from: usize, transposed: bool| {

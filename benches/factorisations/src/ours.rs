@@ -1,10 +1,10 @@
-//! Slump's own factorisations.
+//! Slump's own factorisations: block LU and block Cholesky.
 
 use crate::linear::{Block, BlockMatrix, Elimination, SymmetricBlockMatrix};
 use crate::matrix::Matrix;
 use crate::{Told, least_secs};
 
-/// Unsymmetric block LU, the factorisation of `newton`.
+/// Times the unsymmetric block LU factorisation, which the solver `newton` uses.
 pub fn block_lu(matrix: &Matrix) -> Told {
     let mut factors = BlockMatrix::<3>::default();
     let put = |factors: &mut BlockMatrix<3>, elimination: &Elimination, edges: &[u32]| {
@@ -34,7 +34,7 @@ pub fn block_lu(matrix: &Matrix) -> Told {
     }
 }
 
-/// Symmetric block Cholesky, the factorisation of `interior-point`.
+/// Times the symmetric block Cholesky factorisation, which the solver `interior-point` uses.
 pub fn block_cholesky(matrix: &Matrix) -> Told {
     let mut factors = SymmetricBlockMatrix::<3>::default();
     tell(matrix, |elimination, edges, vector| match vector {
@@ -56,7 +56,7 @@ pub fn block_cholesky(matrix: &Matrix) -> Told {
     })
 }
 
-/// Times `act`, which factorises if it gets no vector, and otherwise solves for the vector.
+/// Times the calls of `act`: without a vector `act` factorises the matrix, with a vector it solves for this vector.
 fn tell(
     matrix: &Matrix,
     mut act: impl FnMut(&Elimination, &[u32], Option<&mut [[f64; 3]]>),
@@ -81,7 +81,8 @@ fn tell(
     let solution_secs = least_secs(&mut solve);
     let place = |body: usize| elimination.place_of[body] as usize;
     let solution: Vec<_> = (0..matrix.bodies).map(|body| vector[place(body)]).collect();
-    // The product of two blocks and its addition are 54 operations; on a diagonal block they count half.
+    // The product of two blocks and its addition to a third block are 54 operations, and half as many on a diagonal
+    // block.
     let (edges, products) = (elimination.later.len() as f64, elimination.targets.len() as f64);
     Told {
         name: "block Cholesky",

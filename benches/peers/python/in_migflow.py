@@ -1,10 +1,11 @@
-"""Discs in MigFlow's Contact Dynamics.
+"""The pile in the Contact Dynamics of MigFlow.
 
 Sources, in the package `migflow` 1.4.0: `migflow/scontact.py` (`ParticleProblem.iterate`,
 `set_fixed_contact_geometry`, `set_cohesion_coefficient`). The package does not explain the six cohesion coefficients.
-The machine code of its library (`contact_solve_fixed_geometry`) reads them so: force, least lifetime of the contact,
-one that only ages the contact, and radius and centre of a region in which cohesion vanishes. The law applies to
-v_n + gap/Δt, so cohesion closes gaps, too: it acts on each pair that MigFlow detects.
+The machine code of its library (`contact_solve_fixed_geometry`) uses them in this order: force, smallest age of a
+contact that coheres, a coefficient that only ages the contact, and radius and centre (x, y) of a region in which
+cohesion vanishes. The law applies to v_n + gap/Δt, so cohesion also closes gaps: it acts on each pair that MigFlow
+detects.
 """
 
 import numpy as np
@@ -14,12 +15,12 @@ import pile
 
 NO_REGION = [1e-9, -100.0, 0.0]  # radius and centre of the region without cohesion, m: far from all grains
 ANY_LIFETIME = [-1.0, 0.0]  # cohesion acts on contacts of any age
-LEAST_DETECTION = 1e-6 * pile.DIAMETER  # stands for a range of zero, m
-TOLERANCE = 1e-8  # of the solver, m: MigFlow's default
+LEAST_DETECTION = 1e-6 * pile.DIAMETER  # detection distance that stands for a cohesion range of 0, m
+TOLERANCE = 1e-8  # tolerance of the solver, m: MigFlow's default
 
 
 class Discs:
-    """Grains on a base of fixed discs."""
+    """Grains on a base of fixed discs, as a MigFlow problem."""
 
     def __init__(self, positions, radii, base, bond, dt, detection, gravity):
         self.dt = dt
@@ -42,14 +43,14 @@ class Discs:
         self.forces[: self.grains, 1] = -mass * gravity
 
     def step(self):
-        """A step that MigFlow does not solve moves the grains all the same. MigFlow prints a warning."""
+        """Take one step. If MigFlow does not solve it, the grains still move, and MigFlow prints a warning."""
         self.problem.iterate(self.dt, self.forces, tol=TOLERANCE, force_motion=1)
 
     def positions(self):
         return np.array(self.problem.position()[: self.grains])
 
     def velocities(self):
-        """Velocities of the centres, and spins."""
+        """Return one row per grain: the velocity of its centre, m/s, and its angular velocity, rad/s."""
         return np.column_stack([self.problem.body_velocity(), self.problem.body_omega()])[: self.grains]
 
     def set_velocities(self, velocities):
@@ -58,5 +59,5 @@ class Discs:
         self.problem.body_omega()[: self.grains, 0] = moved[:, 2]
 
     def pull(self, force):
-        """Pulls the first grain upwards from now on, N."""
+        """Pull the first grain upwards with the given force, N, from now on."""
         self.forces[0, 1] += force

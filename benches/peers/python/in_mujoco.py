@@ -1,14 +1,14 @@
-"""Discs in MuJoCo: spheres that slide in the plane and turn about its normal.
+"""The pile in MuJoCo: spheres that slide in the plane and turn about the normal of the plane.
 
 Sources, in the documentation that the package `mujoco` 4.0.0 contains (mujoco/doc): `XMLreference.rst`, attributes
 `contact/pair/adhesion` and `geom/gap`; `computation/index.rst`, sections Adhesion, and margin and gap; `modeling.rst`,
 section Solver parameters.
 
 * Adhesion shifts the friction cone of a contact by a force: the contact pulls with at most this force, and friction is
-  bounded by μ(f_N + adhesion). It acts on pairs that are closer than `gap`. A pair that does not overlap has no
-  friction: such a contact has the dimension 1 (measured by `two_bodies.py`).
+  bounded by μ(f_N + adhesion), with the normal force f_N. Adhesion acts on pairs that are closer than `gap`. A pair
+  that does not overlap has no friction: its contact has the dimension 1 (measured by `two_bodies.py`).
 * `solref` is a time constant and a damping ratio. A time constant below 2Δt is raised to 2Δt.
-* `solimp` is the impedance, below 1: a contact lets the part 1 − d of the acceleration pass that it should prevent.
+* `solimp` is the impedance d, below 1: a contact prevents the fraction d of the acceleration that it should prevent.
 """
 
 import mujoco
@@ -18,7 +18,7 @@ import pile
 
 
 class Discs:
-    """Grains on a base of fixed discs."""
+    """Grains on a base of fixed discs, as a MuJoCo model."""
 
     def __init__(self, positions, radii, base, bond, dt, gap, impedance, gravity):
         spec = mujoco.MjSpec()
@@ -60,19 +60,19 @@ class Discs:
         return self.start + self.data.qpos.reshape(-1, 3)[:, :2]
 
     def velocities(self):
-        """Velocities of the centres, and spins."""
+        """Return one row per grain: the velocity of its centre, m/s, and its angular velocity, rad/s."""
         return self.data.qvel.reshape(-1, 3)
 
     def set_velocities(self, velocities):
         self.data.qvel[:] = np.ravel(velocities)
 
     def pull(self, force):
-        """Pulls the first grain upwards from now on, N."""
+        """Pull the first grain upwards with the given force, N, from now on."""
         self.data.qfrc_applied[1] = force
 
 
 def sphere(body, name, radius, position=(0, 0, 0)):
-    """A sphere that touches nothing except in the pairs it is named in."""
+    """Add a sphere to a body. The sphere touches other bodies only in pairs that name it."""
     body.add_geom(
         name=name, type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[radius, 0, 0], pos=position, contype=0, conaffinity=0
     )

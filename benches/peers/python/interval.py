@@ -1,11 +1,11 @@
-"""Means over initial states with their 95 % intervals (Student's t)."""
+"""Means over initial states with their 95 % confidence intervals (Student's t)."""
 
 import numpy as np
 import scipy.stats
 
 
 def mean(values):
-    """Mean, half the 95 % interval (None for a single value) and number of the values."""
+    """Return the mean, half of its 95 % confidence interval (None for a single value) and the number of values."""
     values = np.asarray(list(values), float)
     count = len(values)
     within = None
@@ -15,5 +15,5 @@ def mean(values):
 
 
 def difference(ones, others):
-    """Mean of the differences ones − others of the states that both have; each maps a state to a value."""
+    """Return the mean of the differences `ones` − `others`, two maps from states to values, over the states in both."""
     return mean(ones[state] - others[state] for state in sorted(ones.keys() & others.keys()))

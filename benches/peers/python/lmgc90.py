@@ -13,9 +13,9 @@ import interval
 
 FOLDER = pathlib.Path(__file__).parent.parent / "results" / "lmgc90"
 WET = "RST_WET_CLB"
-SWEEPS, MORE_SWEEPS = 5000, 20000  # sweeps allowed in a step
-LOOSE = 1e-4  # tolerance
-TIME_STEP = 1e-3  # of the series over tolerances, s
+SWEEPS, MORE_SWEEPS = 5000, 20000  # largest number of sweeps per step in the two series
+LOOSE = 1e-4  # tolerance from which a setting counts as loose
+TIME_STEP = 1e-3  # time step of the series over tolerances, s
 
 
 def read():
@@ -24,7 +24,7 @@ def read():
 
 
 def select(rows, code, tolerance, bond, time_step, law=None, sweeps=SWEEPS):
-    """Rows of a setting by initial state."""
+    """Return the rows of one setting, by initial state."""
     return {
         row["state"]: row
         for row in rows
@@ -46,7 +46,7 @@ def lmgc90(rows, tolerance, bond, time_step=TIME_STEP, law=WET, sweeps=SWEEPS):
 
 
 def tolerance_row(rows, tolerance, bond):
-    """A tolerance in the second series, which has the same 24 states at each tolerance."""
+    """Return the results at one tolerance. The second series has the same 24 initial states at each tolerance."""
     second = [row for row in rows if row["series"] == "second"]
     chosen, best = lmgc90(second, tolerance, bond), slumps(lmgc90(second, 1e-6, bond))
     count = len(chosen)
@@ -63,14 +63,14 @@ def tolerance_row(rows, tolerance, bond):
 
 
 def agreement(rows, bond, time_step):
-    """LMGC90 at 1e-6 and Slump's scheme of the paper, all states."""
+    """Return the slump of LMGC90 at tolerance 1e-6 minus the slump of Slump's paper scheme, over all states in both."""
     ours = slumps(select(rows, "slump", 1e-7, bond, time_step))
     theirs = slumps(lmgc90(rows, 1e-6, bond, time_step))
     return {"bond": bond, "time_step_secs": time_step, "lmgc90_minus_slump": interval.difference(theirs, ours)}
 
 
 def time_step_row(rows, bond):
-    """Differences between time steps, states s0 to s11."""
+    """Return slumps and their differences between time steps, over the states s0 to s11."""
     first = [row for row in rows if not row["state"].startswith("seed")]
     short, middle, long = (slumps(lmgc90(first, 1e-6, bond, time_step)) for time_step in (2e-4, 1e-3, 5e-3))
     return {
@@ -82,7 +82,7 @@ def time_step_row(rows, bond):
 
 
 def examples():
-    """Tolerances that LMGC90's own examples set."""
+    """Return how many of LMGC90's own examples set a tolerance of 1e-4 or more."""
     with open(FOLDER / "examples.csv") as file:
         tolerances = [float(row["tolerance"]) for row in csv.DictReader(file) if row["tolerance"]]
     loose = sum(tolerance >= LOOSE for tolerance in tolerances)

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Writes results/cohesion.json and screenshots/chart-programs.png from the runs of all programs.
 
-    report.py WORK [DATE]      # WORK: what run.sh made
+    report.py WORK [DATE]      # WORK: the folder that run.sh has made
 
-Numbers are means over initial states with half their 95 % interval.
+Numbers are means over initial states, with half of their 95 % confidence interval.
 """
 
 import datetime
@@ -21,7 +21,7 @@ import runs
 RESULTS = pathlib.Path(__file__).parent.parent / "results"
 PICTURE = pathlib.Path(__file__).parents[3] / "screenshots" / "chart-programs.png"
 TIME_STEPS = sorted(runs.TIME_STEPS)
-# Curves, their colour and mark: cohesion that ends with contact, and cohesion with a range of 0.01 d.
+# Name, colour and mark of each curve. TOUCH: cohesion ends with contact. RANGE: it acts up to a gap of 0.01 d.
 TOUCH = {
     ("slump", "moreau, tolerance 0"): ("Slump, moreau", "black", "o"),
     ("lmgc90", "RST_WET_CLB, 1e-6"): ("LMGC90, RST_WET_CLB", "tab:purple", "D"),
@@ -38,7 +38,7 @@ RANGE = {
     ("migflow", "range 0.01 d"): ("MigFlow", "tab:blue", "s"),
 }
 REPORTS = pathlib.Path(__file__).parents[3] / "assets" / "reports"
-# The curve that a group of a report belongs to, or None.
+# For each report: a function from the settings of a group of runs to the name of its curve, or None.
 OWN = {
     "touch-tolerance": lambda settings: {0.0: "moreau, tolerance 0", 0.01: "moreau, tolerance 0.01 d"}.get(
         settings["touch-tolerance"]
@@ -46,12 +46,12 @@ OWN = {
     "range-default": lambda settings: "range" if settings["solver"] == "newton" else None,
     "schemes": lambda settings: "dem" if settings["stepper"] == "dem" else None,
 }
-LEAST_STATES = 5  # fewer initial states give no useful interval, and are not reported
-SIDE_BY_SIDE = 1.09  # factor between Δt of neighbouring curves in the picture
+LEAST_STATES = 5  # results with fewer initial states are not reported, because their intervals are too wide
+SIDE_BY_SIDE = 1.09  # factor that shifts Δt from curve to curve in the picture, so that points do not overlap
 
 
 def peers(work):
-    """Runs of MuJoCo and MigFlow: program, setting, Bond, Δt, state and values."""
+    """Yield the runs of MuJoCo and MigFlow: program, setting, Bond number, Δt (s), state and values."""
     with open(os.path.join(work, "runs.jsonl")) as file:
         for run in map(json.loads, file):
             reach = f"{run['range']:.2g} d" if run["range"] and run["bond"] else "0"
@@ -61,7 +61,7 @@ def peers(work):
 
 
 def own():
-    """Rows of Slump's stored reports, in which the intervals are of the same kind."""
+    """Yield rows from Slump's stored reports, which have the same kind of confidence interval."""
     for name in OWN:
         for group in json.loads((REPORTS / f"{name}.json").read_text())["groups"]:
             setting = OWN[name](group["settings"])
@@ -79,7 +79,7 @@ def own():
 
 
 def supplied():
-    """LMGC90's runs from the states s0 to s11. Its other states were run at one time step only."""
+    """Yield LMGC90's runs from the states s0 to s11. The other states were run at one time step only."""
     for row in lmgc90.read():
         chosen = row["law"] == lmgc90.WET and float(row["tolerance"]) == 1e-6 and not row["state"].startswith("seed")
         if chosen:
@@ -88,7 +88,7 @@ def supplied():
 
 
 def grouped(all_runs):
-    """Values by program, setting, Bond and Δt, and then by state."""
+    """Return the values of runs, grouped by program, setting, Bond number and Δt, and then by state."""
     groups = {}
     for program, setting, bond, dt, state, values in all_runs:
         groups.setdefault((program, setting, bond, dt), {})[state] = values
@@ -109,7 +109,7 @@ def rows_of(groups):
 
 
 def changes_of(groups):
-    """Slump at the longest Δt minus slump at a shorter one, from the same states."""
+    """Yield the slump at the longest Δt minus the slump at each shorter Δt, over the same states."""
     longest = TIME_STEPS[-1]
     for (program, setting, bond, dt), states in sorted(groups.items()):
         long = groups.get((program, setting, bond, longest), {})
@@ -151,7 +151,7 @@ def draw(rows):
             panel.xaxis.set_minor_locator(ticker.NullLocator())
             panel.set_ylim(0, 0.62)
             panel.grid(alpha=0.3)
-    # Without cohesion there is one row of panels; the legend has the place of the other.
+    # Without cohesion only the first row has a panel; the legend takes the place of the second panel.
     panels[1, 0].axis("off")
     handles = {}
     for panel in panels.flat:

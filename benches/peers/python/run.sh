@@ -1,10 +1,10 @@
 #!/bin/sh
-# The pile with cohesion in MuJoCo and MigFlow, next to stored results of Slump and LMGC90: results/cohesion.json and
-# screenshots/chart-programs.png.
+# Runs the pile with cohesion in MuJoCo and MigFlow, and compares it with stored results of Slump and LMGC90. Writes
+# results/cohesion.json and screenshots/chart-programs.png.
 #
-#   benches/peers/python/run.sh [SLUMP]     # the program; target/release/slump unless given
+#   benches/peers/python/run.sh [SLUMP]     # path of the program, by default target/release/slump
 #
-# A second call continues where the first was stopped. All files are below target/programs/.
+# A second call resumes where the first call was stopped. All files are below target/programs/.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../../.." && pwd)

@@ -3,7 +3,7 @@
 
     runs.py WORK        # WORK has the initial states seed8.csv, seed1.csv, … (run.sh makes them)
 
-A second call continues after the last result. It takes all cores.
+A second call resumes after the last result. The runs use all cores.
 """
 
 import concurrent.futures
@@ -15,18 +15,19 @@ import time
 
 import pile
 
-STATES = [f"seed{seed}" for seed in (8, 1, 2, 3, 4, 5, 6, 7)]  # seed 8 is the pile that Slump ships
+STATES = [f"seed{seed}" for seed in (8, 1, 2, 3, 4, 5, 6, 7)]  # seed 8 made the pile that Slump ships
 BONDS = [0, 8, 20, 50]
-TIME_STEPS = [5e-3, 1e-3, 2e-4]  # s
-RANGES = [pile.RANGE, 0.0]  # m
-# MuJoCo's contacts: impedance at no overlap and at 1 mm. The time constant is the shortest that it accepts, 2Δt: a longer
-# one lets pairs escape that open slowly. `defaults` is MuJoCo's default impedance. With it a pair holds 3 % of its C₀ at
-# the longest Δt. With `hard` it holds all of it, at each Δt (`two_bodies.py` measures this).
+TIME_STEPS = [5e-3, 1e-3, 2e-4]  # time steps Δt, s
+RANGES = [pile.RANGE, 0.0]  # gaps up to which cohesion acts, m
+# Impedance of MuJoCo's contacts without overlap and at an overlap of 1 mm. The time constant of contacts is 2Δt, the
+# shortest that MuJoCo accepts: with a longer time constant, pairs that open slowly separate. `defaults` is MuJoCo's
+# default impedance. With `defaults` a pair bears 3 % of its cohesion force C₀ at the longest Δt; with `hard` it bears
+# all of C₀ at each Δt (`two_bodies.py` measures this).
 IMPEDANCES = {"defaults": (0.9, 0.95), "hard": (0.999, 0.999)}
 
 
 def settings():
-    """All settings of the programs, at each time step and range. The cheap ones come first."""
+    """Yield all settings of the programs, at each time step and range of cohesion. Cheap runs come first."""
     for dt in TIME_STEPS:
         for reach in RANGES:
             for program, setting in [*(("mujoco", name) for name in IMPEDANCES), ("migflow", "")]:
@@ -34,7 +35,7 @@ def settings():
 
 
 def cases():
-    """All runs. Without cohesion there is no range, so Bond 0 is run at one."""
+    """Yield all runs. Without cohesion the range has no effect, so Bond 0 is run with one range only."""
     for setting in settings():
         for state in STATES:
             for bond in BONDS:
@@ -55,7 +56,7 @@ def discs_of(case, positions, radii, base):
 
 
 def result(work, case):
-    """A run's slump and overlap, with the CPU time of its steps. Library messages on stdout are counted."""
+    """Take one run. Return slump, overlap, CPU time (s) and number of unsolved steps, from library messages."""
     positions, radii = pile.read(os.path.join(work, case["state"] + ".csv"))
     discs = discs_of(case, positions, radii, pile.rough_base(positions))
     sys.stdout.flush()

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Measures the cohesion of MuJoCo and MigFlow on a disc above a fixed one, without gravity, at Bond 20.
+"""Measures the cohesion of MuJoCo and MigFlow on a disc above a fixed disc, without gravity, at Bond 20.
 
     two_bodies.py FILE.json
 
-* pull-off force: the largest force, in C₀, that does not separate the pair within 0.2 s
-* escape speed: the largest opening speed, m/s, from which the pair comes back
-* friction: the tangential impulse of one step, in μC₀Δt, while a pair slides and no other force presses it. With the
-  shifted cone it is 1, without cohesion it is 0. Measured at an overlap of 1e-6 d, and at a gap of half the range
+* pull-off force: the largest force that does not separate the pair within 0.2 s, in cohesion forces C₀
+* escape speed: the largest opening speed after which the pair comes together again, m/s
+* friction: the tangential impulse of one step in μC₀Δt, while a pair slides and only cohesion presses it together. The
+  shifted cone gives 1, a law without cohesion 0. Measured at an overlap of 1e-6 d, and at a gap of half the range
 """
 
 import json
@@ -19,11 +19,11 @@ import runs
 
 BOND = 20.0
 RADIUS = np.array([pile.DIAMETER / 2])
-COHESION = BOND * pile.masses(RADIUS)[0] * pile.GRAVITY  # C₀, N
+COHESION = BOND * pile.masses(RADIUS)[0] * pile.GRAVITY  # cohesion force C₀, N
 OVERLAP = 1e-6 * pile.DIAMETER
-WAIT = 0.2  # s
+WAIT = 0.2  # simulated time after which a pair counts as held or separated, s
 BISECTIONS = 14
-SLIDING = 6.0  # speed of sliding, in μC₀Δt/m: friction stops a speed of 3
+SLIDING = 6.0  # initial sliding speed, in μC₀Δt/m: above 3, because friction would stop a slower disc
 
 
 def pair(case, gap=-OVERLAP):
@@ -38,7 +38,7 @@ def separates(discs, dt):
 
 
 def largest(held, most):
-    """The largest number up to `most` for which `held` is true."""
+    """Return the largest number up to `most` for which `held` is true, by bisection."""
     least = 0.0
     for _ in range(BISECTIONS):
         middle = 0.5 * (least + most)

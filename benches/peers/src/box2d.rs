@@ -1,7 +1,7 @@
-//! Box2D v3, through the crate boxdd, which includes the C source.
+//! The engine Box2D v3, through the crate boxdd, which includes the C source.
 //!
-//! Box2D's slop is 0.005 of its length unit, which is the same for the whole program. To set the slop, this bench
-//! scales the world: it multiplies lengths and g by one factor and leaves times unchanged.
+//! Box2D's slop (overlap that it does not push out) is 0.005 of its length unit, and the same for the whole program. To
+//! set the slop, this benchmark scales the world: it multiplies lengths and g by one factor and leaves times unchanged.
 
 use boxdd::{
     BodyBuilder, BodyId, BodyType, Foundation, Position, ShapeDef, SurfaceMaterial, Vec2, World,
@@ -17,7 +17,7 @@ const SLOP: f64 = 0.005;
 pub struct Box2d {
     world: World,
     grains: Vec<BodyId>,
-    /// Box2D length units per metre.
+    /// Number of Box2D length units per metre.
     scale: f64,
     setting: Setting,
 }
@@ -30,7 +30,8 @@ impl Box2d {
             .gravity(Vec2::new(0.0, (-GRAVITY * scale) as f32))
             .contact_hertz(setting.contact_hertz)
             .restitution_threshold(0.0)
-            // No body here is as fast as this, so it does not limit the speed at which overlap is pushed out.
+            // This limit is faster than any body of the pile, so it does not limit the speed at which overlap is pushed
+            // out.
             .contact_speed((10.0 * scale) as f32)
             .maximum_linear_speed((100.0 * scale) as f32)
             .enable_sleep(false)
@@ -69,14 +70,14 @@ impl Box2d {
 impl Engine for Box2d {
     fn step(&mut self) {
         let Setting { time_step_secs, substeps, .. } = self.setting;
-        // Fails only if the step is not a number, which the command line refuses.
+        // Fails only if the step is not a finite number, which cannot happen here.
         let events = self.world.step(time_step_secs as f32, substeps as i32);
         drop(events.expect("a proper step"));
     }
 
     fn positions(&mut self) -> Vec<[f64; 2]> {
         let place = |id: &BodyId| {
-            // The body was made with this world and is never removed.
+            // The body belongs to this world and is never removed.
             let at = self.world.body(*id).and_then(|body| body.position()).expect("a body");
             [f64::from(at.x) / self.scale, f64::from(at.y) / self.scale]
         };

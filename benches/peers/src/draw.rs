@@ -1,4 +1,4 @@
-//! The chart of overlap against cost, with one panel for each number of grains.
+//! Chart of overlap against cost, with one panel for each number of grains.
 
 use std::error::Error;
 
@@ -17,7 +17,7 @@ const ALL: [Series; 6] = [
     Series::TgsSoft,
 ];
 
-/// Draws the smallest overlap that each engine reaches for its cost, as PNG.
+/// Draws the smallest overlap that each engine reaches for its cost. Returns the picture as PNG.
 pub fn png(report: &Report) -> Result<Vec<u8>, Box<dyn Error>> {
     let of = |(grains, ..): (usize, f64, u64)| {
         panel(&report.rows.iter().filter(|row| row.grains == grains).collect::<Vec<_>>())
@@ -35,7 +35,7 @@ pub fn png(report: &Report) -> Result<Vec<u8>, Box<dyn Error>> {
 fn panel(rows: &[&Row]) -> Chart {
     let costs = || rows.iter().map(|row| row.secs_per_simulated_sec);
     let least = 0.7 * costs().fold(f64::INFINITY, f64::min);
-    // Space for the names of curves.
+    // Leaves space for the names of the curves on the right.
     let most = 9.0 * costs().fold(0.0, f64::max);
     let overlaps = || rows.iter().map(|row| row.mean_overlap);
     let [low, high] = [overlaps().fold(f64::INFINITY, f64::min), overlaps().fold(0.0, f64::max)];

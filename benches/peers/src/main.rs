@@ -1,5 +1,5 @@
-//! Runs the cohesionless pile with other engines and with Slump, and writes the results as JSON and as a chart. See
-//! `README.md`.
+//! Benchmark: runs the cohesionless pile with other engines and with Slump, and writes the results as JSON and as a
+//! chart. See `README.md`.
 
 mod box2d;
 mod draw;
@@ -19,7 +19,8 @@ use engine::{Engine, Setting};
 use pile::Pile;
 use slump::{Slump, Way};
 
-/// Number of grains, width of their box in diameters, and number of piles.
+/// Sizes of the piles: number of grains, width of the box in which they were made (in mean diameters), and number of
+/// piles.
 const PILES: [(usize, f64, u64); 2] = [(138, 16.0, 8), (2000, 60.0, 1)];
 const COMMAND: &str = "benches/peers/run.sh";
 const DURATION_SECS: f64 = 1.0;
@@ -27,13 +28,13 @@ const TIME_STEPS_SECS: [f64; 2] = [1e-3, 5e-3];
 const SUBSTEPS: [u32; 3] = [4, 8, 16];
 const CONTACT_HERTZ: [f32; 2] = [960.0, 3840.0];
 const SWEEPS: [u32; 3] = [10, 40, 160];
-/// Number of runs whose least time is taken. A run that takes longer than `LONG_ENOUGH_SECS` is not repeated.
+/// Largest number of runs whose shortest time counts. A run that takes longer than `LONG_ENOUGH_SECS` is not repeated.
 const REPEATS: u32 = 3;
 const LONG_ENOUGH_SECS: f64 = 5.0;
-/// Steps between two measurements of positions, whose time is not counted.
+/// Number of steps between two measurements of positions. The time of measurements is not counted.
 const STEPS_PER_LOOK: u64 = 10;
 
-/// Compared engine or method, and its curve in the chart.
+/// Curve in the chart: an engine, or a solver or stepper of Slump.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 enum Series {
     #[serde(rename = "rapier2d 0.36 f32")]
@@ -50,7 +51,7 @@ enum Series {
     Certified,
 }
 
-/// All results.
+/// All results of the benchmark.
 #[derive(Serialize)]
 struct Report {
     command: &'static str,
@@ -59,7 +60,7 @@ struct Report {
     rows: Vec<Row>,
 }
 
-/// Results of an engine with a setting at a time step: means over the piles.
+/// Results of an engine with one setting and one time step: means over the piles.
 #[derive(Serialize)]
 struct Row {
     series: Series,
@@ -67,13 +68,13 @@ struct Row {
     grains: usize,
     piles: usize,
     time_step_secs: f64,
-    /// Δy_G at the end.
+    /// Slump Δy_G at the end of the run, dimensionless.
     slump: f64,
-    /// Half of its 95 % interval; `None` for a single pile.
+    /// Half of the 95 % confidence interval of `slump`; `None` for a single pile.
     slump_within: Option<f64>,
-    /// Mean overlap of touching grains, averaged over the measurements, in diameters.
+    /// Mean overlap of touching grains, averaged over the measurements, in mean diameters.
     mean_overlap: f64,
-    /// Largest overlap in any measurement of any pile, in diameters.
+    /// Largest overlap in any measurement of any pile, in mean diameters.
     max_overlap: f64,
     secs_per_simulated_sec: f64,
     ms_per_step: f64,
@@ -86,7 +87,7 @@ struct Compared {
     make: Box<Make>,
 }
 
-/// Puts a pile into an engine, for steps of the given length, s.
+/// Function that puts a pile into an engine, for steps of the given length (s).
 type Make = dyn Fn(&Pile, f64) -> Result<Box<dyn Engine>, Box<dyn Error>>;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -122,7 +123,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Every engine with each of its settings.
+/// Returns every engine with each of its settings.
 fn compared() -> Vec<Compared> {
     let mut all = Vec::new();
     for substeps in SUBSTEPS {
@@ -160,7 +161,7 @@ fn compared() -> Vec<Compared> {
     all
 }
 
-/// The name of a series in tables.
+/// Returns the name of a series in tables.
 fn name_of(series: Series) -> String {
     serde_json::to_value(series)
         .ok()
@@ -184,7 +185,7 @@ fn measured(
                 let started = Instant::now();
                 engine.step();
                 run_secs += started.elapsed().as_secs_f64();
-                // All repeats give the same positions, so the first is measured.
+                // All repeats give the same positions, so only the first repeat is measured.
                 if repeat == 0 && (step % STEPS_PER_LOOK == 0 || step == steps) {
                     let (mean, largest) = pile.overlaps(&engine.positions());
                     overlaps.push(mean);
@@ -217,7 +218,7 @@ fn measured(
     })
 }
 
-/// The processor's name according to Linux.
+/// Returns the name of the processor according to Linux.
 fn processor() -> String {
     let text = std::fs::read_to_string(Path::new("/proc/cpuinfo")).unwrap_or_default();
     let line = text.lines().find(|line| line.starts_with("model name"));

@@ -1,14 +1,14 @@
-//! The cohesionless pile: the same grains, base and parameters as in Slump.
+//! The cohesionless pile for all engines: the grains, base and parameters of Slump's pile.
 
 use slump_core::error::Result;
 use slump_core::scene::{NewPile, Scene, pile_of, settle};
 
-/// g, m/s².
+/// Gravitational acceleration g, m/s².
 pub const GRAVITY: f64 = 9.8;
-/// σ, kg/m².
+/// Areal density σ of the discs, kg/m².
 pub const AREAL_DENSITY: f64 = 1.0;
 
-/// A disc, m.
+/// A disc with the centre (x, y) and its radius, m.
 #[derive(Clone, Copy, Debug)]
 pub struct Disc {
     pub x: f64,
@@ -16,18 +16,18 @@ pub struct Disc {
     pub radius: f64,
 }
 
-/// The grains and the rough base.
+/// A pile: its grains and its rough base.
 #[derive(Clone, Debug)]
 pub struct Pile {
     /// The pile as a Slump scene.
     pub scene: Scene,
     pub grains: Vec<Disc>,
-    /// The rough base.
+    /// Fixed discs of the rough base.
     pub base: Vec<Disc>,
 }
 
 impl Pile {
-    /// Rains grains into a box and removes its walls.
+    /// Makes a pile: rains grains into a box, lets them come to rest, and removes the walls of the box.
     pub fn rained(grains: usize, box_width_in_diameters: f64, seed: u64) -> Result<Self> {
         let made_as = NewPile { grains, box_width_in_diameters, seed, ..NewPile::default() };
         let mut scene = pile_of(settle(&made_as, |_| true)?, box_width_in_diameters)?;
@@ -38,23 +38,23 @@ impl Pile {
         Ok(Self { scene, grains, base })
     }
 
-    /// Mean diameter d, m.
+    /// Returns the mean diameter d, m.
     pub fn diameter(&self) -> f64 {
         self.scene.mean_diameter
     }
 
-    /// μ and ρ.
+    /// Returns the friction coefficient μ and the restitution ρ.
     pub fn friction_and_restitution(&self) -> [f32; 2] {
         [self.scene.parameters.friction as f32, self.scene.parameters.restitution as f32]
     }
 
-    /// Δy_G: the relative drop of the mean height.
+    /// Returns the slump Δy_G: the drop of the mean height, divided by the initial mean height.
     pub fn slump(&self, now: &[[f64; 2]]) -> f64 {
         let before: f64 = self.grains.iter().map(|disc| disc.y).sum();
         (before - now.iter().map(|[_, y]| y).sum::<f64>()) / before
     }
 
-    /// Mean and largest overlap of touching grains, in diameters.
+    /// Returns the mean and the largest overlap of touching grains, in mean diameters.
     pub fn overlaps(&self, now: &[[f64; 2]]) -> (f64, f64) {
         let reach = 2.0 * self.grains.iter().map(|disc| disc.radius).fold(0.0, f64::max);
         let mut order: Vec<usize> = (0..now.len()).collect();

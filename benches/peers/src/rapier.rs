@@ -1,12 +1,13 @@
-//! rapier2d in f32.
+//! The engine rapier2d, in single precision (f32).
 
 use rapier2d::prelude::*;
 
 use crate::engine::{Engine, SLOP_IN_DIAMETERS, Setting};
 use crate::pile::{AREAL_DENSITY, Disc, GRAVITY, Pile};
 
-/// Distance at which rapier starts to create contacts before grains touch, in diameters. By default it is tied to the
-/// slop; with a small slop, contacts of fast grains would then be created too late.
+/// Distance at which rapier starts to create contacts before grains touch, in mean diameters. By default this distance
+/// is proportional to the slop (overlap that is not pushed out). With a small slop, contacts of fast grains would then
+/// be created too late.
 const PREDICTION: f64 = 0.1;
 
 pub struct Rapier {
@@ -23,7 +24,7 @@ impl Rapier {
             natural_frequency: setting.contact_hertz,
             damping_ratio,
         };
-        // Every length of the engine scales with this unit, which is chosen to give the requested slop.
+        // Every length of the engine is proportional to this unit, which is chosen to give the requested slop.
         let slop = (SLOP_IN_DIAMETERS * pile.diameter()) as f32;
         let length_unit = slop / defaults.normalized_allowed_linear_error;
         world.integration_parameters = IntegrationParameters {
@@ -34,7 +35,7 @@ impl Rapier {
             length_unit,
             normalized_prediction_distance: (PREDICTION / SLOP_IN_DIAMETERS) as f32
                 * defaults.normalized_allowed_linear_error,
-            // Turns these two bounds off, because they would also shrink with the unit.
+            // The two following bounds are turned off, because they would also shrink with the unit.
             normalized_max_corrective_velocity: f32::MAX,
             normalized_max_linear_velocity: f32::MAX,
             ..defaults

@@ -1,4 +1,4 @@
-//! Slump's own steppers and solvers.
+//! Slump's own steppers and solvers, as engines of the benchmark.
 
 use slump_core::error::Result;
 use slump_core::sim::{Remedies, Simulation, Stepper};
@@ -7,14 +7,14 @@ use slump_core::solver::{FrictionModel, Method, SolverSettings};
 use crate::engine::Engine;
 use crate::pile::Pile;
 
-/// A stepper or solver with its settings.
+/// A stepper or solver of Slump with its settings.
 #[derive(Clone, Copy, Debug)]
 pub enum Way {
-    /// The paper's scheme with `count` sweeps per step.
+    /// The paper's scheme with `count` sweeps per step, with or without the remedy `push-out`.
     Sweeps { count: u32, push_out: bool },
-    /// Every step solved to tolerance with bounded friction (Tresca).
+    /// Every step is solved to tolerance with bounded friction (Tresca), with or without the remedy `push-out`.
     Certified { push_out: bool },
-    /// Soft contacts with substeps.
+    /// The stepper `tgs-soft`: soft contacts with substeps.
     TgsSoft { substeps: u32 },
 }
 
@@ -26,7 +26,7 @@ impl Slump {
         scene.parameters.time_step_secs = time_step_secs;
         match way {
             Way::Sweeps { count, push_out } => {
-                // No residual is as small as this, so all sweeps are taken.
+                // No residual is as small as this tolerance, so all sweeps are taken.
                 scene.solver = SolverSettings::to_residual(Method::Nsgs, f64::MIN_POSITIVE, count);
                 scene.remedies = Remedies { push_out, ..Remedies::default() };
             }
@@ -45,7 +45,7 @@ impl Slump {
 
 impl Engine for Slump {
     fn step(&mut self) {
-        // A cohesionless pile with these settings stays finite. A failure would show in the table.
+        // A cohesionless pile with these settings stays finite.
         self.0.step().expect("a finite state");
     }
 

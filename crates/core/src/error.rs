@@ -1,57 +1,57 @@
-//! Errors of this crate. Each message is one sentence that names the field, the value and the allowed values.
+//! The errors of this crate. Each message is one sentence that names a field, its value and the allowed values.
 
 use std::path::{Path, PathBuf};
 
-/// The error of every fallible operation of this crate. Its `Display` is one sentence for a person.
+/// The error of every operation of this crate that can fail. Its `Display` is one sentence for the user.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// A value outside its range.
+    /// A value that is outside its range.
     #[error("{} is {}, but must be {}", legible(.field), legible(.value), legible(.allowed))]
     Value {
-        /// The field, as the user writes it.
+        /// Name of the field, as the user writes it.
         field: String,
-        /// The value found.
+        /// The value that was found.
         value: String,
-        /// The allowed values.
+        /// Description of the allowed values.
         allowed: String,
     },
     /// A file that could not be read or written.
     #[error("{}: {}", place(.path), legible(.reason))]
     File {
-        /// The file or folder.
+        /// Path of the file or folder.
         path: PathBuf,
-        /// Message of the system or the parser, with the line if it is known.
+        /// Message of the operating system or of the parser, with the line number if it is known.
         reason: String,
     },
-    /// Options that the command line refuses, with the reason.
+    /// Options that the command line refuses. The text is the whole message.
     #[error("{0}")]
     Options(String),
-    /// The requested kind of renderer is not available.
+    /// The requested kind of renderer is not available. The text is the whole message.
     #[error("{0}")]
     Renderer(String),
-    /// A run ended by a signal. Its results up to then have been written.
+    /// A run that was ended by a signal of the operating system. The results up to this moment have been written.
     #[error("stopped by {signal} at step {step} (t = {time_secs} s)")]
     Interrupted {
         /// Name of the signal.
         signal: &'static str,
-        /// The program's exit code.
+        /// Exit code of the program.
         exit_code: u8,
         /// Number of the last step.
         step: u64,
-        /// The simulated time of that step.
+        /// Simulated time of the last step, s.
         time_secs: f64,
     },
-    /// A solve ended by a signal. The impulses reached by then have been written.
+    /// A solve that was ended by a signal of the operating system. The impulses of the last sweep have been written.
     #[error("stopped by {signal} after {sweeps} sweeps")]
     SolveInterrupted {
         /// Name of the signal.
         signal: &'static str,
-        /// The program's exit code.
+        /// Exit code of the program.
         exit_code: u8,
-        /// Sweeps done before the signal.
+        /// Number of sweeps before the signal.
         sweeps: u32,
     },
-    /// A simulation whose state is no longer finite.
+    /// A simulation whose positions or velocities are no longer finite.
     #[error(
         "{}",
         legible(&format!(
@@ -60,28 +60,28 @@ pub enum Error {
         ))
     )]
     NonFinite {
-        /// The step after which the state was found to be not finite.
+        /// Number of the last step, after which a position or velocity was not finite.
         step: u64,
-        /// The simulated time of that step.
+        /// Simulated time after the last step, s.
         time_secs: f64,
-        /// Bond number in force.
+        /// Bond number in the last step.
         bond: f64,
-        /// Time step in force.
+        /// Time step, s.
         time_step_secs: f64,
-        /// Restitution in force.
+        /// Restitution in the last step.
         restitution: f64,
-        /// Friction in force.
+        /// Friction coefficient in the last step.
         friction: f64,
-        /// The change that is most likely to help.
+        /// Advice that ends the sentence: the change of settings that is most likely to help.
         advice: String,
     },
 }
 
-/// Shorthand for results of this crate.
+/// Abbreviation for results with the error type of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
-    /// An error about the value of a field.
+    /// Returns an error about the value of a field.
     pub fn value(
         field: impl Into<String>,
         value: impl std::fmt::Display,
@@ -90,24 +90,24 @@ impl Error {
         Self::Value { field: field.into(), value: value.to_string(), allowed: allowed.into() }
     }
 
-    /// An error about a file or folder.
+    /// Returns an error about a file or folder.
     pub fn file(path: impl AsRef<Path>, reason: impl std::fmt::Display) -> Self {
-        // Messages of parsers contain and end with line breaks; a sentence has none.
+        // Messages of parsers contain line breaks and end with them. The sentence of an error has no line break.
         let reason = reason.to_string().trim_end().replace('\n', " ");
         Self::File { path: path.as_ref().to_owned(), reason }
     }
 
-    /// An error about a file that cannot be read or is not a `form`: the message of the system or parser, followed by
-    /// the allowed form.
+    /// Returns an error about a file that cannot be read, or that is not a valid file of its kind. The message is
+    /// that of the operating system or parser (`said`), followed by the description of a valid file (`form`).
     pub fn unread(path: impl AsRef<Path>, said: impl std::fmt::Display, form: &str) -> Self {
         Self::file(path, with_allowed(&said.to_string(), form))
     }
 }
 
-/// Returns an error about the value of a field unless `is_sound`.
+/// Returns an error about the value of a field if `is_sound` is false.
 ///
 /// # Errors
-/// [`Error::Value`].
+/// [`Error::Value`] if `is_sound` is false.
 pub fn check(
     is_sound: bool,
     field: impl Into<String>,
@@ -117,7 +117,8 @@ pub fn check(
     if is_sound { Ok(()) } else { Err(Error::value(field, value, allowed)) }
 }
 
-/// A parser's message about `form`, extended by the allowed form if it does not name it.
+/// Returns the message of a parser (`said`) about a file or text. If the message does not name the allowed values,
+/// the allowed form (`form`) is appended.
 pub fn with_allowed(said: &str, form: &str) -> String {
     let said = said.trim_end();
     if said.contains("must ") {
@@ -134,7 +135,7 @@ pub fn with_allowed(said: &str, form: &str) -> String {
     format!("{said}, but must be {form}")
 }
 
-/// Replaces names of Rust types in a parser's message by words for users.
+/// Replaces the names of Rust types in the message of a parser by words for users.
 pub fn in_words(expected: &str) -> String {
     const WORDS: [(&str, &str); 9] = [
         ("f64", "a number"),
@@ -151,15 +152,17 @@ pub fn in_words(expected: &str) -> String {
     known.map_or(expected.to_owned(), |(words, rest)| format!("{words}{rest}"))
 }
 
-/// Longest number shown digit by digit. Every f64 fits with an exponent.
+/// Largest number of digits that a number in a message may have. Longer numbers are written with an exponent, with
+/// which every f64 fits.
 const MOST_DIGITS: usize = 24;
-/// Longest word of a message; longer words are cut.
+/// Largest number of characters of a word in a message. Longer words are cut.
 const MOST_OF_WORD: usize = 120;
-/// Longest part of a message. The list of all settings fits.
+/// Largest number of bytes of a field, value or range in a message. The longest range, the list of all settings, is
+/// shorter.
 const MOST_OF_PART: usize = 3000;
 
-/// Makes part of a message readable, whatever a file or a command line put into it: escapes control characters,
-/// writes long numbers with an exponent, and cuts overlong text.
+/// Returns a part of a message in readable form, whatever text a file or a command line put into it. It escapes
+/// control characters, writes long numbers with an exponent, and cuts text that is too long.
 pub fn legible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len().min(MOST_OF_PART));
     for word in text.split_inclusive(' ') {
@@ -178,7 +181,7 @@ pub fn legible(text: &str) -> String {
     shown
 }
 
-/// Gives a word an exponent if it has more than [`MOST_DIGITS`] digits in a row.
+/// Writes numbers of more than [`MOST_DIGITS`] digits in a word with an exponent.
 fn short_numbers(word: &str) -> String {
     let is_digit = |char: char| char.is_ascii_digit() || char == '.';
     let mut shown = String::new();
@@ -198,12 +201,12 @@ fn short_numbers(word: &str) -> String {
     shown + rest
 }
 
-/// A path, escaped so that any terminal can show it.
+/// Returns a path as text, escaped so that any terminal can show it.
 pub fn place(path: &Path) -> String {
     escaped(&path.to_string_lossy())
 }
 
-/// Escapes characters that move the cursor or change the writing direction.
+/// Escapes the characters of a text that move the cursor or change the writing direction.
 pub fn escaped(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for char in text.chars() {

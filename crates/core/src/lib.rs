@@ -1,7 +1,8 @@
 //! The physics of Slump: Contact Dynamics of cohesive grains.
 //!
-//! The source is A. Abramian & L. Staron, *Time Steps v.s. Cohesion in Non-Smooth Contact Dynamics
-//! Algorithm* (2020, hal-02570097), "the paper" throughout. A pile and how far it slumps:
+//! The source is A. Abramian & L. Staron, *Time Steps v.s. Cohesion in Non-Smooth Contact Dynamics Algorithm* (2020,
+//! hal-02570097), called *the paper* in these pages. This example computes five steps of a pile and prints how far it
+//! has slumped:
 //!
 //! ```
 //! let mut scene = slump_core::scene::built_in("pile")?;
@@ -12,10 +13,11 @@
 //! # Ok::<(), slump_core::error::Error>(())
 //! ```
 //!
-//! Programs start from a [`scene`] and step its [`sim::Simulation`]. To add a stepper, a contact law or a solver,
-//! implement [`sim::Advance`]. To see a single contact problem, pass a [`sim::ProblemVisitor`] to
-//! [`next_problem`](sim::Simulation::next_problem); [`solver::solve`] solves it. Modules depend downward only:
-//! [`setting`] ← [`world`] ← [`contact`] ← [`solver`] ← [`sim`] ← [`scene`].
+//! Programs start from a [`scene`] and advance its [`sim::Simulation`] step by step. To add a stepper, a contact law
+//! or a solver, implement [`sim::Advance`]. To read the contact problem of one step, pass a [`sim::ProblemVisitor`]
+//! to [`next_problem`](sim::Simulation::next_problem). [`solver::solve`] solves such a problem. Modules depend on
+//! each other in one direction only, from right to left: [`setting`] ← [`world`] ← [`contact`] ← [`solver`] ← [`sim`]
+//! ← [`scene`].
 
 #![warn(missing_docs, unreachable_pub)]
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]

@@ -1,10 +1,11 @@
-//! Numbers that are the same with every compiler and in every file. `#[serde(with = "number")]` writes infinities and
-//! NaN as strings, because JSON has no such numbers and `null` would not read back as a number.
+//! Functions on numbers that give the same result with every compiler and in every file. The attribute
+//! `#[serde(with = "number")]` writes infinities and NaN as strings, because JSON does not have such numbers and `null`
+//! could not be read back as a number.
 
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serializer};
 
-/// Writes a finite number as a number, and any other as the string `inf`, `-inf` or `NaN`.
+/// Writes a finite number as a number, and any other number as the string `inf`, `-inf` or `NaN`.
 pub fn serialize<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
     if number.is_finite() {
         serializer.serialize_f64(*number)
@@ -13,7 +14,7 @@ pub fn serialize<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S:
     }
 }
 
-/// Reads a number written by [`serialize`].
+/// Reads a number that [`serialize`] has written.
 pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     #[derive(Deserialize)]
     #[serde(untagged)]
@@ -27,17 +28,17 @@ pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D:
     }
 }
 
-/// True if a number is 0. Files leave such numbers out.
+/// True if a number is 0. Fields with such numbers are not written to files.
 pub(crate) fn is_zero<N: Default + PartialEq>(number: &N) -> bool {
     *number == N::default()
 }
 
-/// Positive and negative parts of a number, with the same bits from every compiler. `f64::max` and `f64::min` do not
-/// specify whether they return 0.0 or -0.0, and compilers differ.
+/// The positive and the negative part of a number, with the same bits from every compiler. `f64::max` and `f64::min`
+/// do not specify if they return 0.0 or -0.0, and compilers differ.
 pub trait Parts {
-    /// The larger of the number and 0; 0.0 for NaN and for both zeros.
+    /// Returns the larger of the number and 0. Returns 0.0 for NaN and for both zeros.
     fn positive_part(self) -> Self;
-    /// The smaller of the number and 0; 0.0 for NaN and for both zeros.
+    /// Returns the smaller of the number and 0. Returns 0.0 for NaN and for both zeros.
     fn negative_part(self) -> Self;
 }
 
@@ -57,11 +58,11 @@ impl Parts for f64 {
 pub(crate) fn rounded_down(number: f64) -> f64 {
     let unit = libm::pow(10.0, libm::log10(number).floor() - 1.0);
     let below = (number / unit).floor() * unit;
-    // Parse the decimal form, which is free of the rounding error of the product.
+    // Parse the decimal form, because the product has a rounding error.
     format!("{below:.1e}").parse().unwrap_or(below)
 }
 
-/// A time (s) in milliseconds with its unit, with up to four digits.
+/// Returns a time in milliseconds as text with its unit, with up to four digits.
 pub fn millis_text(secs: f64) -> String {
     let millis = 1e3 * secs;
     format!("{} ms", format!("{millis:.3e}").parse().unwrap_or(millis))

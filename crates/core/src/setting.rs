@@ -1,9 +1,9 @@
-//! Settings, each declared once: name, default, allowed values and explanation.
+//! Settings. Each is declared once, with its name, default, allowed values and explanation.
 //!
-//! From a list of declarations `settings!` generates the plain structure that the physics reads, the structure of
-//! changes that the command line, scene files and study files fill in ([`Group::Changes`]), the range checks, and a
-//! table ([`About`]) from which options, controls and messages are made. `words!` does the same for a setting with a
-//! few allowed words.
+//! From a list of declarations the macro `settings!` generates the structure of values that the physics reads, the
+//! structure of changes that the command line, scene files and study files fill in ([`Group::Changes`]), the range
+//! checks, and a table ([`About`]) for options, controls of the window and error messages. The macro `words!`
+//! declares the type of a setting whose value is one of a few words.
 
 use std::fmt;
 
@@ -12,61 +12,61 @@ use serde::ser::SerializeMap;
 
 use crate::error;
 
-/// The declaration of a setting, independent of its type.
+/// Declaration of a setting, in a form that does not depend on the type of its value.
 #[derive(Clone, Copy, Debug)]
 pub struct About {
-    /// Name on the command line, in studies and in messages.
+    /// Name of the setting on the command line, in studies and in error messages.
     pub name: &'static str,
-    /// Placeholder of the value in the command line's help.
+    /// Placeholder for the value in the help of the command line.
     pub value_name: &'static str,
     /// Help text of one line.
     pub help: &'static str,
-    /// Heading under which the command line lists the setting.
+    /// Heading under which the help of the command line lists the setting.
     pub heading: &'static str,
-    /// Kind of its values.
+    /// Kind of the values: number, count, switch or word.
     pub kind: Kind,
-    /// The scene feature without which the setting has no effect.
+    /// The feature that a scene must have, because the setting has no effect without it.
     pub needs: Needs,
-    /// Control in the window, if the window shows the setting.
+    /// Control in the window. `None` if the window does not show the setting.
     pub control: Option<Control>,
 }
 
-/// The scene feature without which a setting has no effect.
+/// The feature that a scene must have for a setting to have an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Needs {
-    /// Nothing.
+    /// No feature is needed.
     Nothing,
-    /// Friction.
+    /// Contacts with friction.
     Friction,
-    /// Rotation of grains.
+    /// Grains that rotate.
     Rotation,
-    /// Cohesion.
+    /// Contacts with cohesion.
     Cohesion,
-    /// Uniform gravity in the plane, which has a direction.
+    /// Uniform gravity in the plane. Only this gravity has a direction that can be turned.
     Direction,
 }
 
-/// How the window shows a setting.
+/// Control of a setting in the window.
 #[derive(Clone, Copy, Debug)]
 pub struct Control {
-    /// Label in the window.
+    /// Label of the control.
     pub label: &'static str,
-    /// Short name used by scripts that drive the window.
+    /// Short name by which scripts set the control.
     pub symbol: &'static str,
-    /// Unit, or an empty string.
+    /// Unit of the value, or an empty string.
     pub unit: &'static str,
-    /// Hint of one sentence.
+    /// Explanation of one sentence, shown as a hint.
     pub hint: &'static str,
-    /// Ends of a number's slider. Typed values may lie outside.
+    /// Smallest and largest value of the slider of a number. Values outside can be typed.
     pub range: [f64; 2],
-    /// The largest number that can be typed; larger ones are typing errors.
+    /// Largest number that can be typed. A larger number is taken as a typing error.
     pub most: f64,
-    /// True if the slider is logarithmic.
+    /// True if the scale of the slider is logarithmic.
     pub logarithmic: bool,
 }
 
 impl Control {
-    /// A control without a label, with range 0 to 1.
+    /// A control without a label or a hint, with values from 0 to 1. Declarations override some of its fields.
     pub(crate) const PLAIN: Self = Self {
         label: "",
         symbol: "",
@@ -78,27 +78,28 @@ impl Control {
     };
 }
 
-/// A control with a label and a hint and defaults for the rest.
+/// Returns a control with this label and hint. Its other fields have default values.
 pub(crate) const fn shown(label: &'static str, hint: &'static str) -> Option<Control> {
     Some(Control { label, hint, ..Control::PLAIN })
 }
 
-/// The declaration of a setting of type `T`: the fields of [`About`] and the range check.
+/// Declaration of a setting of type `T`: the fields of [`About`] and the check of the range.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Declaration<T> {
     pub name: &'static str,
     pub value_name: &'static str,
     pub help: &'static str,
-    /// Allowed values, for messages.
+    /// Description of the allowed values, for error messages.
     pub allowed: &'static str,
-    /// True if a value is allowed. Must be false for NaN.
+    /// Returns true if a value is allowed. It must return false for NaN.
     pub holds: fn(T) -> bool,
     pub needs: Needs,
     pub control: Option<Control>,
 }
 
 impl<T: Settable> Declaration<T> {
-    /// Any value is allowed, and the window does not show the setting.
+    /// A declaration that allows any value and has no control in the window. Declarations override some of its
+    /// fields.
     pub(crate) const ANY: Self = Self {
         name: "",
         value_name: T::VALUE_NAME,
@@ -109,7 +110,7 @@ impl<T: Settable> Declaration<T> {
         control: None,
     };
 
-    /// The row of the table of settings.
+    /// Returns this declaration as a row of the table of settings.
     pub(crate) const fn about(&self, heading: &'static str) -> About {
         About {
             name: self.name,
@@ -123,20 +124,20 @@ impl<T: Settable> Declaration<T> {
     }
 }
 
-/// The value of a setting.
+/// Value of a setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
     /// A real number.
     Number(f64),
-    /// A whole number.
+    /// A whole number, not negative.
     Count(u32),
-    /// On or off.
+    /// A switch: true is on, false is off.
     Switch(bool),
     /// One of a few words.
     Word(&'static str),
 }
 
-/// Formats the value as the command line and files do.
+/// Formats the value as the command line and files write it.
 impl fmt::Display for Value {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -148,37 +149,37 @@ impl fmt::Display for Value {
     }
 }
 
-/// The kind of a setting's values.
+/// Kind of the values of a setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// A real number.
     Number,
-    /// A whole number.
+    /// A whole number, not negative.
     Count,
-    /// On or off.
+    /// A switch that is on or off.
     Switch,
-    /// One of these words.
+    /// One of the listed words.
     Word(&'static [Word]),
 }
 
-/// A word that a setting can be.
+/// One of the words that a setting can have as its value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
-    /// Name on the command line and in files.
+    /// The word itself, as on the command line and in files.
     pub name: &'static str,
-    /// Explanation of one line.
+    /// Explanation of the word, one line.
     pub hint: &'static str,
 }
 
-/// A type that settings can have.
+/// A type that the value of a setting can have.
 pub trait Settable: Copy + PartialEq {
-    /// The kind of its values.
+    /// The kind of the values of this type.
     const KIND: Kind;
-    /// Default placeholder of the value in the command line's help.
+    /// Default placeholder for the value in the help of the command line.
     const VALUE_NAME: &'static str = "";
-    /// Converts the setting to a value.
+    /// Converts a value of this type to a [`Value`].
     fn value(self) -> Value;
-    /// Converts a value of the right kind to the setting; `None` for another kind.
+    /// Converts a [`Value`] to this type. `None` if it is of another kind.
     fn of(value: Value) -> Option<Self>;
 }
 
@@ -203,48 +204,50 @@ settable!(f64, Number, "");
 settable!(u32, Count, "N");
 settable!(bool, Switch, "BOOL");
 
-/// A structure of settings.
+/// A structure whose fields are settings.
 pub trait Group: Sized + 'static {
-    /// The same settings, each optional.
+    /// The structure of changes: the same settings, each optional.
     type Changes: Changes<Group = Self>;
-    /// The settings, in the order of the declaration.
+    /// The declarations of the settings, in their order.
     const ABOUT: &'static [About];
-    /// The value of a setting.
+    /// Returns the value of the setting with this name. `None` if no setting has the name.
     fn get(&self, name: &str) -> Option<Value>;
-    /// Sets a setting to a value of its kind. Returns false if no setting has that name and kind.
+    /// Sets the setting with this name. Returns false if no setting has this name, or if the value is of another
+    /// kind.
     fn set(&mut self, name: &str, value: Value) -> bool;
-    /// Checks each setting against its range.
+    /// Checks that each setting is in its range.
     ///
     /// # Errors
-    /// Names the first setting outside its range, its value and the range.
+    /// If a setting is outside its range. The error names the first such setting, its value and the range.
     fn validate_each(&self) -> error::Result<()>;
 }
 
-/// Optional settings, accessed by the names that files and the command line use.
+/// Changes of settings: some of the settings of a group, accessed by the names that files and the command line use.
 pub trait Changes: Default {
-    /// The settings to change.
+    /// The structure whose settings are changed.
     type Group: Group<Changes = Self>;
-    /// Changes that set all settings to the values of `group`.
+    /// Returns changes that set all settings to the values of `group`.
     fn all_of(group: &Self::Group) -> Self;
-    /// Applies the changes.
+    /// Sets the settings of `group` that these changes contain.
     fn apply(&self, group: &mut Self::Group);
-    /// Sets a setting to a value of its kind. Returns false if no setting has that name and kind.
+    /// Adds the change of one setting. Returns false if no setting has this name, or if the value is of another kind.
     fn set(&mut self, name: &str, value: Value) -> bool;
-    /// Reads the value of the setting `name` from a file. Returns false if no setting has that name.
+    /// Reads the value of the setting `name` from a file and adds it to the changes. Returns false if no setting has
+    /// this name.
     ///
     /// # Errors
-    /// If the value is of another kind.
+    /// If the value in the file is of another kind.
     fn read<'de, A: MapAccess<'de>>(&mut self, name: &str, map: &mut A) -> Result<bool, A::Error>;
-    /// Writes the settings that are given.
+    /// Writes the settings that these changes contain.
     ///
     /// # Errors
     /// If the writer fails.
     fn write<S: SerializeMap>(&self, map: &mut S) -> Result<(), S::Error>;
 }
 
-/// Declares a structure of settings and the structure of their changes. Each field has a default, then the name,
-/// placeholder and help of its option (the help is also its documentation), then further fields of
-/// [`crate::setting::Declaration`].
+/// Declares a structure of settings and the structure of their changes. The declaration of a field consists of its
+/// type and default, of the name, placeholder and help text of its option (the help text is also its documentation),
+/// and of further fields of [`crate::setting::Declaration`].
 macro_rules! settings {
     (
         $(#[$meta:meta])* $vis:vis struct $Name:ident, changes $Changes:ident, heading $heading:literal {
@@ -271,7 +274,7 @@ macro_rules! settings {
         }
 
         impl $Name {
-            /// The declared defaults.
+            /// The default values of all settings.
             pub const DEFAULT: Self = Self { $($field: $default,)* };
         }
 
@@ -284,7 +287,7 @@ macro_rules! settings {
         const _: () = {
             use $crate::setting::{About, Changes, Declaration, Group, Settable, Value};
 
-            // Declarations by the names of their fields.
+            // The constants of this module have the names of the fields of the structure.
             #[allow(non_upper_case_globals, reason = "named after the fields")]
             #[allow(clippy::needless_update, reason = "a declaration may say everything")]
             mod declared {
@@ -379,8 +382,8 @@ macro_rules! settings {
 
 pub(crate) use settings;
 
-/// Declares a setting with a few allowed words. Each word has a name and a line of explanation, which is also its
-/// documentation.
+/// Declares the type of a setting whose value is one of a few words. Each word has a name and an explanation of one
+/// line, which is also its documentation.
 macro_rules! words {
     (
         $(#[$meta:meta])* $vis:vis enum $Name:ident {
@@ -394,18 +397,18 @@ macro_rules! words {
         }
 
         impl $Name {
-            /// All values.
+            /// All values of this type.
             pub const ALL: &'static [Self] = &[$(Self::$Variant),*];
 
             const WORDS: &'static [$crate::setting::Word] =
                 &[$($crate::setting::Word { name: $word, hint: $hint }),*];
 
-            /// Name on the command line and in files.
+            /// Returns the word as on the command line and in files.
             pub const fn name(self) -> &'static str {
                 Self::WORDS[self as usize].name
             }
 
-            /// Explanation of one line.
+            /// Returns the explanation of the word, one line.
             pub const fn hint(self) -> &'static str {
                 Self::WORDS[self as usize].hint
             }

@@ -1,5 +1,5 @@
-//! Parallel loops and sums whose results do not depend on the number of threads, to the last bit. Each item is
-//! computed independently; sums are taken over stretches of fixed length and added in order.
+//! Parallel loops and sums whose results are bitwise the same for any number of threads. Each item of a list is
+//! computed independently. Sums are computed over ranges of fixed length, and these partial sums are added in order.
 
 use std::cell::Cell;
 use std::hint::spin_loop;
@@ -10,45 +10,46 @@ use crate::error::{Error, Result, check};
 use rayon::Yield;
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
-/// Items per partial sum.
+/// Number of items per partial sum.
 const STRETCH: usize = 4096;
-/// Smallest number of items, of any kind, for which threads pay. With two threads, a step of 40 sweeps took 0.7 of
-/// the time of one thread in a pile of 10,000 grains, but 1.2 times its time with 10,000 discs that touched less and
-/// with 5,000 grains. It took 0.7 to 0.8 with 50,000 discs.
+/// Smallest number of items (grains or contacts) for which several threads are faster than one. With two threads, a
+/// step of 40 sweeps took 0.7 of the time of one thread in a pile of 10,000 grains. But it took 1.2 times as long
+/// with 10,000 discs that had fewer contacts, and with 5,000 grains. With 50,000 discs it took 0.7 to 0.8 of the
+/// time.
 const WORTH_IT: usize = 16_384;
-/// How long a roused thread waits for work before it sleeps. Longer than the serial work between two sweeps: when
-/// threads slept between sweeps, waking one cost as much as the work it then did.
+/// Time for which a thread without work waits for more work before it sleeps. It is longer than the serial work
+/// between two sweeps. When threads slept between sweeps, waking a thread took as long as the work that it then did.
 const PATIENCE: Duration = Duration::from_micros(200);
 
 thread_local! {
-    /// True if this thread's work is shared among threads.
+    /// True if loops and sums of this thread are divided among several threads.
     static SHARES: Cell<bool> = const { Cell::new(false) };
-    /// True if this thread is being kept awake.
+    /// True if this thread is in the waiting loop that keeps it awake.
     static IS_AWAKE: Cell<bool> = const { Cell::new(false) };
 }
 
-/// More than the number of cores of the largest machines.
+/// Largest allowed number of threads. The largest machines have fewer cores.
 const MOST_THREADS: usize = 1024;
 const ASKED: &str = "RAYON_NUM_THREADS";
 
-/// Refuses an impossible number of threads.
+/// Checks the number of threads that the environment variable `RAYON_NUM_THREADS` requests.
 ///
 /// # Errors
-/// Names the environment variable that asks for it.
+/// If the number is too large. The error names the environment variable.
 pub fn check_threads() -> Result<()> {
     let asked = std::env::var(ASKED).unwrap_or_default();
     let is_sound = !asked.parse::<usize>().is_ok_and(|asked| asked > MOST_THREADS);
     check(is_sound, ASKED, asked, format!("a number of threads up to {MOST_THREADS}"))
 }
 
-/// Creates the thread pool unless it exists.
+/// Creates the thread pool if it does not exist yet.
 ///
 /// # Errors
-/// If the system cannot create the threads.
+/// If the operating system cannot create the threads.
 pub fn make_threads() -> Result<()> {
     check_threads()?;
     match rayon::ThreadPoolBuilder::new().build_global() {
-        // An error without a source only means that the pool exists.
+        // An error without a source only means that the thread pool already exists.
         Err(error) if std::error::Error::source(&error).is_some() => {
             let allowed = "as few as the system makes; RAYON_NUM_THREADS=1 asks for one";
             Err(Error::value("the number of threads", format!("too high ({error})"), allowed))
@@ -57,11 +58,11 @@ pub fn make_threads() -> Result<()> {
     }
 }
 
-/// Runs `work` on `count` items in the thread pool if that pays. A caller that is already on a thread of a pool
-/// shares the pool with other runs, so its work stays on its own thread: while it waited for part of its work, it
-/// could pick up a whole other run.
+/// Runs `work` on `count` items, with several threads if that is faster than one thread. If the caller is already on
+/// a thread of a pool, as when a study runs many simulations at the same time, the work stays on this thread.
+/// Otherwise a thread that waits for a part of its work could begin a whole other simulation.
 pub(crate) fn together<R: Send>(count: usize, work: impl FnOnce() -> R + Send) -> R {
-    // Check the count first: asking for the number of threads creates the pool.
+    // Check the count first, because asking for the number of threads creates the pool.
     let is_alone = || rayon::current_thread_index().is_some() || rayon::current_num_threads() == 1;
     if count < WORTH_IT || is_alone() {
         return work();
@@ -74,7 +75,7 @@ pub(crate) fn together<R: Send>(count: usize, work: impl FnOnce() -> R + Send) -
     })
 }
 
-/// Runs `work`, on a thread of a pool, with its loops and sums shared among threads.
+/// Runs `work`, which must be on a thread of a pool, and divides its loops and sums among the threads of the pool.
 pub(crate) fn share<R>(work: impl FnOnce() -> R) -> R {
     struct Before(bool);
     impl Drop for Before {
@@ -86,21 +87,22 @@ pub(crate) fn share<R>(work: impl FnOnce() -> R) -> R {
     work()
 }
 
-/// True if loops and sums are shared among threads.
+/// True if loops and sums of this thread are divided among several threads.
 pub(crate) fn are_there() -> bool {
     SHARES.get()
 }
 
-/// Keeps the other threads awake for a while if work is shared with them. Otherwise they fall asleep between two
-/// calls.
+/// Keeps the other threads of the pool awake for a while, if the loops of this thread are divided among them.
+/// Otherwise these threads fall asleep between two loops.
 pub(crate) fn rouse() {
     if are_there() {
         (1..rayon::current_num_threads()).for_each(|_| rayon::spawn(stay_awake));
     }
 }
 
-/// Works until there was nothing to do for [`PATIENCE`]. A thread that gets here while it waits for another one
-/// therefore returns in time. Never called with a single thread, as in a browser, whose programs lack this clock.
+/// Executes work of the pool until there has been no work for [`PATIENCE`]. So a thread that runs this function while
+/// it waits for another thread returns soon. The function is never called with a single thread, as in a browser,
+/// where programs do not have this clock.
 fn stay_awake() {
     if IS_AWAKE.replace(true) {
         return;
@@ -120,11 +122,12 @@ fn are_worth_it(count: usize) -> bool {
     count >= WORTH_IT && are_there()
 }
 
-/// Fills a list with `count` items, each computed from its index. Clears the list but keeps its memory.
+/// Fills a list with `count` items, each computed from its index. The previous items are removed, but the allocated
+/// memory is used again.
 pub(crate) fn fill<T: Send>(list: &mut Vec<T>, count: usize, item: impl Fn(usize) -> T + Sync) {
     list.clear();
     if list.capacity() < count {
-        // Leave room for later steps, so that none allocates once a pile is at rest.
+        // Reserve more memory than needed now, so that later steps do not allocate once a pile is at rest.
         list.reserve(count.next_power_of_two());
     }
     if are_worth_it(count) {
@@ -134,7 +137,8 @@ pub(crate) fn fill<T: Send>(list: &mut Vec<T>, count: usize, item: impl Fn(usize
     }
 }
 
-/// Sums over `count` items: `sum` computes the sum of a stretch, and `add` receives these sums in order.
+/// Computes a sum over `count` items. `sum` returns the partial sum over a range of items, and `add` receives the
+/// partial sums in order.
 pub(crate) fn add_up<S: Send>(
     count: usize,
     sum: impl Fn(Range<usize>) -> S + Sync,
@@ -178,7 +182,7 @@ mod tests {
             });
         });
         assert!(list.iter().enumerate().all(|(k, &item)| item == k + 199));
-        // No waiting thread may keep the pool from ending.
+        // No waiting thread may prevent the pool from ending.
         drop(pool);
     }
 

@@ -1,37 +1,39 @@
-//! Declarations of table columns, one list for each kind of row. Everything that shows or writes a column uses them.
+//! Defines how the columns of a table are declared. There is one list of declarations for each kind of row, which all
+//! code that shows or writes a column uses.
 
-/// The declaration of a column.
+/// Declaration of one column of a table with rows of the type `Row`.
 #[derive(Clone, Copy, Debug)]
 pub struct ColumnSpec<Row: 'static> {
     /// Name of the column in tables.
     pub name: &'static str,
     /// Unit; `1` for a dimensionless quantity, empty if the column is not a quantity.
     pub unit: &'static str,
-    /// Description, in a few words or sentences.
+    /// Description of the column, in a few words or sentences.
     pub about: &'static str,
-    /// Function that gives the value of a row.
+    /// Kind of the column's values, with the function that takes the value from a row.
     pub value: CellValue<Row>,
 }
 
-/// Kind of a column's value, with the function that takes it from a row.
+/// Kind of a column's values, with the function that takes the value from a row.
 #[derive(Clone, Copy, Debug)]
 pub enum CellValue<Row: 'static> {
     /// A number.
     Number(fn(&Row) -> f64),
-    /// A number that some rows do not have.
+    /// A number that is missing in some rows.
     SomeNumber(fn(&Row) -> Option<f64>),
-    /// A whole number.
+    /// A whole number ≥ 0.
     Count(fn(&Row) -> u64),
-    /// True or false; `None` if the contact law does not define it.
+    /// True or false; `None` if the property does not exist under the contact law.
     Flag(fn(&Row) -> Option<bool>),
-    /// A word from a fixed list, by its index.
+    /// A word from a fixed list. The function returns the index of the word in the list.
     Word(&'static [&'static str], fn(&Row) -> u32),
-    /// A word from the table's own list of names, by its index.
+    /// A name from the list of names that belongs to the table. The function returns the index of the name in that
+    /// list.
     Name(fn(&Row) -> u32),
 }
 
 impl<Row> CellValue<Row> {
-    /// The value as a number, if the row has one; true is 1 and false is 0.
+    /// Returns the value in a row as a number (true is 1 and false is 0); `None` if the value is missing or a word.
     pub fn number(&self, row: &Row) -> Option<f64> {
         match self {
             Self::Number(of) => Some(of(row)),
@@ -43,7 +45,7 @@ impl<Row> CellValue<Row> {
     }
 }
 
-/// Name of the column `step`, which every table has and by which its rows are sorted.
+/// Name of the column with the number of the step. Every table has this column, and rows are sorted by it.
 pub(crate) const STEP: &str = "step";
 
 pub(crate) const fn column<Row>(

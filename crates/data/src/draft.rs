@@ -1,11 +1,11 @@
-//! A file without a name: on disk, or in memory if there is no disk.
+//! Creates files without a name, for output that is not complete yet: on a disk, or in memory if there is no disk.
 
 use std::path::Path;
 
-/// A file without a name.
+/// A file without a name, on a disk.
 #[cfg(not(target_arch = "wasm32"))]
 pub type DraftFile = std::fs::File;
-/// A file without a name.
+/// A file without a name, in memory.
 #[cfg(target_arch = "wasm32")]
 pub type DraftFile = crate::memory::MemoryFile;
 
@@ -21,7 +21,7 @@ pub fn nameless_file(folder: &Path) -> std::io::Result<DraftFile> {
 /// Creates a file without a name in memory.
 ///
 /// # Errors
-/// None.
+/// Never.
 #[cfg(target_arch = "wasm32")]
 pub fn nameless_file(_: &Path) -> std::io::Result<DraftFile> {
     Ok(DraftFile::default())

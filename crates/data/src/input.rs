@@ -1,4 +1,4 @@
-//! Reads files of unknown origin: only plain files, and only up to a maximum size.
+//! Reads files of unknown origin. Only plain files are read, and only up to a maximum size.
 
 use std::io::{self, Read};
 use std::path::Path;
@@ -6,17 +6,19 @@ use std::path::Path;
 use crate::draft::DraftFile;
 use crate::error::{Error, Result};
 
-/// Largest page of a table and largest problem file, bytes.
+/// Largest accepted size of a page of a Parquet file, and of a file with a contact problem, bytes.
 pub(crate) const MOST_BYTES: u64 = 256 << 20;
-/// Largest TOML file, bytes. Parsing takes about 60 times as much memory; 10,000 grains take one MiB.
+/// Largest accepted TOML file, bytes. Parsing a file takes about 60 times as much memory as the file. A file with
+/// 10,000 grains has about one MiB.
 pub const MOST_OF_TOML: u64 = 32 << 20;
-/// Longest line of a table, bytes.
+/// Longest accepted line of a table, bytes.
 const MOST_OF_LINE: usize = 1 << 20;
 
-/// Opens a file that must be `form`. Devices and pipes are refused: they may have no end, or cannot be read twice.
+/// Opens a plain file. `form` describes the expected content, for messages. Devices and pipes are refused, because they
+/// may have no end or cannot be read twice.
 ///
 /// # Errors
-/// Names the file and the system's message, or says that it is not a plain file.
+/// The error names the file and gives the system's message, or says that the file is not a plain file.
 pub(crate) fn open(path: &Path, form: &str) -> Result<DraftFile> {
     let refuse = |said: &dyn std::fmt::Display| Error::unread(path, said, form);
     #[cfg(target_arch = "wasm32")]
@@ -34,10 +36,11 @@ fn open_plain(path: &Path, refuse: &dyn Fn(&dyn std::fmt::Display) -> Error) -> 
     DraftFile::open(path).map_err(|error| refuse(&error))
 }
 
-/// Reads a text that must be `form` and have at most `most` bytes.
+/// Reads a text file of at most `most` bytes. `form` describes the expected content, for messages.
 ///
 /// # Errors
-/// Names the file and the system's message, or says that it is not a plain file, not text, or too long.
+/// The error names the file and gives the system's message, or says that the file is not a plain file, not text, or too
+/// long.
 pub fn read_text(path: &Path, form: &str, most: u64) -> Result<String> {
     let mut text = String::new();
     let read = open(path, form)?.take(most + 1).read_to_string(&mut text);
@@ -48,7 +51,7 @@ pub fn read_text(path: &Path, form: &str, most: u64) -> Result<String> {
     read.map(|_| text).map_err(|error| Error::unread(path, error, form))
 }
 
-/// Lines of bounded length.
+/// A source of bytes whose lines have a bounded length: reading a longer line fails.
 pub(crate) struct BoundedLines<Source> {
     source: Source,
     length: usize,

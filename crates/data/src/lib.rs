@@ -1,12 +1,12 @@
-//! Input and output of Slump's runs: requests for runs, measures of grains and piles, recordings in files that other
-//! programs can read, and problem files.
+//! Reads and writes the data of Slump's runs: requests for runs, measures of grains and piles, recordings in files that
+//! other programs can read, and files of contact problems.
 
 #![cfg_attr(
     target_arch = "wasm32",
     allow(dead_code, unused_imports, reason = "a page has no files")
 )]
 #![warn(missing_docs, unreachable_pub)]
-// These macros panic if a stream is closed or full; `output` has functions that do not.
+// `print!` and `eprint!` panic if a stream is closed or full. The module `output` has functions that do not panic.
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
 use slump_core::{contact, error, number, scene, setting, sim, solver, world};

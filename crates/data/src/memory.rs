@@ -1,5 +1,5 @@
-//! Files in memory for the browser version, which has no disk: given files can be read, and written files can be
-//! fetched.
+//! Keeps files in memory for the browser version, which has no disk. The web page can give files to the program to
+//! read, and can fetch the files that the program has written.
 
 #![cfg_attr(
     not(target_arch = "wasm32"),
@@ -11,28 +11,28 @@ use std::io::{Cursor, Read, Result, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A file in memory. Copies are handles of the same file and share its position.
+/// A file in memory. Copies are handles of the same file and share one position for reading and writing.
 #[derive(Clone, Debug, Default)]
 pub struct MemoryFile(Arc<Mutex<Cursor<Vec<u8>>>>);
 
 impl MemoryFile {
-    /// A file with these bytes.
+    /// Creates a file with these bytes.
     pub fn of(bytes: Vec<u8>) -> Self {
         Self(Arc::new(Mutex::new(Cursor::new(bytes))))
     }
 
-    /// Another handle of the file, like [`std::fs::File::try_clone`].
+    /// Returns another handle of the file, like [`std::fs::File::try_clone`].
     ///
     /// # Errors
-    /// None.
+    /// Never.
     pub fn try_clone(&self) -> Result<Self> {
         Ok(self.clone())
     }
 
-    /// Cuts the file, or extends it with zeros.
+    /// Shortens the file to `length` bytes, or extends it with zeros.
     ///
     /// # Errors
-    /// None.
+    /// Never.
     pub fn set_len(&self, length: u64) -> Result<()> {
         self.cursor().get_mut().resize(length as usize, 0);
         Ok(())
@@ -41,12 +41,12 @@ impl MemoryFile {
     /// Does nothing, because memory needs no synchronisation.
     ///
     /// # Errors
-    /// None.
+    /// Never.
     pub fn sync_data(&self) -> Result<()> {
         Ok(())
     }
 
-    /// The whole content.
+    /// Returns the whole content of the file.
     pub fn content(&self) -> Vec<u8> {
         self.cursor().get_ref().clone()
     }
@@ -84,32 +84,32 @@ impl Seek for MemoryFile {
     }
 }
 
-/// The given files by path.
+/// Files that the web page has given to the program, by their paths.
 static GIVEN: Mutex<BTreeMap<PathBuf, Vec<u8>>> = Mutex::new(BTreeMap::new());
 static WRITTEN: Mutex<Vec<(PathBuf, Vec<u8>)>> = Mutex::new(Vec::new());
 
-/// Adds a file that can be read from now on.
+/// Adds a file of the web page, which the program can then read.
 pub fn give_file(path: PathBuf, bytes: Vec<u8>) {
     GIVEN.lock().unwrap_or_else(PoisonError::into_inner).insert(path, bytes);
 }
 
-/// Opens a file that was given.
+/// Opens a file that was added by [`give_file`].
 ///
 /// # Errors
-/// If no file has that name.
+/// If no such file has this path.
 pub fn given_file(path: &Path) -> Result<MemoryFile> {
     let given = GIVEN.lock().unwrap_or_else(PoisonError::into_inner);
     let bytes = given.get(path).cloned();
     bytes.map(MemoryFile::of).ok_or_else(|| std::io::ErrorKind::NotFound.into())
 }
 
-/// Stores a written file for [`written_files`].
+/// Stores a copy of a written file, which [`written_files`] will return.
 pub(crate) fn keep_written(path: &Path, file: &MemoryFile) {
     let mut written = WRITTEN.lock().unwrap_or_else(PoisonError::into_inner);
     written.push((path.to_owned(), file.content()));
 }
 
-/// Removes and returns the files written since the last call.
+/// Removes and returns all files written since the last call, with their paths.
 pub fn written_files() -> Vec<(PathBuf, Vec<u8>)> {
     std::mem::take(&mut *WRITTEN.lock().unwrap_or_else(PoisonError::into_inner))
 }

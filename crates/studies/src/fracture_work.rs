@@ -1,22 +1,24 @@
-//! Contact laws with a prescribed work to break a bond.
+//! Computes the work that breaks a bond between two grains, and finds settings with a prescribed work.
 
 use crate::scene::Scene;
 use crate::sim::{Settings, Stepper};
 
-/// The work, J, that slowly breaks a bond of two mean grains of a scene under these settings; `None` if the law does
-/// not define it, or if there is no attraction.
+/// Returns the work, J, that slowly breaks a bond between two grains of mean size in a scene with these settings.
+/// Returns `None` if the contact law does not define this work, or if there is no attraction.
 pub(super) fn fracture_work(scene: &Scene, settings: Settings) -> Option<f64> {
     let mut scene = scene.clone();
     scene.set_settings(settings);
     Some(scene.simulation().ok()?.fracture_work()?.joules).filter(|joules| *joules > 0.0)
 }
 
-/// Settings under which this work is `joules`, by the debonding distance of `range` or the stiffness of `dem`. Settings
-/// of other steppers, or without attraction, are returned unchanged.
+/// Returns the settings, changed so that breaking a bond between two grains of mean size takes the work `joules`, J.
+/// The stepper `range` gets another debonding distance, the stepper `dem` another contact stiffness. The settings are
+/// returned unchanged if they have another stepper or no attraction.
 pub(super) fn with_fracture_work(scene: &Scene, mut settings: Settings, joules: f64) -> Settings {
     match settings.stepper {
         Stepper::Dem => {
-            // W = C₀²/2k: the work at a stiffness of 1 N/m gives k.
+            // The work is W = C₀²/(2k), with the cohesion force C₀ (N) and the stiffness k (N/m). So k is the work at 1
+            // N/m divided by the prescribed work.
             let mut of_one = settings;
             of_one.parameters.stiffness = 1.0;
             if let Some(of_one) = fracture_work(scene, of_one) {
@@ -24,7 +26,7 @@ pub(super) fn with_fracture_work(scene: &Scene, mut settings: Settings, joules: 
             }
         }
         Stepper::Range => {
-            // W = C₀ δc.
+            // The work is W = C₀ δ_c, with the cohesion force C₀ (N) and the debonding distance δ_c (m).
             let of_this = fracture_work(scene, settings).unwrap_or(joules);
             settings.parameters.debonding_distance *= joules / of_this;
         }

@@ -1,8 +1,9 @@
-//! Runs of scenes: single runs with snapshots, the sets of runs in the paper's figures, sweeps over parameters, error
-//! budgets, calibrations, speed charts, stability tests and validation experiments.
+//! Runs scenes of grains: single runs with snapshots, the sets of runs behind the paper's figures, sweeps over
+//! parameters, error budgets, calibrations, charts of speed, stability tests and validation experiments. "The paper" is
+//! Abramian and Staron (2020), hal-02570097.
 
 #![warn(missing_docs, unreachable_pub)]
-// These macros panic if a stream is closed or full; `output` has functions that do not.
+// `println!` and `eprintln!` panic if a stream is closed or full. The functions of `output` do not panic.
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
 use slump_core::{contact, error, number, scene, setting, sim, solver, world};

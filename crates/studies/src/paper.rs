@@ -1,4 +1,4 @@
-//! The runs in the paper's Fig. 3, 4 and 7.
+//! Lists the simulation runs that Figs. 3, 4 and 7 of the paper (Abramian and Staron 2020) show.
 
 use glam::DVec2;
 
@@ -6,32 +6,32 @@ use crate::error::Result;
 use crate::scene::{NewPile, Preset, Scene, cradle, paper_pile};
 use crate::world::Boundary;
 
-/// One run of a figure, with the times at which it is shown.
+/// A simulation run that a figure of the paper shows, with the times of its pictures.
 #[derive(Clone, Debug)]
 pub struct PaperRun {
-    /// File name without the time.
+    /// File name of the run's pictures, without the time.
     pub name: String,
-    /// The figure to which it belongs.
+    /// Name of the figure that shows the run: `fig3`, `fig4` or `fig7`.
     pub figure: &'static str,
     /// The simulated scene.
     pub scene: Scene,
-    /// Times, s, in ascending order.
+    /// Simulated times of the run's pictures, s, in ascending order.
     pub times_secs: Vec<f64>,
 }
 
-/// Bond numbers of Fig. 4, one row each.
+/// Bond numbers of the runs in Fig. 4 of the paper. The figure has one row of pictures per Bond number.
 pub const FIG4_BONDS: [f64; 2] = [20.0, 100.0];
-/// Time steps of Fig. 4, one column each, s.
+/// Time steps of the runs in Fig. 4 of the paper, s. The figure has one column of pictures per time step.
 pub const FIG4_TIME_STEPS_SECS: [f64; 3] = [1e-4, 1e-3, 2e-3];
-/// Time steps of Fig. 7, one column each, s.
+/// Time steps of the runs in Fig. 7 of the paper, s. The figure has one column of pictures per time step.
 pub const FIG7_TIME_STEPS_SECS: [f64; 2] = [5e-4, 1e-3];
-/// Times of Fig. 7, one row each, s.
+/// Simulated times of the pictures in Fig. 7 of the paper, s. The figure has one row of pictures per time.
 pub const FIG7_TIMES_SECS: [f64; 4] = [1.32, 1.76, 2.25, 2.5];
 
-/// All runs, the most expensive first.
+/// Returns all runs of Figs. 3, 4 and 7 of the paper, the most expensive first.
 ///
 /// # Errors
-/// As [`paper_pile`].
+/// Returns the errors of [`paper_pile`].
 pub fn paper_runs() -> Result<Vec<PaperRun>> {
     let mut runs = Vec::new();
     let mut pile = paper_pile()?;
@@ -53,7 +53,7 @@ pub fn paper_runs() -> Result<Vec<PaperRun>> {
         let times_secs = FIG7_TIMES_SECS.to_vec();
         runs.push(PaperRun { name, figure: "fig7", scene, times_secs });
     }
-    // The initial state is shown with the walls that support it.
+    // Fig. 3 shows the initial state of the pile, so its scene includes the side walls that support the grains.
     let half_width = 0.5 * NewPile::default().box_width_in_diameters * pile.mean_diameter;
     pile.boundaries = [-half_width, half_width]
         .map(|x| Boundary::Segment {

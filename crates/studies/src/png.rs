@@ -1,4 +1,4 @@
-//! Pictures as PNG, with texts about their origin.
+//! Encodes pictures as PNG, with texts about their origin, such as the command line.
 
 use std::path::Path;
 
@@ -8,10 +8,11 @@ use png::{BitDepth, ColorType, Encoder, EncodingError};
 use crate::error::{Error, Result};
 use crate::output::{PendingFile, Texts};
 
-/// Writes a picture as PNG, without waiting for the disk, because the picture can be drawn again.
+/// Writes a picture to a PNG file that also contains `texts`. The function does not wait until the disk has stored the
+/// file, because a lost picture can be drawn again.
 ///
 /// # Errors
-/// Names the file and the system's message.
+/// If the file cannot be written. The error names the file and gives the message of the operating system.
 pub fn write_png(path: &Path, image: &RgbaImage, texts: &Texts) -> Result<()> {
     let bytes = encoded([image.width(), image.height()], ColorType::Rgba, image.as_raw(), texts);
     let mut draft = PendingFile::start(path)?;
@@ -19,7 +20,7 @@ pub fn write_png(path: &Path, image: &RgbaImage, texts: &Texts) -> Result<()> {
     draft.finish(false)
 }
 
-/// The bytes of a PNG file without transparency.
+/// Returns a picture without transparency as the bytes of a PNG file that also contains `texts`.
 ///
 /// # Errors
 /// If the picture has no pixels.
@@ -39,7 +40,8 @@ fn encoded(
     encoder.set_color(colours);
     encoder.set_depth(BitDepth::Eight);
     for (keyword, text) in texts.iter() {
-        // More programs read plain text chunks, but these cannot contain Δ.
+        // More programs can read plain text chunks (tEXt) than international ones (iTXt). Plain chunks cannot contain
+        // Δ.
         if text.is_ascii() {
             encoder.add_text_chunk(keyword.into(), text.into())?;
         } else {
@@ -79,7 +81,7 @@ mod tests {
         assert_eq!(plain[0].0, "Software");
         assert_eq!(info.utf8_text.len(), 1);
         assert_eq!(info.utf8_text[0].get_text().unwrap(), "Δt 1e-3 s");
-        // The file does not depend on the time of writing.
+        // The bytes of the file do not depend on the time of writing.
         let again = folder.path().join("b.png");
         write_png(&again, &image, &texts).unwrap();
         assert_eq!(std::fs::read(path).unwrap(), std::fs::read(again).unwrap());

@@ -1,4 +1,4 @@
-//! One run of a scene, with snapshots at given times.
+//! Runs a scene once, with snapshots at given times.
 
 use std::ops::ControlFlow;
 
@@ -6,56 +6,58 @@ use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::sim::{Observables, RunEnding, Simulation, Snapshot, Tally};
 
-/// Observer of a run.
+/// An observer of a run: gets the results of every step and the snapshots.
 pub trait Recorder {
-    /// Called after every step. Breaking ends the run.
+    /// Receives the observables after every step. The run ends if the function returns `Break`.
     fn step(&mut self, observables: &Observables) -> Result<ControlFlow<()>>;
 
-    /// Called at the start, and after every step before its pictures, with the complete state and the sums so far.
+    /// Receives the complete state of the simulation, and the sums over all steps so far, at the start and after every
+    /// step. If a snapshot is due after the step, this function is called before `picture`.
     fn state(&mut self, _simulation: &Simulation, _tally: &Tally) -> Result<()> {
         Ok(())
     }
 
-    /// Called for each requested time, with its number and the state at the nearest step.
+    /// Receives the snapshot of the step that is nearest to a requested time. `number` is the position of that time in
+    /// the list of requested times, from 0.
     fn picture(&mut self, number: usize, snapshot: Snapshot) -> Result<()>;
 }
 
-/// A run in progress.
+/// A run that has begun and can be continued.
 #[derive(Debug)]
 pub struct OnItsWay {
-    /// The simulation so far.
+    /// The simulation in its present state.
     pub simulation: Simulation,
-    /// Sums over its steps so far.
+    /// Sums over the steps that are already computed.
     pub tally: Tally,
-    /// The number of the next picture.
+    /// Number of the next snapshot in the list of requested times, from 0.
     pub next_picture: usize,
 }
 
 /// The result of a run.
 #[derive(Debug)]
 pub struct Recorded {
-    /// The simulation at its end.
+    /// The simulation in its final state.
     pub simulation: Simulation,
-    /// Sums over its steps.
+    /// Sums over all steps of the run.
     pub tally: Tally,
-    /// True if the recorder ended it.
+    /// True if the recorder ended the run early.
     pub interrupted: bool,
-    /// The error that ended it early, if any: its state was no longer finite, or it could not be recorded.
+    /// The error that ended the run early, if any: the state was no longer finite, or the recorder failed.
     pub failure: Option<Error>,
 }
 
-/// Runs a scene to `until_secs`, with pictures at `times_secs` (ascending, s). The result contains the error that ended
-/// it early, if any.
+/// Runs a scene until the simulated time `until_secs` (s), with snapshots at `times_secs` (ascending, s). If an error
+/// ends the run early, the result contains that error.
 ///
 /// # Errors
-/// If the scene is invalid, or a time is outside 0 … duration.
+/// If the scene is invalid, or if a time is negative or later than the duration of the scene.
 pub fn record(
     scene: &Scene,
     times_secs: &[f64],
     until_secs: f64,
     recorder: &mut impl Recorder,
 ) -> Result<Recorded> {
-    // With a margin of half a step, so that a duration that is not a multiple of Δt is allowed.
+    // The limit has a margin of half a step, because a duration need not be a multiple of the time step Δt.
     let latest = scene.duration_secs + 0.5 * scene.parameters.time_step_secs;
     let outside = |time: &&f64| !(0.0..=latest).contains(*time);
     if let Some(time) = times_secs.iter().chain([&until_secs]).find(outside) {
@@ -67,8 +69,8 @@ pub fn record(
     Ok(go_on(start, times_secs, until_secs, recorder))
 }
 
-/// Continues a run to `until_secs`, with the remaining pictures at `times_secs` (ascending, s). The result contains the
-/// error that ended it early, if any.
+/// Continues a run until the simulated time `until_secs` (s), with the remaining snapshots of the list `times_secs`
+/// (ascending, s). If an error ends the run early, the result contains that error.
 pub fn go_on(
     mut run: OnItsWay,
     times_secs: &[f64],
@@ -113,7 +115,8 @@ impl OnItsWay {
                 recorder.picture(number, simulation.snapshot())?;
             }
             if let RunEnding::NotFinite(_) = ended {
-                // The step that became non-finite also has a row, so that table and tally agree.
+                // The step that led to a state with NaN or infinity also gets a row, so that the table and the sums
+                // have the same steps.
                 tally.add(simulation.observables());
                 let _ = recorder.step(simulation.observables())?;
             }

@@ -1,4 +1,5 @@
-//! Initial states that are new piles: settled once, kept in memory and on disk, and shared by all runs.
+//! Provides the initial states of runs that begin with a newly made pile. Each pile is left to settle only once. Its
+//! grains are kept in memory and on disk, and all runs share them.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -17,7 +18,8 @@ pub(super) struct States {
 }
 
 impl States {
-    /// Reads or makes the initial states of `configs`, which are stored in `folder`.
+    /// Reads the settled grains of all new piles that `configs` request from `folder`. Piles that are not in the folder
+    /// are left to settle now and are stored in the folder.
     pub(super) fn of<'a>(
         folder: PathBuf,
         configs: impl Iterator<Item = &'a Config>,
@@ -25,7 +27,7 @@ impl States {
         let mut piles: HashMap<String, NewPile> = HashMap::new();
         let mut looked_at = HashSet::new();
         for config in configs {
-            // A scene file is read once, whatever the number of its runs.
+            // Each scene file is read only once, even if many configs use it.
             if config.source.makes_new_pile() || looked_at.insert(config.base_scene_key()) {
                 piles.extend(config.new_pile()?.map(|pile| (name(&pile), pile)));
             }
@@ -52,7 +54,8 @@ impl States {
         Ok(Self { settled: settled? })
     }
 
-    /// The scene of a config, with its settled grains if it asks for a new pile.
+    /// Returns the scene of a config. If the config requests a new pile, the scene contains the settled grains of that
+    /// pile.
     pub(super) fn scene(&self, config: &Config) -> Result<Scene> {
         match config.new_pile()?.and_then(|pile| self.settled.get(&name(&pile))) {
             Some(grains) => config.scene_from(grains.clone()),
@@ -61,11 +64,12 @@ impl States {
     }
 }
 
-/// The settled grains of a pile: read from `folder`, or made and then written there. A state reads back bit for bit, so
-/// both give the same result.
+/// Returns the settled grains of a pile. If `folder` contains a file of this pile, the grains are read from the file.
+/// Otherwise the pile is left to settle, and the file is written. A file gives back every number bit for bit, so both
+/// ways return the same grains.
 ///
 /// # Errors
-/// As [`settle`], and if the folder cannot be read or written.
+/// Returns the errors of [`settle`]. Also fails if the folder cannot be read or written.
 pub fn settled_pile(
     folder: &Path,
     pile: &NewPile,
@@ -81,7 +85,7 @@ pub fn settled_pile(
     Ok(grains)
 }
 
-/// The grains in a file; `None` if the file is missing, or damaged, which is reported.
+/// Reads grains from a file. Returns `None` if the file is missing or damaged; a damaged file is reported.
 fn read(path: &Path) -> Result<Option<Vec<Grain>>> {
     let bytes = match std::fs::read(path) {
         Ok(bytes) => bytes,
@@ -101,7 +105,8 @@ fn name(pile: &NewPile) -> String {
         Deposition::Rain => "",
         Deposition::DropAndRoll => "_drop-and-roll",
     };
-    // Tables of sieves are too long for a name.
+    // A distribution of diameters can be a table of sieves, which is too long for a file name. The name contains a
+    // checksum of the distribution instead.
     let sized = match sizes == &NewPile::default().sizes {
         true => String::new(),
         false => format!("_sizes-{}", checksum(sizes.to_string().as_bytes())),

@@ -1,4 +1,5 @@
-//! Means with intervals, tests and proportions. Distributions come from statrs.
+//! Computes means, proportions, slopes and turning points of data, with confidence intervals and p-values. The crate
+//! statrs provides the probability distributions.
 
 use glam::{DMat3, DVec3};
 use statrs::distribution::{Beta, ContinuousCDF, StudentsT};
@@ -6,19 +7,20 @@ use statrs::distribution::{Beta, ContinuousCDF, StudentsT};
 /// Confidence level: the fraction of intervals that contain the true value.
 const CONFIDENCE: f64 = 0.95;
 
-/// p-value of the claim that at least one of two claims is true, from the p-values of both (Bonferroni).
+/// Returns the p-value of the claim that at least one of two claims is true, from the p-values of the two claims
+/// (Bonferroni).
 pub(super) fn p_of_either(one: f64, other: f64) -> f64 {
     (2.0 * one.min(other)).min(1.0)
 }
 
-/// A mean with its 95 % interval.
+/// A mean of several values, with its confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mean {
-    /// The mean.
+    /// Mean of the values.
     pub mean: f64,
-    /// Lower end of the interval.
+    /// Lower end of the confidence interval.
     pub low: f64,
-    /// Upper end of the interval.
+    /// Upper end of the confidence interval.
     pub high: f64,
     /// Standard error of the mean.
     pub standard_error: f64,
@@ -26,12 +28,13 @@ pub struct Mean {
     pub count: usize,
 }
 
-/// Mean of independent values with Student's interval. With fewer than two values the interval is unbounded.
+/// Returns the mean of independent values with its 95 % interval by Student's t-distribution. With fewer than two
+/// values the interval is unbounded.
 pub fn mean(values: &[f64]) -> Mean {
     mean_with(values, CONFIDENCE)
 }
 
-/// Like [`mean`], with an interval of another confidence level.
+/// Like [`mean`], with an interval at the given confidence level, between 0 and 1, instead of 0.95.
 pub(super) fn mean_with(values: &[f64], confidence: f64) -> Mean {
     let count = values.len();
     let mean = values.iter().sum::<f64>() / count.max(1) as f64;
@@ -50,8 +53,8 @@ fn student(count: usize) -> Option<StudentsT> {
 }
 
 impl Mean {
-    /// One-sided p-value of the claim that the true mean is above `bound`: the probability of a mean this high if the
-    /// true mean is at most the bound.
+    /// Returns the one-sided p-value of the claim that the true mean is above `bound`: the probability of a mean this
+    /// high if the true mean is at most `bound`.
     pub(super) fn p_above(&self, bound: f64) -> f64 {
         let Some(student) = student(self.count) else { return 1.0 };
         if self.standard_error == 0.0 {
@@ -60,29 +63,30 @@ impl Mean {
         1.0 - student.cdf((self.mean - bound) / self.standard_error)
     }
 
-    /// Standard deviation of the values; infinite for fewer than two values.
+    /// Returns the standard deviation of the values; infinite for fewer than two values.
     pub(super) fn spread(&self) -> f64 {
         self.standard_error * (self.count as f64).sqrt()
     }
 
-    /// Like [`Mean::p_above`], for below.
+    /// Returns the one-sided p-value of the claim that the true mean is below `bound`: the probability of a mean this
+    /// low if the true mean is at least `bound`.
     pub(super) fn p_below(&self, bound: f64) -> f64 {
         Self { mean: -self.mean, ..*self }.p_above(-bound)
     }
 
-    /// The mean and its interval with this many decimals, with signs.
+    /// Formats the mean and its interval with signs and with `decimals` decimals, as in "+0.12 (+0.10 … +0.14)".
     pub(super) fn signed(&self, decimals: usize) -> String {
         let Self { mean, low, high, .. } = self;
         format!("{mean:+.decimals$} ({low:+.decimals$} … {high:+.decimals$})")
     }
 
-    /// p-value of the claim that the true mean is within ± `margin`: two one-sided tests.
+    /// Returns the p-value of the claim that the true mean is between −`margin` and +`margin`, by two one-sided tests.
     pub(super) fn p_within(&self, margin: f64) -> f64 {
         self.p_above(-margin).max(self.p_below(margin))
     }
 }
 
-/// Slope of the least-squares line through points.
+/// Returns the slope of the least-squares line through points (x, y).
 pub(super) fn slope(points: &[(f64, f64)]) -> f64 {
     let count = points.len() as f64;
     let x_mean = points.iter().map(|(x, _)| x).sum::<f64>() / count;
@@ -92,7 +96,8 @@ pub(super) fn slope(points: &[(f64, f64)]) -> f64 {
     products / squares
 }
 
-/// Proportion of `hits` in `count` with its 95 % interval (Clopper and Pearson 1934).
+/// Returns the proportion of `hits` in `count` trials, and the lower and upper end of its 95 % interval (Clopper and
+/// Pearson 1934).
 pub(super) fn share(hits: usize, count: usize) -> (f64, f64, f64) {
     let tail = 0.5 * (1.0 - CONFIDENCE);
     let (k, n) = (hits as f64, count as f64);
@@ -103,15 +108,17 @@ pub(super) fn share(hits: usize, count: usize) -> (f64, f64, f64) {
     (k / n, low, high)
 }
 
-/// The break of the best broken line through points sorted by x, chosen from `candidates`. Both parts need at least two
-/// points.
+/// Fits a line with one bend to points (x, y), which are sorted by x, and returns the x at which the line bends: the
+/// value of `candidates` with the smallest sum of squared deviations. Returns `None` if no candidate has at least two
+/// points on each side.
 pub(super) fn turning_point(points: &[(f64, f64)], candidates: &[f64]) -> Option<f64> {
     let misfit = |at: f64| -> Option<f64> {
         let left = points.iter().filter(|(x, _)| *x < at).count();
         if left < 2 || points.len() - left < 2 {
             return None;
         }
-        // y = a + b·min(x − at, 0) + c·max(x − at, 0): normal equations.
+        // The normal equations of the least-squares fit y = a + b·min(x − at, 0) + c·max(x − at, 0), which bends at x =
+        // `at`.
         let row = |(x, y): &(f64, f64)| (DVec3::new(1.0, (x - at).min(0.0), (x - at).max(0.0)), *y);
         let (mut matrix, mut right) = (DMat3::ZERO, DVec3::ZERO);
         for (basis, y) in points.iter().map(row) {
@@ -140,12 +147,12 @@ mod tests {
 
     #[test]
     fn mean_and_interval_of_student() {
-        // Tables: t(0.975; 4) = 2.776445.
+        // From tables of Student's distribution: t(0.975; 4) = 2.776445.
         let mean = mean(&[1.0, 2.0, 3.0, 4.0, 5.0]);
         near(mean.mean, 3.0, 1e-12);
         near(mean.standard_error, 0.5f64.sqrt(), 1e-12);
         near(mean.high, 3.0 + 2.776_445 * 0.5f64.sqrt(), 1e-5);
-        // Tables: t(0.95; 4) = 2.131847.
+        // From tables of Student's distribution: t(0.95; 4) = 2.131847.
         near(mean.p_above(3.0 - 2.131_847 * 0.5f64.sqrt()), 0.05, 1e-6);
         near(mean.p_below(3.0 + 2.131_847 * 0.5f64.sqrt()), 0.05, 1e-6);
         near(mean.p_above(3.0), 0.5, 1e-9);
@@ -164,7 +171,8 @@ mod tests {
         use rand::{RngExt, SeedableRng};
         let mut random = rand_pcg::Pcg64::seed_from_u64(1);
         let holding = (0..4000).filter(|_| {
-            // The sum of twelve uniform numbers, which has mean 6, is sufficiently normal here.
+            // The sum of twelve uniform random numbers has the mean 6 and is sufficiently close to a normal
+            // distribution here.
             let values: Vec<f64> =
                 (0..8).map(|_| (0..12).map(|_| random.random_range(0.0..1.0)).sum()).collect();
             let mean = mean(&values);
@@ -175,7 +183,8 @@ mod tests {
 
     #[test]
     fn where_neither_is_so_one_of_two_is_seen_in_five_of_a_hundred() {
-        // On a grid of two uniform p-values, the rate should be 1 − 0.975².
+        // The p-values of both claims run over an even grid, as they would be distributed if both claims were false.
+        // Then at least one claim should be accepted at the rate 1 − 0.975².
         let side = 400;
         let p = |place: usize| (place as f64 + 0.5) / side as f64;
         let seen = (0..side * side).filter(|at| p_of_either(p(at % side), p(at / side)) < 0.05);
@@ -185,7 +194,8 @@ mod tests {
 
     #[test]
     fn shares_of_clopper_and_pearson() {
-        // Tables: 2 of 10 gives 2.52 % … 55.61 %; 0 of 10 gives 0 … 30.85 %.
+        // From tables of the interval by Clopper and Pearson: 2 hits in 10 trials give 2.52 % … 55.61 %, and 0 hits in
+        // 10 trials give 0 … 30.85 %.
         let (share_of, low, high) = share(2, 10);
         near(share_of, 0.2, 1e-12);
         near(low, 0.0252, 1e-4);

@@ -1,10 +1,11 @@
-//! The ensemble: runs of other initial states with the settings of a world. They differ from the world's pile only in
-//! their seed ("other piles" in the window). They give the number of one pile a mean and an interval.
+//! The ensemble of a world (simulation): runs with the same settings and other initial states, which differ only in
+//! their seed ("other piles" in the window). From these runs the window computes the mean result and its confidence
+//! interval.
 //!
-//! Piles are chaotic. The shipped pile was chosen because it shows the paper's pattern, so its seed is never in the
-//! ensemble. Other piles run on idle cores, from their initial state to the scene's end, with one set of settings. A
-//! run whose settings changed on the way, or that was pulled by hand, has no ensemble, because it cannot be compared
-//! with these runs.
+//! Piles are chaotic. The built-in pile was chosen because it shows the paper's pattern, so its seed is never in the
+//! ensemble. Idle cores run the other piles from their initial state to the end of the scene, with one set of settings.
+//! A run has no ensemble if its settings changed during the run or if the user pulled a grain, because then it cannot
+//! be compared with these runs.
 
 mod pool;
 mod runs;
@@ -24,7 +25,7 @@ use pool::{EnsembleSummary, WorkerPool, idle_cores};
 pub(crate) use runs::Band;
 use runs::others_of;
 
-/// Rule for the mean, as a hover text.
+/// Hover text that explains the mean over other initial states.
 const RULE: &str = "Idle cores run other piles with the present settings from their initial state on. They differ \
                     from this pile only in their seed. Thin lines show these piles, the dashed line shows their \
                     mean. ± is the 95 % interval of that mean (Student's), not the spread of the piles. They start \
@@ -32,22 +33,23 @@ const RULE: &str = "Idle cores run other piles with the present settings from th
                     hand, has no other piles: reset it. The seed of the shipped pile, which was chosen, is never \
                     among them.";
 
-/// The other piles of the open scene.
+/// The other initial states of the open scene, and the threads that run them.
 #[derive(Default)]
 pub struct Ensemble {
-    /// Folder in which initial states are stored. `None` if the system has no such folder.
+    /// Folder in which initial states are stored; `None` if the system has no such folder.
     folder: Option<PathBuf>,
-    /// The open scene and its other piles.
+    /// The open scene; `piles` are its other initial states.
     opened: Option<Arc<LiveStart>>,
     piles: Vec<NewPile>,
     pool: Option<WorkerPool>,
     worlds: Vec<Option<Settings>>,
-    /// All released piles of one kind, and that kind.
+    /// Settings of all runs of one kind that the user has started, with the results of their ensembles; `kind` is the
+    /// kind.
     released: Vec<Released>,
     kind: Option<PileKind>,
 }
 
-/// Kind of a pile. Piles of the same kind have the same other piles.
+/// Kind of a run: all data that determine the other initial states. Runs of the same kind can be compared.
 #[derive(PartialEq)]
 struct PileKind {
     scene: String,
@@ -57,19 +59,19 @@ struct PileKind {
 }
 
 impl Ensemble {
-    /// An empty ensemble. Initial states are stored in the user's cache folder.
+    /// Returns an empty ensemble that stores initial states in the user's cache folder.
     pub(crate) fn new() -> Self {
         let folder = user_folder("XDG_CACHE_HOME", ".cache").map(|folder| folder.join("piles"));
         Self { folder, ..Self::default() }
     }
 
-    /// Stores initial states in another folder.
+    /// Changes the folder in which initial states are stored.
     pub fn keep_in(&mut self, folder: PathBuf) {
         self.stop();
         self.folder = Some(folder);
     }
 
-    /// Folder of initial states.
+    /// Folder in which initial states are stored, if there is one.
     pub(super) fn folder(&self) -> Option<PathBuf> {
         self.folder.clone()
     }
@@ -80,17 +82,17 @@ impl Ensemble {
         self.worlds.clear();
     }
 
-    /// True if the open scene has other piles and there are cores to compute them.
+    /// True if the open scene has other initial states, and if there are cores to compute them.
     pub(super) fn is_possible(&self) -> bool {
         self.folder.is_some() && idle_cores() > 0 && !self.piles.is_empty()
     }
 
-    /// Number of threads that compute other piles.
+    /// Number of threads that run other initial states.
     pub fn threads(&self) -> usize {
         self.pool.as_ref().map_or(0, WorkerPool::threads)
     }
 
-    /// Follows the worlds of the newest frame. Stops if other piles are not wanted.
+    /// Computes ensembles for the simulations of the newest frame. If `is_wanted` is false, stops all threads.
     pub(super) fn follow(&mut self, context: &egui::Context, frame: &LiveFrame, is_wanted: bool) {
         let address = |opened: &Option<Arc<LiveStart>>| opened.as_ref().map(Arc::as_ptr);
         if address(&self.opened) != address(&frame.start) {
@@ -126,7 +128,7 @@ impl Ensemble {
         }
     }
 
-    /// Discards the released piles of another kind.
+    /// Discards the runs that the user has started, if the open scene is of another kind.
     fn note_kind(&mut self) {
         let Some(opened) = self.opened.as_ref().filter(|_| !self.piles.is_empty()) else { return };
         let kind = Some(PileKind {
@@ -141,7 +143,7 @@ impl Ensemble {
         }
     }
 
-    /// Stores the settings of worlds that were released. Returns true if some of them are new.
+    /// Stores the settings of the runs that the user has started. Returns true if some of these settings are new.
     fn note_released(&mut self, frame: &LiveFrame, all: &[Option<Settings>]) -> bool {
         let before = self.released.len();
         for (world, settings) in frame.worlds.iter().zip(all) {
@@ -156,13 +158,13 @@ impl Ensemble {
         self.released.len() > before
     }
 
-    /// Discards all released piles except the visible ones.
+    /// Discards all runs that the user has started. The visible runs are added again with the next frame.
     pub(super) fn forget_released(&mut self) {
         self.released.clear();
     }
 
-    /// Settings of released piles, and the runs of their other piles. A visible pile is included once it has reached
-    /// its end.
+    /// Returns the settings of the runs that the user has started, with the results of their ensembles. A visible run
+    /// is included only when it has reached the end of the scene.
     pub(crate) fn released(&self, frame: &LiveFrame) -> impl Iterator<Item = &Released> {
         let end_secs = self.kind.as_ref().map_or(f64::INFINITY, |kind| kind.duration_secs);
         let is_on_its_way = move |settings: &Settings| {
@@ -175,14 +177,14 @@ impl Ensemble {
         self.released.iter().filter(move |(settings, _)| is_open && !is_on_its_way(settings))
     }
 
-    /// Runs of the other piles with the settings of a released pile.
+    /// Returns the results of the other initial states with the settings of a started run.
     pub(crate) fn band(&self, settings: &Settings) -> Option<&Arc<Band>> {
         let mut released = self.released.iter().filter(|_| !self.piles.is_empty());
         released.find(|(own, _)| own == settings).map(|(_, band)| band)
     }
 
-    /// A sentence on the effect of a change of settings on the slump of other piles at a simulated time. `None` if
-    /// fewer than two piles ran under both settings.
+    /// Returns a sentence on the effect of a change of settings on the slump of the other initial states at a simulated
+    /// time. `None` if fewer than two initial states ran under both settings.
     pub(crate) fn effect(
         &self,
         before: &Settings,
@@ -193,7 +195,7 @@ impl Ensemble {
         Some(format!("{}: {}", change_text(before, after), effect(&paired, self.piles.len())?))
     }
 
-    /// Text on the other piles of a world: their rule and seeds.
+    /// Returns a text on the ensemble of a simulation: its explanation and its seeds.
     pub(crate) fn about(&self, world: usize) -> String {
         let Some(summary) = self.summary(world) else { return RULE.into() };
         let EnsembleSummary { seeds, settling, failed, .. } = summary;
@@ -208,7 +210,8 @@ impl Ensemble {
         text
     }
 
-    /// Result of a world's other piles at the visible moment, as text. `None` if the world has none.
+    /// Returns the mean result of a simulation's ensemble at the displayed moment, as text. `None` if the simulation
+    /// has no ensemble.
     pub(crate) fn said(&self, frame: &LiveFrame, world: usize) -> Option<String> {
         let row = frame.worlds.get(world)?.snapshot.observables;
         Some(said(&self.summary(world)?, row.time_secs))
@@ -222,14 +225,14 @@ impl Ensemble {
         Some((mean, half, band.count))
     }
 
-    /// State of the other piles of a world. `None` if it has none.
+    /// Returns the state of a simulation's ensemble; `None` if the simulation has no ensemble.
     pub(crate) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
         self.pool.as_ref()?.summary(world)
     }
 }
 
-/// Text with the mean slump before and after a change and the mean difference. `planned` is the number of piles in
-/// all.
+/// Returns a text with the mean slump before and after a change and the mean difference. `planned` is the total number
+/// of initial states.
 fn effect([before, after, difference]: &[Mean; 3], planned: usize) -> Option<String> {
     const WORDS: [&str; 9] = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"];
     let count = difference.count;
@@ -249,7 +252,7 @@ fn effect([before, after, difference]: &[Mean; 3], planned: usize) -> Option<Str
     Some(format!("slump {before} → {after}, {piles} each; difference {difference} (paired)"))
 }
 
-/// Text on the other piles at a simulated time.
+/// Returns a text on the results of an ensemble at a simulated time.
 fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
     let (planned, count) = (summary.seeds.len() - summary.failed, summary.band.count);
     let mean = summary.band.at(time_secs);

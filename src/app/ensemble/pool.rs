@@ -1,4 +1,4 @@
-//! Worker threads that run the ensemble, with the jobs to be done, under way and finished.
+//! Worker threads that run the ensemble (runs of other initial states), with the jobs that wait, run or have finished.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -15,25 +15,25 @@ use crate::sim::Settings;
 use crate::study::settled_pile;
 use crate::world::Grain;
 
-/// Least time between two progress updates of a pile.
+/// Least time between two progress reports of a pile that is being deposited.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
-/// Cores that are left to the visible run. If the system cannot lower the priority of a thread, one more is left to
-/// the window.
+/// Number of cores that these threads do not use. One core is for the visible run. If the system cannot lower the
+/// priority of a thread, one more core is for the window.
 const LEFT: usize = if cfg!(any(target_os = "linux", windows)) { 1 } else { 2 };
 
-/// Number of idle cores while a world runs. On a machine with one core it is 0.
+/// Returns the number of idle cores while a simulation runs. On a machine with one core it is 0.
 pub(super) fn idle_cores() -> usize {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     cores.saturating_sub(LEFT)
 }
 
-/// Gives the calling thread the lowest priority. On Linux each thread has its own priority, and process "None" stands
-/// for the calling thread (setpriority(2), "C library/kernel differences").
+/// Gives the calling thread the lowest priority. On Linux each thread has its own priority, and the process `None`
+/// means the calling thread (setpriority(2), "C library/kernel differences").
 fn give_way() {
     #[cfg(target_os = "linux")]
     {
         const NICEST: i32 = 19;
-        // If the system refuses, the thread shares its core as any other would.
+        // If the system refuses, the thread shares its core at normal priority.
         let _ = rustix::process::setpriority_process(None, NICEST);
     }
     #[cfg(windows)]
@@ -41,12 +41,12 @@ fn give_way() {
         use windows_sys::Win32::System::Threading::{
             GetCurrentThread, SetThreadPriority, THREAD_PRIORITY_IDLE,
         };
-        // SAFETY: the handle stands for the calling thread and needs no closing.
+        // SAFETY: the handle is a constant for the calling thread and must not be closed.
         unsafe { SetThreadPriority(GetCurrentThread(), THREAD_PRIORITY_IDLE) };
     }
 }
 
-/// Does work on as many threads as there are idle cores, at least one, with the lowest priority.
+/// Runs `work` on as many threads as there are idle cores, at least one, with the lowest priority.
 pub(in crate::app) fn on_idle_cores<T: Send>(work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
     let builder = rayon::ThreadPoolBuilder::new().num_threads(idle_cores().max(1));
     let pool = builder.start_handler(|_| give_way()).build();
@@ -54,44 +54,45 @@ pub(in crate::app) fn on_idle_cores<T: Send>(work: impl FnOnce() -> Result<T> + 
     pool.map_err(refuse)?.install(work)
 }
 
-/// A job on one pile, given by the pile's index in the ensemble.
+/// A job for one pile, which is identified by its index in the ensemble.
 #[derive(Clone, Copy, PartialEq)]
 enum PileJob {
-    /// Deposit it.
+    /// Deposit the pile: let its grains fall into the box and come to rest.
     Settle(usize),
-    /// Run it with these settings.
+    /// Run the pile with these settings.
     Run(usize, Settings),
 }
 
 /// Progress or result of a job.
 enum JobState {
-    /// Finished fraction, 0 … 1.
+    /// The job is running; finished fraction, 0 to 1.
     Underway(f32),
     Settled(Vec<Grain>),
     Ran(SlumpSeries),
     Failed,
 }
 
-/// State of the other piles of a world.
+/// Results of the other initial states with the settings of one simulation.
 #[derive(Clone, Debug)]
 pub(crate) struct EnsembleSummary {
-    /// Results of the piles that have finished.
+    /// Slumps of the piles whose runs have finished.
     pub band: Arc<Band>,
     pub seeds: Vec<u64>,
     pub failed: usize,
-    /// The pile that is being deposited, counted from 1, and its finished fraction, 0 … 1.
+    /// Number of the pile that is being deposited, counted from 1, and its finished fraction, 0 to 1.
     pub settling: Option<(usize, f32)>,
 }
 
-/// Settings of a released pile, and the runs of its other piles.
+/// Settings of a run that the user has started, and the slumps of other initial states with these settings.
 pub(crate) type Released = (Settings, Arc<Band>);
 
-/// The jobs to be done and those that have begun.
+/// The waiting, running and finished jobs.
 #[derive(Default)]
 struct Jobs {
-    /// `None` for a world without other piles.
+    /// Settings of each visible simulation; `None` for a simulation that has no ensemble.
     worlds: Vec<Option<Settings>>,
-    /// Settings of all released piles. Their jobs have lower priority than those of the worlds.
+    /// Settings of all runs that the user has started. Their jobs have lower priority than the jobs of the visible
+    /// simulations.
     released: Vec<Settings>,
     begun: Vec<(PileJob, JobState)>,
     /// Results of finished runs, by their settings.
@@ -108,8 +109,8 @@ impl Jobs {
         !self.is_over && matches!(self.state(job), Some(JobState::Underway(_)))
     }
 
-    /// Begins the next job and returns it with its grains. The jobs of the worlds come first, then those of earlier
-    /// settings, the newest first.
+    /// Begins the next job and returns it with the grains of its pile. Jobs with the settings of visible simulations
+    /// come first, then jobs with earlier settings, the newest settings first.
     fn next(&mut self, piles: usize) -> Option<(PileJob, Vec<Grain>)> {
         let worlds = self.worlds.iter().copied().flatten().collect();
         let earlier = self.released.iter().rev().map(|&settings| vec![settings]);
@@ -119,8 +120,8 @@ impl Jobs {
         Some(next)
     }
 
-    /// The next job for these settings. One pile is finished for all settings before the next, so that all settings
-    /// have as many piles.
+    /// Returns the next job for these settings. Each pile is run with all settings before the next pile is begun, so
+    /// that all settings have the same number of piles.
     fn next_of(&self, settings: &[Settings], piles: usize) -> Option<(PileJob, Vec<Grain>)> {
         if settings.is_empty() {
             return None;
@@ -135,7 +136,7 @@ impl Jobs {
         })
     }
 
-    /// Stores the state of a job that is still wanted.
+    /// Stores the state of a job, if the job has not been cancelled.
     fn note(&mut self, job: PileJob, state: JobState) {
         if !self.is_under_way(job) {
             return;
@@ -170,16 +171,16 @@ struct PoolState {
     news: Condvar,
 }
 
-/// The worker threads. When the pool is dropped, they end after their present step.
+/// The worker threads. When this value is dropped, the threads end after their present step.
 pub(super) struct WorkerPool {
     state: Arc<PoolState>,
-    // Each thread ends when its work ends.
+    // A thread ends when its loop ends.
     threads: Vec<rayon::ThreadPool>,
 }
 
 impl WorkerPool {
-    /// Starts a thread per idle core. Initial states are stored in `folder`. The threads ask `context` for a new frame
-    /// when they have results. Settings in `released` that have results are not computed again.
+    /// Starts one thread per idle core. Initial states are stored in `folder`. When a thread has a result, it requests
+    /// a new frame from `context`. Results that `released` contains are not computed again.
     pub(super) fn start(
         folder: &Path,
         context: &egui::Context,
@@ -202,7 +203,8 @@ impl WorkerPool {
             jobs: Mutex::new(jobs),
             news: Condvar::new(),
         });
-        // Each pool has one thread, so that the parallel parts of a solver stay on that thread, with its low priority.
+        // Each rayon pool has one thread, so that the parallel parts of a solver stay on this thread, which has low
+        // priority.
         let thread = |_| {
             let builder = rayon::ThreadPoolBuilder::new().num_threads(1);
             let builder = builder.thread_name(|_| "other piles".into()).panic_handler(|_| {});
@@ -215,8 +217,8 @@ impl WorkerPool {
         Self { state, threads }
     }
 
-    /// Computes for worlds with these settings, then for released piles with these settings. Discards the results of
-    /// all other settings.
+    /// Computes runs with the settings of the visible simulations, then runs with the settings `released`. Discards the
+    /// results of all other settings.
     pub(super) fn follow(&self, worlds: Vec<Option<Settings>>, released: Vec<Settings>) {
         let mut jobs = self.state.lock();
         let is_wanted =
@@ -230,7 +232,7 @@ impl WorkerPool {
         self.state.news.notify_all();
     }
 
-    /// Copies the finished runs to `released`.
+    /// Copies the results of finished runs to `released`.
     pub(super) fn note_runs(&self, released: &mut [Released]) {
         let jobs = self.state.lock();
         for (settings, band) in released {
@@ -240,7 +242,8 @@ impl WorkerPool {
         }
     }
 
-    /// State of the other piles of a world. `None` if it has none.
+    /// Returns the results of the other initial states with the settings of a simulation; `None` if the simulation has
+    /// no ensemble.
     pub(super) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
         let (jobs, piles) = (self.state.lock(), &self.state.piles);
         let settings = (*jobs.worlds.get(world)?)?;
@@ -261,7 +264,7 @@ impl WorkerPool {
         })
     }
 
-    /// Number of threads.
+    /// Number of worker threads.
     pub(super) fn threads(&self) -> usize {
         self.threads.len()
     }
@@ -294,14 +297,14 @@ impl PoolState {
                     ran.map_or(Some(JobState::Failed), |series| series.map(JobState::Ran))
                 }
             };
-            // If a run was given up, another thread may have begun it again since.
+            // If a run was cancelled, another thread may have begun the same run again in the meantime.
             came_to.into_iter().for_each(|state| self.lock().note(job, state));
             self.news.notify_all();
             self.context.request_repaint();
         }
     }
 
-    /// Waits for the next job. `None` if the pool is closing.
+    /// Waits for the next job. Returns `None` if the pool is closing.
     fn next(&self) -> Option<(PileJob, Vec<Grain>)> {
         let mut jobs = self.lock();
         while !jobs.is_over {

@@ -1,4 +1,4 @@
-//! The other piles of a scene, the run of one of them, and the mean of finished runs.
+//! The other initial states of a scene ("other piles"), the computation of one run, and the mean over finished runs.
 
 use std::ops::ControlFlow;
 
@@ -10,15 +10,16 @@ use crate::sim::{RunEnding, Settings, Simulation};
 use crate::study::{self, Mean};
 use crate::world::Grain;
 
-/// The slump of a run against time: pairs of simulated time, s, and Δy.
+/// The slump Δy of a run (relative drop of the mean height) against simulated time: pairs of time, s, and slump.
 pub(crate) type SlumpSeries = Vec<[f64; 2]>;
 
-/// Mean slump of some runs and its 95 % interval by Student's distribution, at the times that all of them have.
+/// Mean slump of several runs with its 95 % confidence interval (Student's distribution), at the times that all runs
+/// have in common.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Band {
     pub times_secs: Vec<f64>,
     pub means: Vec<f64>,
-    /// Upper ends of the intervals; ∞ for one run.
+    /// Upper ends of the confidence intervals; ∞ for a single run.
     pub highs: Vec<f64>,
     pub count: usize,
     /// The runs, each with the index of its pile in the ensemble.
@@ -26,7 +27,7 @@ pub(crate) struct Band {
 }
 
 impl Band {
-    /// Computes the band of runs with the same settings and therefore the same times.
+    /// Computes the means of runs that have the same settings and therefore the same times.
     pub(super) fn of(runs: &[(usize, &SlumpSeries)]) -> Self {
         let all = runs.iter().map(|&(pile, run)| (pile, run.clone())).collect();
         let mut band = Self { count: runs.len(), runs: all, ..Self::default() };
@@ -41,8 +42,8 @@ impl Band {
         band
     }
 
-    /// Mean and half the width of the interval at the last time up to `time_secs`. `None` before the first and after
-    /// the last time.
+    /// Returns the mean slump and the half-width of its confidence interval at the last computed time up to
+    /// `time_secs`. `None` before the first and after the last time.
     pub(crate) fn at(&self, time_secs: f64) -> Option<(f64, f64)> {
         let index = self.index_at(time_secs)?;
         Some((self.means[index], self.highs[index] - self.means[index]))
@@ -54,8 +55,8 @@ impl Band {
         index.checked_sub(1).filter(|_| time_secs < last + spacing)
     }
 
-    /// Mean slumps at a simulated time of the piles that ran under both settings: of this band, of `other`, and of the
-    /// differences, other − this.
+    /// Compares the piles that ran under both settings, at a simulated time. Returns the mean slump of this band, the
+    /// mean slump of `other`, and the mean of the differences, `other` − `self`.
     pub(super) fn paired(&self, other: &Self, time_secs: f64) -> Option<[Mean; 3]> {
         let (index, other_index) = (self.index_at(time_secs)?, other.index_at(time_secs)?);
         let pair = |(pile, run): &(usize, SlumpSeries)| {
@@ -69,10 +70,10 @@ impl Band {
     }
 }
 
-/// Largest number of points of a run, without its last point.
+/// Largest number of points in the slump curve of a run, without its last point.
 const MOST_POINTS: u64 = 400;
 /// Computes the slump of a scene from its initial state to its end. `goes_on` is called after each step; if it returns
-/// false, the result is `None`.
+/// false, the run stops and the result is `None`.
 pub(super) fn slump(
     scene: &Scene,
     mut goes_on: impl FnMut() -> bool,
@@ -96,13 +97,14 @@ pub(super) fn slump(
     }
 }
 
-/// Number of other piles per world.
+/// Number of other initial states per simulation.
 const COUNT: usize = 8;
-/// Largest pile with an ensemble. Larger piles take minutes each to deposit.
+/// Largest number of grains of a pile with an ensemble. The deposition of a larger pile takes minutes.
 const MOST_GRAINS: usize = 1_000;
 
-/// The other piles of the open scene: seeds from 1, without the scene's own seed and that of the shipped pile. Empty
-/// if the scene is not a pile made from a seed, or is too large.
+/// Returns the other piles of the open scene: piles that differ only in their seed. The seeds are 1, 2, …, without the
+/// scene's own seed and the seed of the built-in pile. The list is empty if the grains of the scene were not made from
+/// a seed, or if the scene is too large.
 pub(super) fn others_of(opened: &LiveStart) -> Vec<NewPile> {
     let Some(own) = pile_of(opened).filter(|pile| pile.grains <= MOST_GRAINS) else {
         return Vec::new();
@@ -112,13 +114,13 @@ pub(super) fn others_of(opened: &LiveStart) -> Vec<NewPile> {
     seeds.take(COUNT).map(|seed| NewPile { seed, ..own.clone() }).collect()
 }
 
-/// The pile from which the grains of a scene were made.
+/// Returns the settings from which the pile of a scene was made; `None` if it was not made from a seed.
 fn pile_of(opened: &LiveStart) -> Option<NewPile> {
     let LiveStart { config, scene, .. } = opened;
     if config.source.initial.is_some() {
         return None;
     }
-    // A saved run names only its scene.
+    // A saved run states only the name of its scene.
     let is_shipped = || {
         let shipped = built_in(Config::DEFAULT_SCENE).ok()?;
         let places = |scene: &Scene| -> Vec<_> {
@@ -129,7 +131,7 @@ fn pile_of(opened: &LiveStart) -> Option<NewPile> {
     config.new_pile().ok()?.or_else(is_shipped)
 }
 
-/// The open scene with other grains and these settings.
+/// Returns the open scene with the grains of another initial state and with these settings.
 pub(super) fn scene_of(
     opened: &LiveStart,
     pile: &NewPile,
@@ -158,7 +160,7 @@ mod tests {
         let runs = [[0.0, 1.0, 2.0], [0.0, 2.0, 4.0], [0.0, 3.0, 9.0]].map(run);
         let band = Band::of(&runs.iter().enumerate().collect::<Vec<_>>());
         assert_eq!((band.count, &band.means), (3, &vec![0.0, 2.0, 5.0]));
-        // Tables: t(0.975; 2) = 4.302653; the standard error of 1, 2, 3 is 1/√3.
+        // From tables: t(0.975; 2) = 4.302653. The standard error of 1, 2, 3 is 1/√3.
         let half = band.highs[1] - band.means[1];
         assert!((half - 4.302_653 / 3f64.sqrt()).abs() < 1e-5, "{half}");
         assert_eq!(band.at(0.7), Some((2.0, half)));
@@ -177,7 +179,7 @@ mod tests {
         let [one, other, difference] = before.paired(&after, 1.0).unwrap();
         assert_eq!([one.mean, other.mean, difference.mean], [6.5, 9.0, 2.5]);
         assert_eq!(difference.count, 2);
-        // Tables: t(0.975; 1) = 12.7062, and the standard error of 5 and 0 is 2.5.
+        // From tables: t(0.975; 1) = 12.7062. The standard error of 5 and 0 is 2.5.
         assert!((difference.high - difference.mean - 12.7062 * 2.5).abs() < 1e-3);
         assert!(before.paired(&after, 2.0).is_none());
     }

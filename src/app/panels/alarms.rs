@@ -1,12 +1,12 @@
-//! The texts of alarms.
+//! The texts of warnings about the run.
 
 use crate::app::budget::FAST;
 use crate::app::watched_run::WatchedRun;
 use crate::live::{WorldAlarm, WorldFrame};
 use crate::sim::{AlarmKind, Settings};
 
-/// Alarms of the selected world, then those of the other worlds with their titles. Within a world, alarms of the
-/// present settings come first, then earlier ones, the newest first.
+/// Returns the warnings about the selected simulation, then those about the other simulations with their titles. Within
+/// a simulation, warnings under the present settings come first, then earlier warnings, the newest first.
 pub(super) fn alarms(run: &WatchedRun) -> Vec<String> {
     let of_world = |index: usize| {
         let world = &run.frame.worlds[index];
@@ -24,8 +24,8 @@ pub(super) fn alarms(run: &WatchedRun) -> Vec<String> {
     selected.into_iter().chain(others).flat_map(of_world).collect()
 }
 
-/// True for an alarm that follows from a choice of the user: unsolved steps under Fast without cohesion. With cohesion,
-/// unsolved steps break bonds.
+/// True for a warning that follows from a choice of the user: unsolved steps under the preset Fast, without cohesion.
+/// With cohesion the warning is shown, because unsolved steps break bonds.
 fn is_expected(alarm: &WorldAlarm, world: &WorldFrame) -> bool {
     let Settings { parameters, solver, .. } = world.controls.settings;
     alarm.kind == AlarmKind::SweepLimit

@@ -1,4 +1,4 @@
-//! Rings that flash where bonds break.
+//! Rings that flash at the positions of breaking bonds.
 
 use std::collections::BTreeSet;
 
@@ -10,25 +10,26 @@ use crate::sim::Snapshot;
 
 /// Duration of a flash, s.
 const LASTS_SECS: f64 = 0.4;
-/// Radius of a ring in mean diameters.
+/// Radius of a ring, mean diameters.
 const RADIUS: f64 = 0.35;
-/// Largest number of grains whose breaking bonds flash. With more, a ring is smaller than a few pixels.
+/// Largest number of grains of a scene in which rings are drawn. With more grains a ring is only a few pixels large.
 const MOST_GRAINS: usize = 3_000;
 
-/// Bonds of one world that broke lately.
+/// Bonds of one simulation that broke recently.
 #[derive(Default)]
 pub(super) struct BreakingBonds {
-    /// Number of the load, and simulated time (s), of the moment that was shown last.
+    /// Number of the loaded initial state (counted from 1), and simulated time (s), of the moment that was shown last.
     seen: (u64, f64),
-    /// Pairs of grains that pulled at each other at that moment.
+    /// Pairs of grains that pulled each other at that moment.
     pulling: BTreeSet<[u32; 2]>,
-    /// Places of breaks, m, with their time, s.
+    /// Positions of broken bonds, m, each with the time at which its flash began, s.
     flashes: Vec<(DVec2, f64)>,
 }
 
 impl BreakingBonds {
-    /// Compares a moment with the one that was shown before it: a pair that pulled and has no contact now is a bond that
-    /// broke. A moment of another run, or an earlier one, breaks nothing.
+    /// Compares the present moment with the moment that was shown before. If a pair of grains pulled each other and now
+    /// has no contact, its bond broke. If the present moment is earlier or belongs to another run, no bond counts as
+    /// broken.
     fn follow(&mut self, run: u64, snapshot: &Snapshot, now_secs: f64) {
         let seen = (run, snapshot.observables.time_secs);
         if seen == self.seen {
@@ -54,7 +55,7 @@ impl BreakingBonds {
         self.pulling = touching(true).collect();
     }
 
-    /// Draws the rings of one world, which fade.
+    /// Draws the rings of one simulation, which fade.
     pub(super) fn show(&mut self, ui: &Ui, run: u64, cell: &WorldCell<'_>, colour: Color32) {
         let snapshot = &cell.frame.snapshot;
         if snapshot.grains.len() > MOST_GRAINS {

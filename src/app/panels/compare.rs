@@ -1,4 +1,4 @@
-//! Panel: worlds side by side.
+//! Panel: comparison of worlds (simulations side by side).
 
 use egui::{Button, RichText, Ui};
 
@@ -12,7 +12,7 @@ use crate::solver::{FrictionModel, METHODS, Method, MethodInfo, SolverSettings};
 use crate::study::{FIG4_BONDS, FIG4_TIME_STEPS_SECS};
 use crate::world::{FrictionCone, Parameters};
 
-/// The paper's time steps, s.
+/// The time steps of the paper, s.
 const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 /// Largest number of worlds side by side.
 const MOST_WORLDS: usize = 6;
@@ -48,11 +48,11 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     }
 }
 
-/// A preset: worlds that one click sets side by side.
+/// A preset: simulations that the user can compare by one click.
 struct LineUp {
     name: &'static str,
     hint: &'static str,
-    /// Makes the worlds from the settings of [`base`].
+    /// Returns the simulations' settings, made from the settings that [`base`] returns.
     worlds: fn(Settings) -> Vec<Settings>,
 }
 
@@ -88,7 +88,7 @@ const LINE_UPS: [LineUp; 4] = [
     },
 ];
 
-/// Line-ups of methods, for those who study solvers.
+/// Presets that compare numerical methods, for users who study solvers.
 const METHOD_LINE_UPS: [LineUp; 3] = [
     LineUp {
         name: "Solvers",
@@ -122,15 +122,17 @@ const METHOD_LINE_UPS: [LineUp; 3] = [
     },
 ];
 
-/// Switches to another stepper, and switches off remedies and settings that it does not take.
+/// Returns the settings with another stepper. Remedies and settings that this stepper does not support are switched
+/// off.
 fn stepped(base: Settings, stepper: Stepper) -> Settings {
     let mut settings = Settings { stepper, ..base };
     settings.parameters.cone = FrictionCone::Shifted;
     settings.with_only_what_is_taken()
 }
 
-/// Base settings of the presets: those of the scene, with the stepper and the parameters that all worlds share. The
-/// solver, remedies and touch tolerance of the previous comparison do not count, because the user would not see them.
+/// Returns the settings on which the presets are based: the settings of the scene, with the stepper and the parameters
+/// that all simulations share. Solver, remedies and touch tolerance of the previous comparison are ignored, because the
+/// user would not see them.
 fn base(scene: &Settings, worlds: &[Settings]) -> Settings {
     let mut base = *scene;
     let physics = Parameters::ABOUT.iter().filter(|about| about.name != "touch-tolerance");
@@ -149,7 +151,7 @@ fn presets(ui: &mut Ui, run: &mut WatchedRun) {
     line_ups(ui, run, &LINE_UPS);
 }
 
-/// The presets that compare methods.
+/// Shows the presets that compare numerical methods.
 pub(super) fn method_presets(ui: &mut Ui, run: &mut WatchedRun) {
     ui.label("Side by side")
         .on_hover_text("Worlds from one initial state, kept at the same simulated time.");
@@ -169,11 +171,11 @@ fn line_ups(ui: &mut Ui, run: &mut WatchedRun, all: &[LineUp]) {
     });
 }
 
-/// Shows the row of one world. Returns true if the user removes it.
+/// Shows the row of one simulation. Returns true if the user removes the simulation.
 fn row(ui: &mut Ui, run: &mut WatchedRun, index: usize) -> bool {
     let mut removed = false;
     ui.horizontal(|ui| {
-        // A world's name is in the text colour, because its own colour would not always be readable.
+        // The name of a world is in the text colour, because the colour of the world would not always be readable.
         let colour = theme::world_colour(index, ui.visuals().dark_mode);
         ui.label(RichText::new("■").color(colour));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {

@@ -1,4 +1,4 @@
-//! Panel: saving and opening runs, and exporting a recording for other programs.
+//! Panel: saves and opens runs, and exports recordings for other programs.
 
 use egui::{Button, RichText, TextEdit, Ui};
 
@@ -9,7 +9,7 @@ use crate::app::number_text::{clock_text, time_field};
 use crate::app::work::{Reporter, Work};
 use crate::data::{DataSettings, FormatName, check_format};
 
-/// Shortest and longest simulated time between two frames, s.
+/// Shortest and longest simulated time between two frames of a recording, s.
 const EVERY: [f64; 2] = [1e-9, 1e9];
 
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -124,7 +124,7 @@ fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Name and use of a format.
+/// Returns the name and the use of a file format.
 fn words(format: FormatName) -> (&'static str, &'static str) {
     match format {
         FormatName::Parquet => ("Parquet", "For pandas, polars and similar programs."),
@@ -135,7 +135,7 @@ fn words(format: FormatName) -> (&'static str, &'static str) {
     }
 }
 
-/// Shows the choice of an interval of the recording.
+/// Shows the choice of a time interval of the recorded run.
 fn stretch(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let Some(world) = context.run.world() else { return };
     let (first, last) = (world.recorded_from_secs, world.recorded_secs);
@@ -168,7 +168,7 @@ fn stretch(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Shows the button that starts an export, or its progress.
+/// Shows the button that starts an export or, during an export, its progress.
 fn export(ui: &mut Ui, context: &mut PanelContext<'_>, is_ready: bool) {
     if let Some(export) = &context.exports.data.export {
         return export.show(

@@ -1,5 +1,5 @@
-//! Panel: distributions of forces, directions, contacts and overlaps at the visible moment, counted on a thread of its
-//! own.
+//! Panel: histograms of forces, directions, contacts and overlaps at the displayed moment, which a separate thread
+//! counts.
 
 use std::time::Duration;
 
@@ -14,15 +14,15 @@ use crate::app::watched_run::{TakenRun, WatchedRun};
 use crate::app::work::{Work, outcome_of_ended};
 use crate::granular::{Histogram, histograms};
 
-/// Least time between two counts.
+/// Least time between two counts of the histograms.
 const INTERVAL: Duration = Duration::from_millis(200);
 
-/// Histograms of one world at the visible moment, or a little earlier.
+/// Histograms of one simulation at the displayed moment, or at a slightly earlier moment.
 #[derive(Default)]
 pub(super) struct Distributions {
     /// The newest histograms.
     histograms: Vec<Histogram>,
-    /// World and step of the newest count.
+    /// Index of the simulation and number of the step of the newest count.
     of: Option<(usize, u64)>,
     asked: Option<Instant>,
     coming: Option<Work<Vec<Histogram>>>,
@@ -30,7 +30,7 @@ pub(super) struct Distributions {
 
 /// Height of the plot, points.
 const HEIGHT: f32 = 150.0;
-/// Histograms: name in files, text of the button, text of the axis.
+/// The histograms: name in files, text of the button, text of the axis.
 const ALL: [(&str, &str, &str); 4] = [
     ("normal_force", "forces", "N divided by the mean |N| of contacts with a force"),
     ("contact_orientation", "directions", "direction of normals, degrees from the x axis"),
@@ -70,8 +70,8 @@ impl Distributions {
         ui.label(RichText::new(text).small().weak());
     }
 
-    /// Begins to count the visible moment, if it is a new one, no count is under way, and the last count was some time
-    /// ago.
+    /// Starts a count of the displayed moment, if this moment is new, no other count is running, and the last count was
+    /// long enough ago.
     fn count(&mut self, ui: &Ui, run: &mut WatchedRun) {
         let Some(world) = run.world() else { return };
         let of = Some((run.selected, world.snapshot.observables.step));
@@ -93,8 +93,8 @@ impl Distributions {
     }
 }
 
-/// One bar per bin. Overlaps have a logarithmic axis. A bin that is open at one end is as wide as the first bin that
-/// is not.
+/// Returns one bar per bin. The axis of overlaps is logarithmic. A bin that is open at one end is as wide as the first
+/// bin with two ends.
 fn bars(histogram: &Histogram) -> Vec<Bar> {
     let Histogram { edges, counts, quantity, .. } = histogram;
     let is_log = *quantity == "overlap";
@@ -107,7 +107,7 @@ fn bars(histogram: &Histogram) -> Vec<Bar> {
             [low, high] if low.is_finite() && high.is_finite() => (low, high),
             [low, _] if low.is_finite() => (low, low + usual),
             [_, high] if high.is_finite() => (high - usual, high),
-            // A histogram with only one bin.
+            // The histogram has only one bin.
             _ => (0.0, usual),
         };
         Bar::new(0.5 * (low + high), count as f64).width(0.92 * (high - low))

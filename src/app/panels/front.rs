@@ -1,4 +1,5 @@
-//! The main controls: release, again, the pace, the timeline, and the sliders for Bond, Δt, ρ and μ.
+//! The main controls: the buttons for start and restart, the speed of playing, the timeline, and the sliders for Bond,
+//! Δt, restitution ρ and friction μ.
 
 use egui::{Button, ComboBox, Rect, RichText, Slider, Stroke, Ui};
 
@@ -10,10 +11,10 @@ use crate::app::number_text::clock_text;
 use crate::app::{budget, setting_control, theme};
 use crate::live::Command;
 
-/// Paces that are offered: simulated time per wall-clock time.
+/// Speeds of playing that the user can choose: simulated time per wall-clock time.
 const PACES: [f64; 7] = [0.01, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0];
 
-/// Least width of a slider with its number, points.
+/// Smallest width of a slider with its number, points.
 const LEAST_WIDTH: f32 = 150.0;
 
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -41,7 +42,8 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Shows the most important button: release, pause or play.
+/// Shows the most important button, which starts, pauses or continues the run. In the initial state of a pile, it
+/// removes the walls.
 fn release_button(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let frame = &context.run.frame;
     let failed = frame.worlds.iter().any(|world| world.failure.is_some());
@@ -80,7 +82,7 @@ fn release_button(ui: &mut Ui, context: &mut PanelContext<'_>) {
     context.note_control("release", response.rect);
 }
 
-/// Shows the list of paces.
+/// Shows the list of speeds of playing.
 fn pace(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let preferences = &mut context.preferences;
     let before = preferences.pace();
@@ -107,7 +109,8 @@ fn pace(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// Changes to the next slower or faster pace. The fastest is the full speed of the machine.
+/// Changes the speed of playing to the next smaller or larger value of the list. The largest is the full speed of the
+/// machine.
 pub(crate) fn change_pace(context: &mut PanelContext<'_>, is_faster: bool) {
     let now = context.preferences.speed;
     let mut paces = PACES.into_iter();
@@ -149,7 +152,7 @@ fn timeline(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Marks on the timeline the moments at which walls change their velocity.
+/// Marks the times at which walls change their velocity on the timeline.
 fn mark_events(ui: &Ui, context: &PanelContext<'_>, rect: Rect, end_secs: f64) {
     let Some(start) = &context.run.frame.start else { return };
     // The handle of the slider stays within its ends.
@@ -161,7 +164,7 @@ fn mark_events(ui: &Ui, context: &PanelContext<'_>, rect: Rect, end_secs: f64) {
     }
 }
 
-/// Shows the main sliders that the scene has, side by side.
+/// Shows the main sliders that have an effect in the scene, side by side.
 fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let Some((before, start)) = context.run.wanted_and_start() else { return };
     let (index, mut settings) = (context.run.selected, before);

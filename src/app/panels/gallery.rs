@@ -1,4 +1,4 @@
-//! The built-in scenes as a gallery: a picture of each as it starts, in the look that is chosen.
+//! The gallery of built-in scenes: a picture of each scene in its initial state, in the style that the user chose.
 
 use egui::{
     Align2, Color32, ColorImage, ComboBox, CursorIcon, FontId, Rect, Response, RichText, Role,
@@ -16,24 +16,24 @@ use crate::scene::{SCENES, SceneGroup, SceneInfo};
 
 /// Size of a picture, points.
 const PICTURE: egui::Vec2 = egui::vec2(128.0, 76.0);
-/// Height of the name below it, points.
+/// Height of the name below a picture, points.
 const NAME_HEIGHT: f32 = 18.0;
-/// Pictures in a row, at the most.
+/// Largest number of pictures in a row.
 const MOST_COLUMNS: usize = 4;
 /// Height of the list, points.
 const HEIGHT: f32 = 470.0;
 
-/// Pictures that were drawn, and the style that they are in.
+/// Pictures of scenes that have been drawn, and their style.
 #[derive(Default)]
 pub(super) struct Gallery {
     style: Option<Style>,
     pictures: Vec<Option<TextureHandle>>,
-    /// The pass that the last was drawn in.
+    /// Number of egui's pass in which the last picture was drawn.
     drawn_in: u64,
 }
 
 impl Gallery {
-    /// The list of the scenes of some groups, closed until it is asked for. A click opens a scene.
+    /// Shows a list of the scenes of some groups, which is closed until the user opens it. A click opens a scene.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
@@ -69,7 +69,7 @@ impl Gallery {
         shown.response
     }
 
-    /// Pictures in another style are drawn again.
+    /// Discards the pictures if the style has changed, so that they are drawn again.
     fn follow_style(&mut self, ui: &Ui, preferences: &Preferences) {
         let style = Style {
             scale_bar: false,
@@ -83,7 +83,7 @@ impl Gallery {
         }
     }
 
-    /// One scene: its picture and its name.
+    /// Shows one scene: its picture and its name.
     fn entry(
         &mut self,
         ui: &mut Ui,
@@ -113,7 +113,7 @@ impl Gallery {
         response.on_hover_text(info.summary).on_hover_cursor(CursorIcon::PointingHand)
     }
 
-    /// Paints a scene's picture. Of those that are not there yet, one a frame is drawn.
+    /// Paints the picture of a scene. If pictures are missing, one picture per frame is drawn.
     fn paint(&mut self, ui: &Ui, index: usize, info: &SceneInfo, cell: Rect) {
         let Self { style: Some(style), pictures, drawn_in } = self else { return };
         if pictures[index].is_none() {
@@ -123,7 +123,7 @@ impl Gallery {
                 return;
             }
             let size = (PICTURE * ui.pixels_per_point()).round();
-            // A scene that cannot be drawn keeps its name.
+            // If a scene cannot be drawn, only its name is shown.
             let image = picture(info, style, [size.x as u32, size.y as u32])
                 .unwrap_or_else(|_| ColorImage::filled([1, 1], Color32::TRANSPARENT));
             pictures[index] = Some(ui.ctx().load_texture(info.name, image, TextureOptions::LINEAR));
@@ -135,7 +135,7 @@ impl Gallery {
     }
 }
 
-/// A scene as it starts, so many pixels large.
+/// Returns a picture of the initial state of a scene, `width` × `height` pixels.
 fn picture(info: &SceneInfo, style: &Style, [width, height]: [u32; 2]) -> Result<ColorImage> {
     let scene = (info.make)()?;
     let view = scene.view();
@@ -151,7 +151,7 @@ fn picture(info: &SceneInfo, style: &Style, [width, height]: [u32; 2]) -> Result
 mod tests {
     use super::*;
 
-    /// Empty, or one colour, is what a scene out of view would be.
+    /// If the scene were outside the picture, the picture would have only one colour.
     #[test]
     fn every_scene_is_seen_on_its_picture() {
         let style = Style { scale_bar: false, legend: false, ..Style::default() };

@@ -1,5 +1,5 @@
-//! Actions of the mouse in a world: it moves the view, pins grains and pulls them. With Shift it adds grains, removes
-//! them and draws walls.
+//! Actions of the mouse in a world (simulation): the mouse moves the view, pins grains and pulls grains. With Shift it
+//! adds grains, removes grains and moves walls.
 
 use egui::{
     Color32, DragValue, Event, InputState, PointerButton, Pos2, Rect, Response, RichText, Stroke,
@@ -16,33 +16,33 @@ use crate::render::Camera;
 use crate::sim::{Edit, GrainView, NEW_GRAIN_DIAMETERS, Pull, place_of};
 use crate::world::{Boundary, Disc, Edge};
 
-/// Distance at which the mouse catches a wall, points.
+/// Largest distance from the mouse at which a wall can be grabbed, points.
 const REACH: f32 = 8.0;
-/// Message for a wall that is drawn while time is paused.
+/// Message if the user tries to move a wall while the run is paused.
 const STANDS_STILL: &str = "Walls move only while time passes: press space, then drag on.";
 
-/// The grain or the wall that the mouse holds.
+/// The grain or wall that the user has grabbed with the mouse.
 #[derive(Default)]
 pub struct Grabbing {
-    /// The grain at the end of the mouse's spring.
+    /// The grain to which the mouse is tied by a spring.
     pub grabbed: Option<GrainRef>,
     grip: Option<Grip>,
 }
 
-/// A wall that the mouse holds.
+/// A wall that the user has grabbed with the mouse.
 #[derive(Clone, Copy, Debug)]
 struct Grip {
-    /// Index of the world.
+    /// Index of the simulation.
     pub world: usize,
     /// Index of the boundary.
     pub boundary: usize,
-    /// Vector from the reference point of the boundary to the point at which it is held, m.
+    /// Vector from the reference point of the boundary to the grabbed point, m.
     pub from_place: DVec2,
-    /// Last position that was sent to the solver thread, m.
+    /// Last position that was sent to the solver's thread, m.
     pub sent: Option<DVec2>,
 }
 
-/// Place of a world in the window.
+/// Rectangle, camera and data of a simulation in the window.
 pub(super) struct WorldCell<'a> {
     pub index: usize,
     pub cell: Rect,
@@ -53,7 +53,7 @@ pub(super) struct WorldCell<'a> {
 }
 
 impl WorldCell<'_> {
-    /// Position of the mouse if it hovers over this world or was pressed here.
+    /// Returns the position of the mouse if the mouse is over this simulation or its button was pressed here.
     fn pointer(&self) -> Option<Pos2> {
         self.response.hover_pos().or_else(|| self.response.interact_pointer_pos())
     }
@@ -85,7 +85,8 @@ impl WorldCell<'_> {
         Some(GrainRef { world: self.index, grain })
     }
 
-    /// Draws rings around the grains that are hovered, pinned and grabbed.
+    /// Draws rings around the pinned grain and the grains in contact with it, the grabbed grain, and the grain under
+    /// the mouse.
     pub(super) fn marks(&self, ui: &Ui, mouse: &Grabbing, context: &PanelContext<'_>) {
         let painter = ui.painter().with_clip_rect(self.cell);
         let accent = theme::accent(ui.visuals().dark_mode);
@@ -126,7 +127,7 @@ impl WorldCell<'_> {
         }
     }
 
-    /// Carries out the actions of the mouse.
+    /// Performs the actions of the mouse.
     pub(super) fn act(&self, ui: &Ui, mouse: &mut Grabbing, context: &mut PanelContext<'_>) {
         let (response, pointer) = (self.response, self.pointer());
         let changes = ui.input(has_shift);
@@ -184,7 +185,7 @@ impl WorldCell<'_> {
         }
     }
 
-    /// Moves the held wall to the mouse, or releases it.
+    /// Moves the grabbed wall to the mouse, or releases the wall.
     fn draw_wall(&self, mouse: &mut Grabbing, context: &mut PanelContext<'_>) {
         let Some(mut grip) = mouse.grip else { return };
         if !self.response.dragged() {
@@ -209,7 +210,7 @@ impl WorldCell<'_> {
         }
     }
 
-    /// Removes the grain under the mouse, or adds one if no grain is there.
+    /// Removes the grain under the mouse, or adds a grain if there is no grain.
     fn change_grains(&self, context: &mut PanelContext<'_>) {
         let Some(at) = self.pointer() else { return };
         context.run.selected = self.index;
@@ -235,7 +236,7 @@ impl WorldCell<'_> {
         Some(Grip { world: self.index, boundary, from_place, sent: None })
     }
 
-    /// The wall within reach of the mouse.
+    /// Returns the index of the wall nearest to the mouse, if the wall is close enough to be grabbed.
     fn boundary_at(&self, at: Pos2) -> Option<usize> {
         let point = self.to_world(at);
         let boundaries = self.frame.snapshot.surroundings.boundaries.iter();
@@ -244,7 +245,7 @@ impl WorldCell<'_> {
         near.min_by(|one, other| one.1.total_cmp(&other.1)).map(|(index, _)| index)
     }
 
-    /// With Shift held, shows what a click would add or remove and which wall a drag would draw.
+    /// While Shift is pressed, shows which grain a click would add or remove, or which wall the mouse would move.
     fn marks_of_hand(&self, ui: &Ui, grip: Option<Grip>, preferences: &Preferences, at: Pos2) {
         let painter = ui.painter().with_clip_rect(self.cell);
         let dark = ui.visuals().dark_mode;
@@ -281,8 +282,8 @@ impl WorldCell<'_> {
     }
 }
 
-/// Goal of a wall whose reference point is drawn to a point. A plane moves only along its normal, because a motion in
-/// its own plane changes nothing.
+/// Returns the target position of the wall's reference point if the user moves this point to `to`, m. A plane moves
+/// only along its normal, because a motion in its own plane changes nothing.
 fn goal(boundary: &Boundary, to: DVec2) -> DVec2 {
     match boundary {
         Boundary::HalfSpace { point, normal } | Boundary::Piston { point, normal, .. } => {
@@ -330,8 +331,9 @@ pub(super) fn show(ui: &mut Ui, preferences: &mut Preferences) {
     });
 }
 
-/// True if Shift was held when the mouse was pressed or released last in this frame; without such an event, if it is held
-/// at the end of the frame. In a long frame, Shift is often released before the frame ends.
+/// True if Shift was pressed when a mouse button was last pressed or released in this frame. Without such an event,
+/// true if Shift is pressed at the end of the frame. The time of the event counts, because in a long frame the user
+/// often releases Shift before the frame ends.
 fn has_shift(input: &InputState) -> bool {
     let of_mouse = input.events.iter().rev().find_map(|event| match event {
         Event::PointerButton { modifiers, .. } => Some(modifiers.shift),

@@ -1,4 +1,5 @@
-//! The pinned grain, on its page with its contacts, or in a corner of the scene.
+//! The state and contacts of the pinned grain (the grain that the user selected), in the sidebar or in a corner of the
+//! scene.
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -9,7 +10,7 @@ use crate::live::WorldFrame;
 use crate::render::numbers::si_prefix;
 use crate::sim::Snapshot;
 
-/// Shows the pinned grain with its contacts, if there is one.
+/// Shows the pinned grain with its contacts, if a grain is pinned.
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     let Some(pinned) = run.pinned else { return };
     let Some(world) = run.frame.worlds.get(pinned.world) else { return };
@@ -22,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     ui.separator();
 }
 
-/// Shows the pinned grain in a corner of the scene if its page is not open.
+/// Shows the pinned grain in a corner of the scene, if the page of the sidebar that shows it is not open.
 pub(super) fn show_over_scene(ui: &Ui, context: &mut PanelContext<'_>) {
     if context.preferences.page == Some(Page::Pile) {
         return;
@@ -49,7 +50,7 @@ pub(super) fn show_over_scene(ui: &Ui, context: &mut PanelContext<'_>) {
 /// Speed below which a grain counts as resting, m/s. Slower motion is an error of the solver.
 const AT_REST: f64 = 1e-8;
 
-/// The velocity, m/s, or 0 if the grain rests.
+/// Returns the velocity, m/s, or 0 if the grain rests.
 pub(super) fn unless_at_rest(velocity: f64) -> f64 {
     if velocity.abs() < AT_REST { 0.0 } else { velocity }
 }
@@ -70,7 +71,7 @@ pub(super) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
         row("radius", format!("{:.3} d", grain.radius / diameter));
         let speed = |along: f64| si(unless_at_rest(along), "m/s");
         row("velocity", format!("{}, {}", speed(grain.velocity.x), speed(grain.velocity.y)));
-        // Avoids "-0.000".
+        // Avoids the text "-0.000".
         row("spin", format!("{:.3} rad/s", grain.angular_velocity).replace("-0.000", "0.000"));
         row("overlap", format!("{:.3} % of d", 100.0 * grain.overlap / diameter));
         row("force Σ|N|", si(grain.force, "N"));
@@ -78,7 +79,7 @@ pub(super) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
     });
 }
 
-/// Grains in contact with a grain.
+/// Returns the indices of the grains that are in contact with a grain.
 pub(super) fn partners(snapshot: &Snapshot, index: usize) -> impl Iterator<Item = usize> {
     let number = index as u32;
     snapshot.contacts.iter().filter_map(move |contact| match contact.other_grain? {
@@ -119,15 +120,15 @@ fn contacts(ui: &mut Ui, world: &WorldFrame, index: usize) {
     area.show(ui, |ui| grid.show(ui, rows));
 }
 
-/// Larger numbers are written with an exponent.
+/// Numbers above this limit are written with an exponent.
 const MOST_WRITTEN: f64 = 1e4;
 
-/// Formats a number with three decimals, or with an exponent if it is large.
+/// Formats a number with three decimals, or with an exponent if the number is large.
 pub(super) fn compact(number: f64) -> String {
     if number.abs() < MOST_WRITTEN { format!("{number:.3}") } else { format!("{number:.2e}") }
 }
 
-/// Formats a number with four digits and a unit with a prefix.
+/// Formats a number with four digits and a unit with an SI prefix.
 pub(super) fn si(value: f64, unit: &str) -> String {
     let (prefix, factor) = si_prefix(value);
     let number = value / factor;

@@ -1,4 +1,4 @@
-//! The help overlay.
+//! The help overlay, which lists keys and mouse actions.
 
 use egui::{Align2, RichText, Ui};
 
@@ -37,7 +37,7 @@ const MOUSE: [(&str, &str); 9] = [
 /// Height of the overlay's frame and title, points.
 const FRAME: f32 = 70.0;
 
-/// Shows the overlay if it is open.
+/// Shows the help overlay if it is open.
 pub(super) fn show(ui: &mut Ui, is_open: &mut bool) {
     if !*is_open {
         return;
@@ -49,7 +49,7 @@ pub(super) fn show(ui: &mut Ui, is_open: &mut bool) {
         .open(is_open)
         .show(ui.ctx(), |ui| {
             ui.set_max_width(440.0);
-            // In a low window the text can be scrolled.
+            // If the window is too low, the text can be scrolled.
             let room = ui.ctx().content_rect().height() - FRAME;
             egui::ScrollArea::vertical().max_height(room).show(ui, contents);
         });

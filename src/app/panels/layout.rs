@@ -15,7 +15,7 @@ use crate::live::Command;
 
 /// Width of the sidebar, points.
 const SIDEBAR: f32 = 364.0;
-/// Below this width, points, a page of the sidebar takes the whole window, as on a telephone.
+/// Width of the window below which a page of the sidebar fills the whole window, as on a telephone, points.
 const NARROW: f32 = 600.0;
 /// Height of the plots, points.
 const PLOTS: f32 = 150.0;
@@ -23,14 +23,14 @@ const PLOTS: f32 = 150.0;
 /// All panels of the window.
 #[derive(Default)]
 pub struct Panels {
-    /// The middle of the window.
+    /// The panel in the middle of the window, which shows the simulations.
     pub scene: ScenePanel,
     pub(crate) lesson_bar: LessonBar,
     pub(crate) pages: Pages,
-    /// True while the list of keys is open.
+    /// True while the help overlay is open.
     pub(crate) help: bool,
     pub(crate) trust: TrustPanel,
-    /// The page that was open in the frame before.
+    /// The page that was open in the previous frame.
     page: Option<Page>,
 }
 
@@ -38,7 +38,7 @@ impl Panels {
     /// Draws all panels.
     pub(crate) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         fill(ui, ui.max_rect(), ui.visuals().panel_fill);
-        // A page that is opened takes the place of the answer on trust.
+        // If the user opens a page, the page replaces the panel "Can I trust this?".
         let page = context.preferences.page;
         self.trust.is_open &= page.is_none() || page == self.page;
         self.page = page;
@@ -105,7 +105,7 @@ impl Panels {
         bar(Panel::bottom("front")).show(ui, |ui| front::show(ui, context));
     }
 
-    /// The answer to "Can I trust this?" while it is open, else the pages.
+    /// Shows the panel "Can I trust this?" if it is open, otherwise the pages.
     fn side(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         match self.trust.is_open {
             true => self.trust.show(ui, context),
@@ -131,7 +131,7 @@ impl Panels {
         let Some(page) = context.preferences.page else { return };
         let area = ScrollArea::vertical().id_salt(page.title()).auto_shrink([false, false]);
         area.show(ui, |ui| {
-            // The scroll bar floats over the right edge.
+            // The scroll bar covers the right edge, so the contents have a margin there.
             let frame = Frame::new().inner_margin(Margin { right: 8, ..Margin::ZERO });
             frame.show(ui, |ui| self.pages.show(ui, context, page));
         });
@@ -150,7 +150,7 @@ fn sidebar_frame() -> Frame {
     Frame::new().inner_margin(Margin { left: 10, right: 4, top: 8, bottom: 4 })
 }
 
-/// The button that shows the bars again.
+/// Shows the button that shows the hidden bars again.
 fn unfold(ui: &Ui, context: &mut PanelContext<'_>) {
     let area = egui::Area::new(egui::Id::unique("unfold"));
     area.anchor(egui::Align2::RIGHT_TOP, [-8.0, 8.0]).show(ui.ctx(), |ui| {
@@ -160,7 +160,7 @@ fn unfold(ui: &Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Shows the progress of a load and the button that cancels it.
+/// Shows the progress of a load and the button that cancels the load.
 fn waiting(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let Some(progress) = context.run.frame.loading.clone() else { return };
     let area = egui::Area::new(egui::Id::unique("loading"));

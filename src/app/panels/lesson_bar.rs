@@ -1,4 +1,4 @@
-//! The bar above the scene: the list of lessons and the text of the present one.
+//! The bar above the scene, with the list of lessons and the text of the present lesson.
 
 use egui::{Align, Align2, Button, ComboBox, Label, Layout, Rect, RichText, Ui};
 
@@ -11,12 +11,12 @@ use crate::app::theme;
 use crate::app::watched_run::WatchedRun;
 use crate::sim::Settings;
 
-/// The bar above the scene.
+/// The bar above the scene, with the present lesson.
 #[derive(Default)]
 pub(crate) struct LessonBar {
-    /// The number of starts before that of the present lesson.
+    /// Number of initial states that were loaded before the present lesson.
     pub loads_before: u64,
-    /// True while the last page is open.
+    /// True while the summary of the lessons is open.
     pub shows_summary: bool,
 }
 
@@ -47,7 +47,7 @@ impl LessonBar {
         }
     }
 
-    /// The buttons, from the right: fold the bars, leave the lessons, go on, go back.
+    /// Shows the buttons, from right to left: hide the bars, leave the lessons, next lesson, previous lesson.
     fn ways(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>, at: usize) {
         let dark = ui.visuals().dark_mode;
         let hint = "Fold the bars: the scene is the window (B)";
@@ -87,7 +87,7 @@ impl LessonBar {
         });
     }
 
-    /// True if worlds of a lesson are no longer those that it speaks of.
+    /// True if the user has changed the simulations of a lesson, so that its texts are no longer right.
     fn has_other_worlds(&self, run: &WatchedRun, lesson: &Lesson) -> bool {
         let Some(start) = &run.frame.start else { return false };
         let worlds = (lesson.worlds)(*start.settings());
@@ -103,7 +103,7 @@ impl LessonBar {
     }
 }
 
-/// The question of a lesson and its two answers; once the run has ended, its result instead.
+/// Shows the question of a lesson and its two answers or, when the run has decided the question, the result.
 fn prediction(
     ui: &mut Ui,
     context: &mut PanelContext<'_>,
@@ -158,7 +158,8 @@ fn prediction(
     }
 }
 
-/// The last page: the results of the predictions, what the lessons showed, and a link to share.
+/// Shows the summary of the lessons: the results of the predictions, what each lesson showed, and a button that copies
+/// a link.
 fn summary(ui: &Ui, context: &mut PanelContext<'_>, is_open: &mut bool) {
     let predictions = context.preferences.lesson.predictions.clone();
     let known = predictions.values().filter_map(|prediction| prediction.was_right);
@@ -197,7 +198,7 @@ fn summary(ui: &Ui, context: &mut PanelContext<'_>, is_open: &mut bool) {
         });
 }
 
-/// Lights the controls that the lesson asks for next, where all of the window is drawn.
+/// Highlights the controls that the user should use next in the lesson.
 pub(super) fn light(ui: &Ui, context: &PanelContext<'_>) {
     if !context.touring || context.run.frame.loading.is_some() {
         return;
@@ -212,11 +213,11 @@ pub(super) fn light(ui: &Ui, context: &PanelContext<'_>) {
     }
 }
 
-/// What is said in place of a lesson's sentences where they are no longer true.
+/// Text that replaces the texts of a lesson when the user has changed its simulations.
 const OTHER_WORLDS: &str = "A number was changed: these are no longer the worlds of the lesson. The list above has \
     it as it was.";
 
-/// All lessons, to be gone to; the one that was left is marked.
+/// Shows the list of all lessons; the present lesson is marked.
 fn list(ui: &mut Ui, context: &mut PanelContext<'_>, at: usize) {
     let text = match context.touring {
         true => format!("Lesson {} of {}", at + 1, LESSONS.len()),

@@ -1,5 +1,5 @@
-//! The panels of the window, one per file. A panel is a function of the user interface and of the context that panels
-//! share. It owns the state that it keeps between two frames.
+//! The panels of the window, one per file. A panel is a function of the user interface and of the context that all
+//! panels share. A panel owns the state that it keeps between two frames.
 
 #![deny(dead_code, reason = "a panel that nothing shows would not be missed")]
 

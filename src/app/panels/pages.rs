@@ -22,14 +22,14 @@ pub(crate) struct Pages {
 }
 
 impl Pages {
-    /// Discards the measurement of a step, because its run no longer exists.
+    /// Discards the measured times of a step, because the run of that step no longer exists.
     pub(crate) fn forget_race(&mut self) {
         self.race = None;
     }
 
     /// Shows a page.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>, page: Page) {
-        // The world's number, not its name: a long name would widen the panel.
+        // The text contains the number of the world and not its name, because a long name would widen the panel.
         if context.run.compares() && matches!(page, Page::Solver | Page::Save) {
             let text = format!("For world {}", context.run.selected + 1);
             ui.label(RichText::new(text).strong());
@@ -73,7 +73,7 @@ impl Pages {
 }
 
 impl Pages {
-    /// Settings, scenes and comparisons for those who study solvers.
+    /// Shows settings, scenes and comparisons for users who study solvers.
     fn expert(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         solver::expert(ui, context.run);
         ui.separator();
@@ -93,7 +93,7 @@ impl Pages {
     }
 }
 
-/// Shows a panel in a fold, so that it is computed only if the user opens it.
+/// Shows a panel that the user can open and close. A closed panel is not computed.
 fn folded(ui: &mut Ui, title: &'static str, show: impl FnOnce(&mut Ui)) {
     ui.separator();
     CollapsingHeader::new(title).show_unindented(ui, show);

@@ -28,7 +28,8 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     derived(ui, run, &settings);
 }
 
-/// Shows the choice of the stepper. Remedies that the new stepper does not take are switched off.
+/// Shows the choice of the stepper. Remedies (corrections of known weaknesses of a step) that the new stepper does not
+/// support are switched off.
 fn stepper_switch(ui: &mut Ui, settings: &mut Settings) {
     let before = settings.stepper;
     ui.horizontal(|ui| {
@@ -52,7 +53,7 @@ fn stepper_switch(ui: &mut Ui, settings: &mut Settings) {
     }
 }
 
-/// Shows the derived quantities.
+/// Shows quantities that are derived from the parameters, such as the cohesive time.
 fn derived(ui: &mut Ui, run: &WatchedRun, settings: &Settings) {
     let parameters = &settings.parameters;
     let Some(world) = run.world() else { return };

@@ -1,4 +1,4 @@
-//! Panel: measures of the run against simulated time.
+//! Panel: plots of measured quantities of the run against simulated time.
 
 use egui::{Color32, RichText, Ui};
 
@@ -11,16 +11,16 @@ use crate::app::glossary::explained;
 use crate::app::plots::{LEAST_WIDTH, PlotData, WorldCurve, draw, draw_with_key};
 use crate::app::preferences::Preferences;
 use crate::app::theme;
-use crate::app::time_step_figure::TimeStepFigure;
+use crate::app::time_step_figure::{TimeStepFigure, without_time_step};
 use crate::app::titles::title_against;
 use crate::app::watched_run::WatchedRun;
 use crate::live::Command;
 use crate::number::millis_text;
 use crate::output::write_file;
-use crate::sim::{Observables, QUANTITIES, Quantity};
+use crate::sim::{Observables, QUANTITIES, Quantity, Settings};
 use crate::study::png::write_png;
 
-/// Fraction of the width that the plot of slump against Δt gets.
+/// Fraction of the width for the plot of slump against Δt.
 const FIGURE_PART: f32 = 0.4;
 
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -42,17 +42,22 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// The plot of slump against Δt, if slump is plotted.
+/// Returns the plot of slump against Δt, if slump is plotted. In a lesson it has only the settings of the lesson.
 fn figure(ui: &Ui, context: &PanelContext<'_>) -> Option<TimeStepFigure> {
     let mut shown = QUANTITIES.iter().filter(|it| is_shown(context.run, context.preferences, it));
     let slump_is_shown = shown.any(|quantity| quantity.name == "slump");
-    let released = context.ensemble.released(&context.run.frame);
     let worlds = context.run.frame.worlds.iter();
     let worlds: Vec<_> = worlds.map(|world| world.controls.settings).collect();
+    let is_of_lesson = |settings: &Settings| {
+        let is_like = |world| without_time_step(world) == without_time_step(settings);
+        !context.touring || worlds.iter().any(is_like)
+    };
+    let released = context.ensemble.released(&context.run.frame);
+    let released = released.filter(|(settings, _)| is_of_lesson(settings));
     TimeStepFigure::new(released, &worlds, ui.visuals().dark_mode).filter(|_| slump_is_shown)
 }
 
-/// Shows the buttons that save or clear the figure, from right to left.
+/// Shows the buttons that save or clear the plot of slump against Δt, from right to left.
 fn figure_buttons(ui: &mut Ui, context: &mut PanelContext<'_>, figure: &TimeStepFigure) {
     let hint = "Remove the points, except those of the visible piles.";
     let clear = ui.small_button("Clear").on_hover_text(hint);
@@ -114,7 +119,7 @@ fn data(ui: &Ui, context: &PanelContext<'_>) -> PlotData {
     }
 }
 
-/// The worlds of the earlier run.
+/// Returns the curves of the earlier run.
 fn ghosts(context: &PanelContext<'_>) -> Vec<WorldCurve> {
     let worlds = context.ghost().map_or(&[][..], |run| &run.worlds).iter();
     let pairs = worlds.zip(&context.run.frame.worlds).map(|(before, now)| {
@@ -129,13 +134,13 @@ fn ghosts(context: &PanelContext<'_>) -> Vec<WorldCurve> {
     pairs.collect()
 }
 
-/// True if a quantity is plotted: the user chose it, or no chosen quantity has a meaning in this scene.
+/// True if a quantity is plotted: the user chose it, or the user chose no quantity that is meaningful in this scene.
 fn is_shown(run: &WatchedRun, preferences: &Preferences, quantity: &Quantity<Observables>) -> bool {
     let is_chosen = |quantity: &Quantity<Observables>| {
         means_something(run, quantity)
             && preferences.quantities.iter().any(|name| name == quantity.name)
     };
-    // The quantity of an experiment leaves room for one plot.
+    // If an experiment has a main quantity, there is space for only one more plot.
     let is_default = match has_quantity(&run.frame) {
         true => quantity.name == "energy",
         false => means_something(run, quantity),
@@ -143,12 +148,12 @@ fn is_shown(run: &WatchedRun, preferences: &Preferences, quantity: &Quantity<Obs
     is_chosen(quantity) || (is_default && !QUANTITIES.iter().any(is_chosen))
 }
 
-/// True if a quantity has a meaning in this scene.
+/// True if a quantity is meaningful in this scene.
 fn means_something(run: &WatchedRun, quantity: &Quantity<Observables>) -> bool {
     quantity.name != "slump" || run.slumps()
 }
 
-/// Shows the line above the plots: the button that folds them, and the result of other piles.
+/// Shows the line above the plots: the button that shows or hides the plots, and the result for other initial states.
 pub(super) fn header(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let text = if context.preferences.plots { "▾ Plot" } else { "▸ Plot" };
@@ -166,7 +171,7 @@ pub(super) fn header(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// A sentence on the effect of the last change of settings on other piles, at the visible moment.
+/// Returns a sentence on the effect of the last change of settings on other initial states, at the displayed moment.
 fn effect(context: &PanelContext<'_>) -> Option<String> {
     let frame = &context.run.frame;
     let mut worlds = context.ghost()?.worlds.iter().zip(&frame.worlds);
@@ -209,7 +214,7 @@ pub(super) fn choices(ui: &mut Ui, context: &mut PanelContext<'_>) {
 /// Shows the buttons that save the plots, and the spacing of the plotted steps.
 fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let stem = format!("{}-curves", context.run.file_stem());
-    // A browser version must not wait for a graphics device.
+    // The browser version must not wait for a graphics device.
     if !IN_BROWSER
         && ui.button("Plot as PNG").on_hover_text("Save the plots as a picture.").clicked()
     {

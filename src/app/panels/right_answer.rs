@@ -1,4 +1,4 @@
-//! The right answer of a scene that is made to break methods, and the verdict on each world.
+//! The known right answer of a stability scene (a scene that is hard for solvers), and the verdict on each simulation.
 
 use egui::{RichText, Ui};
 
@@ -9,10 +9,10 @@ use crate::scene::built_in;
 use crate::sim::Settings;
 use crate::study::stability::Challenge;
 
-/// Settings that the right answer depends on. The others belong to the method.
+/// Settings on which the right answer depends. All other settings belong to the numerical method.
 const PHYSICS: [&str; 6] = ["bond", "bond-acceleration", "tilt", "rho", "mu", "cone"];
 
-/// Shows the right answer and the verdicts; nothing for other scenes.
+/// Shows the right answer and the verdicts. Shows nothing for scenes without a known right answer.
 pub(super) fn show(ui: &mut Ui, run: &WatchedRun) {
     let Some(start) = run.frame.start.as_ref().filter(|start| start.tally.steps == 0) else {
         return;
@@ -41,7 +41,7 @@ pub(super) fn show(ui: &mut Ui, run: &WatchedRun) {
     });
 }
 
-/// A text with a mark that says if it is right.
+/// Returns a text with a mark that shows whether the result is right.
 pub(super) fn marked(ui: &Ui, is_right: bool, text: &str) -> RichText {
     let dark = ui.visuals().dark_mode;
     let (mark, colour) =

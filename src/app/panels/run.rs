@@ -13,17 +13,19 @@ use crate::config::{Config, SceneSource};
 use crate::live::{Command, Controls, PastRun};
 use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Sizes};
 
-/// Scenes that are made to break methods are for experts (the page Law, solver).
+/// Groups of scenes in the gallery. Stability scenes are not among them, because they are for experts (page "Law,
+/// solver").
 const SCENE_GROUPS: [SceneGroup; 2] = [SceneGroup::Paper, SceneGroup::Experiments];
-/// Largest number of grains that the panel offers. The command line takes more.
+/// Largest number of grains that the panel offers. The command line allows more.
 const MOST_GRAINS: usize = 20_000;
 
-/// Number of grains from which the panel states the cost of a pile. The cost was measured at this number
-/// (`docs/runs.md`, new piles), s of one core.
+/// Number of grains from which on the panel states the computing time of a pile.
 const LARGE: usize = 2_000;
+/// Computing times of the deposition of [`LARGE`] grains, s of one core, with the two methods (`docs/runs.md`, new
+/// piles).
 const RAIN_SECS: f64 = 116.0;
 const ROLL_SECS: f64 = 0.2;
-/// Time of a solved step of a slumping pile with [`LARGE`] grains, ms.
+/// Computing time of a solved step of a slumping pile with [`LARGE`] grains, ms.
 const STEP_MILLIS: f64 = 60.0;
 /// Methods of deposition, with their names and hints.
 const DEPOSITIONS: [(Deposition, &str, &str); 2] = [
@@ -90,7 +92,7 @@ fn scene_box(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery)
     }
 }
 
-/// Shows the fields of a new pile.
+/// Shows the fields for the settings of a new pile.
 fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let id = egui::Id::unique("new pile");
     let typed = ui.data(|data| data.get_temp::<NewPile>(id));
@@ -100,7 +102,7 @@ fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let grains = egui::DragValue::new(&mut pile.grains).range(1..=MOST_GRAINS).speed(2.0);
         let grains = ui.add(grains).labelled_by(label.id);
         if grains.on_hover_text("Number of grains of a new pile.").changed() {
-            // In a box of this width, this number of grains makes a pile as steep as the paper's.
+            // In a box of this width, this number of grains becomes a pile as steep as the paper's pile.
             let paper = NewPile::default();
             let scale = (pile.grains as f64 / paper.grains as f64).sqrt();
             pile.box_width_in_diameters = (paper.box_width_in_diameters * scale).round();
@@ -134,9 +136,10 @@ fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.data_mut(|data| data.insert_temp(id, pile));
 }
 
-/// Text on the cost of a large pile before its release, and of its steps afterwards.
+/// Returns a text on the computing time of a large pile: of its deposition, and of each step after that.
 fn cost(grains: usize) -> String {
-    // The steps of a rain last as long as its fall, which grows as the root of the height.
+    // The number of steps of a deposition is proportional to the time of fall, which grows as the square root of the
+    // height.
     let part = grains as f64 / LARGE as f64;
     let minutes = (RAIN_SECS * part.powf(1.25) / 60.0).ceil();
     let secs = ROLL_SECS * part.powf(1.8);
@@ -147,7 +150,7 @@ fn cost(grains: usize) -> String {
     )
 }
 
-/// Configuration of a new pile with the present settings.
+/// Returns the configuration of a new pile with the present settings.
 fn pile_like_this(run: &WatchedRun, pile: &NewPile) -> Config {
     let config = run.config();
     let NewPile { grains, seed, box_width_in_diameters, deposition, sizes } = pile.clone();
@@ -171,7 +174,8 @@ fn pile_like_this(run: &WatchedRun, pile: &NewPile) -> Config {
 /// Width of the name fields, points.
 const NAME_WIDTH: f32 = 60.0;
 
-/// Shows the earlier runs, if there are any: a button for each, and a box that shows the newest as a ghost.
+/// Shows the earlier runs, if there are any: a button for each run, and a checkbox that shows the newest earlier run as
+/// a ghost (grey outlines).
 pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
     if context.run.frame.past.is_empty() {
         return;
@@ -209,8 +213,8 @@ pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// The field for the name of a run. It stores the typed text until it loses the focus, because the name returns from
-/// the solver thread a step later.
+/// Shows the field for the name of a run. The field stores the typed text until it loses the focus, because the name
+/// returns from the solver's thread one step later.
 fn name_field(ui: &mut Ui, run: &mut WatchedRun, number: Option<u64>, given: &str) {
     let id = egui::Id::unique(("name of run", number));
     let typed = ui.data(|data| data.get_temp(id));
@@ -230,7 +234,8 @@ fn name_field(ui: &mut Ui, run: &mut WatchedRun, number: Option<u64>, given: &st
     response.on_hover_text("A name for this run. Sessions keep it.");
 }
 
-/// The settings of an earlier run: of one world all sliders and the slump, of several worlds the differences.
+/// Returns the settings of an earlier run: if it has one simulation, the values of all main sliders and the slump; if
+/// it has several simulations, their differences.
 fn title(run: &PastRun, slumps: bool) -> String {
     let controls: Vec<Controls> = run.worlds.iter().map(|world| world.controls).collect();
     let first = title_among(&controls, 0);

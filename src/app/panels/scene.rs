@@ -1,4 +1,4 @@
-//! The middle of the window: the worlds and the mouse, or the progress of a new pile.
+//! The middle of the window: the simulations and the actions of the mouse, or the progress of a new pile.
 
 use egui::{Align2, Color32, FontId, Rect, Sense, Stroke, Ui, Vec2};
 use glam::DVec2;
@@ -14,30 +14,30 @@ use crate::app::titles::title_against;
 use crate::app::watched_run::WatchedRun;
 use crate::render::{Legend, ScaleBar, Style, scene_picture};
 
-/// Height of the title of a compared world, points.
+/// Height of the title of a compared simulation, points.
 const TITLE_HEIGHT: f32 = 22.0;
-/// Largest number of outlines of a ghost. More would hide the present grains.
+/// Largest number of grains whose outlines are drawn for the earlier run. More outlines would hide the present grains.
 const MOST_OUTLINES: usize = 3_000;
-/// Space between compared worlds, points.
+/// Space between compared simulations, points.
 const GAP: f32 = 6.0;
 
-/// The worlds and the mouse.
+/// The panel that shows the simulations and handles the mouse.
 #[derive(Default)]
 pub struct ScenePanel {
-    /// The grain or the wall that the mouse holds.
+    /// The grain or wall that the user has grabbed with the mouse.
     pub mouse: Grabbing,
     pub(crate) legend: LegendCache,
-    /// Per world.
+    /// Recently broken bonds, one entry per simulation.
     breaking: Vec<BreakingBonds>,
 }
 
 impl ScenePanel {
-    /// Drops a grabbed grain that no longer exists.
+    /// Releases a grabbed grain that no longer exists.
     pub(crate) fn follow(&mut self, run: &WatchedRun) {
         self.mouse.grabbed = self.mouse.grabbed.filter(|&grain| run.has(grain));
     }
 
-    /// Shows all worlds in the remaining space.
+    /// Shows all simulations in the remaining space.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let area = ui.available_rect_before_wrap();
         ui.allocate_rect(area, Sense::hover());
@@ -79,7 +79,7 @@ impl ScenePanel {
         }
     }
 
-    /// Shows one world with its labels and carries out the actions of the mouse.
+    /// Shows one simulation with its labels and performs the actions of the mouse.
     fn world(
         &mut self,
         ui: &mut Ui,
@@ -107,7 +107,7 @@ impl ScenePanel {
             let colour = theme::color32(style.theme.palette().pull);
             self.breaking[index].show(ui, context.run.frame.loads, &place, colour);
         } else {
-            // Bonds that break meanwhile do not flash later.
+            // Bonds that break while forces are not drawn do not flash later.
             self.breaking[index] = BreakingBonds::default();
         }
         place.ghost(ui, context);
@@ -120,7 +120,7 @@ impl ScenePanel {
     }
 }
 
-/// Rectangles of `count` worlds, in rows of up to three.
+/// Returns the rectangles of `count` simulations, in rows of up to three.
 fn cells(area: Rect, count: usize) -> Vec<Rect> {
     let columns = columns(count).max(1);
     let rows = count.div_ceil(columns);
@@ -135,7 +135,7 @@ fn cells(area: Rect, count: usize) -> Vec<Rect> {
 }
 
 impl WorldCell<'_> {
-    /// Draws the same world of the earlier run at the same simulated time, and a label with its settings.
+    /// Draws the same simulation of the earlier run at the same simulated time, and a label with its settings.
     fn ghost(&self, ui: &Ui, context: &PanelContext<'_>) {
         let Some(run) = context.ghost() else { return };
         let Some(world) = run.worlds.get(self.index) else { return };
@@ -200,7 +200,7 @@ impl WorldCell<'_> {
     }
 }
 
-/// Shows a pile that is being deposited in place of the worlds. Returns false if there is nothing to show.
+/// Shows a pile during its deposition instead of the simulations. Returns false if no pile is being deposited.
 fn show_making(
     ui: &Ui,
     context: &mut PanelContext<'_>,
@@ -211,8 +211,8 @@ fn show_making(
     let preview = context.run.frame.loading.as_ref().and_then(|it| it.preview.clone());
     let Some(preview) = preview else { return false };
     let [lower, upper] = preview.view;
-    // Forces and velocities of a deposition are not part of the run. The scale bar would change while the grains come
-    // down.
+    // Forces and velocities during a deposition do not belong to the run. The scale bar would change, because the view
+    // shrinks while the grains fall.
     let style = Style {
         show_forces: false,
         show_velocities: false,
@@ -227,14 +227,15 @@ fn show_making(
     true
 }
 
-/// Length of the arrow, points.
+/// Length of the arrow of gravity, points.
 const LENGTH: f32 = 34.0;
-/// Distance of the arrow from the upper right corner, points.
+/// Distance of the arrow of gravity from the upper right corner, points.
 const MARGIN: f32 = 30.0;
-/// Relative deviation from straight down below which gravity needs no arrow.
+/// Largest ratio of the horizontal to the total acceleration of gravity at which gravity counts as vertical and needs
+/// no arrow.
 const STRAIGHT: f64 = 1e-9;
 
-/// Draws an arrow for gravity, if the user wants one or if gravity is not straight down.
+/// Draws an arrow for gravity, if the user wants an arrow or if gravity does not point straight down.
 fn paint_gravity(ui: &Ui, context: &PanelContext<'_>, world: usize, cell: Rect) {
     let shows = |gravity: &DVec2| {
         *gravity != DVec2::ZERO && (context.preferences.gravity || is_tilted(*gravity))
@@ -248,7 +249,7 @@ fn paint_gravity(ui: &Ui, context: &PanelContext<'_>, world: usize, cell: Rect) 
     let stroke = Stroke::new(1.8, ink);
     let painter = ui.painter().with_clip_rect(cell);
     painter.arrow(middle - 0.5 * LENGTH * along, LENGTH * along, stroke);
-    // The letter is next to the arrow in any direction.
+    // The letter is beside the arrow, whatever the arrow's direction.
     let aside = middle + 12.0 * Vec2::new(along.y, -along.x);
     painter.text(aside, Align2::CENTER_CENTER, "g", FontId::proportional(13.0), ink);
 }

@@ -1,10 +1,11 @@
-//! Drawing style of the worlds, and their arrangement in rows.
+//! Drawing style of the worlds (simulations side by side), and their arrangement in rows.
 
 use crate::app::preferences::Preferences;
 use crate::app::watched_run::WatchedRun;
 use crate::render::{Style, Theme, automatic_range, force_reference, speed_reference};
 
-/// The style of the preferences in the window's theme, with one range for all worlds.
+/// Returns the style that the user chose, with the theme of the window. All simulations have the same scales of
+/// colours, forces and velocities.
 pub(super) fn shared_style(run: &WatchedRun, preferences: &Preferences, dark: bool) -> Style {
     let mut style = own_style(preferences, dark);
     if run.compares() {
@@ -21,13 +22,13 @@ pub(super) fn shared_style(run: &WatchedRun, preferences: &Preferences, dark: bo
     style
 }
 
-/// The style of the preferences in the window's theme.
+/// Returns the style that the user chose, with the theme of the window.
 pub(super) fn own_style(preferences: &Preferences, dark: bool) -> Style {
     let theme = if dark { Theme::Dark } else { Theme::Light };
     Style { theme, ..preferences.style.clone() }
 }
 
-/// Number of worlds in a row, of `count` worlds.
+/// Returns the number of simulations in a row, if there are `count` simulations.
 pub(super) fn columns(count: usize) -> usize {
     if count == 4 { 2 } else { count.min(3) }
 }

@@ -1,4 +1,4 @@
-//! Panel: the look of the scene, and saving pictures and films.
+//! Panel: the drawing style of the scene, and the saving of pictures and films.
 
 use std::path::PathBuf;
 
@@ -17,7 +17,7 @@ use crate::film::{Animation, VIDEO_RATES_HZ, check_ffmpeg};
 use crate::render::{ColourBy, Style, panel_size};
 use crate::study::png::write_png;
 
-/// Choices of the colours of grains, with their names.
+/// Quantities that the colours of grains can show, with their names.
 const COLOURS: [(ColourBy, &str); 6] = [
     (ColourBy::PaperGreys, "paper greys"),
     (ColourBy::Speed, "speed"),
@@ -27,14 +27,14 @@ const COLOURS: [(ColourBy, &str); 6] = [
     (ColourBy::Material, "material"),
 ];
 
-/// Duration of the GIF that one click saves, s.
+/// Duration of the GIF that the button "GIF of 5 s" saves, s.
 const SHORT_GIF_SECS: f64 = 5.0;
-/// Zoom of a presentation, and the zoom from which a window counts as presenting.
+/// Zoom factor of the window for a presentation, and zoom factor above which the window counts as presenting.
 const PRESENTATION_ZOOM: f32 = 2.0;
 const LEAST_PRESENTATION_ZOOM: f32 = 1.5;
 
-/// Makes text and controls twice as large for a projector, or of their usual size again. A presentation has no room for
-/// pages and plots beside the scene.
+/// Makes text and controls twice as large for a projector, or restores their usual size. Pages and plots are hidden,
+/// because they have no space beside the scene.
 pub(crate) fn present(context: &egui::Context, preferences: &mut Preferences) {
     let begins = !presents(context);
     context.set_zoom_factor(if begins { PRESENTATION_ZOOM } else { 1.0 });
@@ -120,7 +120,7 @@ pub(super) fn pictures(ui: &mut Ui, context: &mut PanelContext<'_>) {
     films(ui, context);
 }
 
-/// Shows the buttons that save the recording as a video or an animation.
+/// Shows the buttons that save the recorded run as a video or an animation.
 fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
     if let Some((format, work)) = &context.exports.film {
         let name = format.name();
@@ -146,7 +146,7 @@ fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
             (FilmFormat::Video, "Save video", missing, video_hint),
             (FilmFormat::Gif, "Save GIF", None, gif_hint),
         ];
-        // A browser has no ffmpeg.
+        // The browser version has no ffmpeg, so it offers no video.
         for (format, name, missing, hint) in formats.into_iter().skip(usize::from(IN_BROWSER)) {
             let save = ui.add_enabled(context.run.is_ready() && missing.is_none(), egui::Button::new(name));
             context.note_control(name, save.rect);
@@ -172,7 +172,7 @@ fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Shows the field for the folder of all files.
+/// Shows the field for the folder of all saved files.
 pub(super) fn folder(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let folder = &mut context.preferences.folder;
     let row = ui.horizontal(|ui| {
@@ -191,14 +191,14 @@ pub(super) fn folder(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// Shows a button that opens a dialog. Returns true if it was clicked.
+/// Shows a button that opens a dialog. Returns true if the user clicked it.
 pub(super) fn choose_button(ui: &mut Ui, name: &str) -> bool {
     let button = ui.button("…").on_hover_text(name);
     button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
     button.clicked()
 }
 
-/// Shows a field for a folder.
+/// Shows a field for the path of a folder.
 pub(super) fn path_field(ui: &mut Ui, folder: &mut PathBuf, label: egui::Id) {
     let mut typed = folder.display().to_string();
     let edit = egui::TextEdit::singleline(&mut typed).desired_width(f32::INFINITY);
@@ -207,7 +207,7 @@ pub(super) fn path_field(ui: &mut Ui, folder: &mut PathBuf, label: egui::Id) {
     }
 }
 
-/// Saves the worlds as they are visible, in the size that the preferences give.
+/// Saves a picture of the displayed simulations, in the size that the preferences state.
 pub(crate) fn save_picture(gui: &egui::Context, context: &mut PanelContext<'_>) {
     if context.run.frame.worlds.is_empty() {
         return;
@@ -222,9 +222,9 @@ pub(crate) fn save_picture(gui: &egui::Context, context: &mut PanelContext<'_>) 
     });
 }
 
-/// Saves the recording of all worlds as a film, within the interval that data exports use.
+/// Saves the recorded run of all simulations as a film, within the time interval that the user chose for exports.
 fn save_film(gui: &egui::Context, context: &mut PanelContext<'_>, format: FilmFormat, speed: f64) {
-    // The range of the colour scale is that of all pictures of the film.
+    // The scale of the colours is not fixed here, because it must fit all pictures of the film.
     let style = own_style(context.preferences, gui.theme() == egui::Theme::Dark);
     let (size, rate_hz) = (context.preferences.picture_size, context.preferences.video_rate_hz);
     let (size, rate_hz) = match format {
@@ -246,7 +246,7 @@ fn save_film(gui: &egui::Context, context: &mut PanelContext<'_>, format: FilmFo
     context.exports.film = Some((format, work));
 }
 
-/// Picture of the visible worlds; there is at least one.
+/// Returns a picture of the displayed simulations. There must be at least one simulation.
 fn scene_picture(
     context: &PanelContext<'_>,
     style: Style,

@@ -1,4 +1,4 @@
-//! The settings that the open scene uses, and those with a main slider.
+//! The settings that the window shows for the open scene, and the settings that have a main slider.
 
 use glam::DVec2;
 
@@ -7,10 +7,11 @@ use crate::setting::{About, Group, Needs};
 use crate::sim::Settings;
 use crate::world::Parameters;
 
-/// Names of the settings with a main slider.
+/// Names of the settings that have a main slider.
 pub const FRONT_SETTINGS: [&str; 4] = ["bond", "dt", "rho", "mu"];
 
-/// Settings of the law and the time step that have a meaning in the scene and that the stepper reads.
+/// Returns the settings of the contact law and of the time step that have an effect in the scene and that the stepper
+/// reads.
 pub(super) fn shown_settings(run: &WatchedRun, settings: &Settings) -> Vec<&'static About> {
     let Some(physics) = run.frame.start.as_ref().map(|start| start.physics()) else {
         return Vec::new();

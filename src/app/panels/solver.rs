@@ -28,7 +28,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     readings(ui, run);
 }
 
-/// Settings that few need to change.
+/// Shows the settings that few users need to change, and applies changes to the selected simulation.
 pub(super) fn expert(ui: &mut Ui, run: &mut WatchedRun) {
     let index = run.selected;
     let Some((before, start)) = run.wanted_and_start() else { return };
@@ -39,7 +39,7 @@ pub(super) fn expert(ui: &mut Ui, run: &mut WatchedRun) {
     }
 }
 
-/// Shows controls that few users need.
+/// Shows the controls that few users need.
 fn expert_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings, has_friction: bool) {
     let stepper = settings.stepper;
     if stepper.uses_method() {
@@ -56,13 +56,13 @@ fn expert_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings, has_f
     }
 }
 
-/// Declaration of a setting of the solver.
+/// Returns the declaration of a setting of the solver.
 fn about(name: &str) -> &'static About {
     let found = SolverSettings::ABOUT.iter().find(|about| about.name == name);
     found.unwrap_or(&SolverSettings::ABOUT[0])
 }
 
-/// Shows the solver, its stopping test and its tolerance.
+/// Shows the solver, its stopping criterion and its tolerance.
 fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     egui::Grid::new("solver").num_columns(2).spacing([8.0, 5.0]).show(ui, |ui| {
         method_box(ui, &mut settings.solver);
@@ -87,7 +87,7 @@ fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     setting_control::show(ui, about("max-sweeps"), settings, start);
 }
 
-/// Shows the list of solvers. A friction model that the chosen solver does not take is replaced.
+/// Shows the list of solvers. If the chosen solver does not support the friction model, the friction model is replaced.
 fn method_box(ui: &mut Ui, solver: &mut SolverSettings) {
     let label = ui.label("Solver").on_hover_text("The solver that finds the impulses of a step.");
     let mut method = solver.method;
@@ -104,7 +104,7 @@ fn method_box(ui: &mut Ui, solver: &mut SolverSettings) {
     }
 }
 
-/// Shows the friction model. A solver of Coulomb friction only leaves no choice.
+/// Shows the friction model. The list is disabled for a solver that solves only Coulomb friction.
 fn friction_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     let method = settings.solver.method.info();
     let model = about("friction-model");
@@ -118,7 +118,8 @@ fn friction_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     }
 }
 
-/// Shows the remedies; those that the stepper does not take are disabled.
+/// Shows the switches of the remedies (corrections of known weaknesses of a step). Remedies that the stepper does not
+/// support are disabled.
 fn remedy_boxes(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     for (about, remedy) in Remedies::ABOUT.iter().zip(&REMEDIES) {
         let taken = remedy.taken_by.contains(&settings.stepper);
@@ -149,7 +150,8 @@ fn budget_buttons(ui: &mut Ui, settings: &mut Settings, surroundings: &Surroundi
     });
 }
 
-/// Common residual and, if the last step used another friction model, its residual, with a hint.
+/// Returns the text of the common residual of the last step, and a hover text. If the step was solved under another
+/// friction model than Coulomb's, the text also contains the residual under that model.
 fn residuals(last: &Observables) -> (String, &'static str) {
     let common = format!("{:.1e}", last.residual);
     match last.model_residual.filter(|_| last.is_of_a_model()) {
@@ -162,7 +164,7 @@ fn residuals(last: &Observables) -> (String, &'static str) {
     }
 }
 
-/// Shows measures of the last step.
+/// Shows measured values of the last step.
 fn readings(ui: &mut Ui, run: &WatchedRun) {
     let Some(world) = run.world() else { return };
     let (last, settings) = (&world.snapshot.observables, &world.controls.settings);
@@ -204,13 +206,13 @@ fn readings(ui: &mut Ui, run: &WatchedRun) {
     }
 }
 
-/// Text on the estimated velocity error of a step, rounded up.
+/// Returns the text of the estimated velocity error of a step, rounded up.
 fn within(last: &Observables) -> String {
     let rounded_up = (1e5 * last.velocity_error).ceil().max(1.0) / 100.0;
     format!("velocity error about {} mm/s", compact(rounded_up))
 }
 
-/// Shows whether the last step was solved. The status bar counts the steps that were not.
+/// Shows whether the last step was solved. The status bar counts the unsolved steps.
 fn solved(ui: &mut Ui, world: &WorldFrame) {
     let last = &world.snapshot.observables;
     let dark = ui.visuals().dark_mode;

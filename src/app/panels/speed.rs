@@ -1,5 +1,5 @@
-//! Panel: the time that parts of a step take, and a comparison of all solvers on the visible step. Each solver solves
-//! the step to one tolerance after another, on a thread of its own.
+//! Panel: the time that each part of a step takes, and a comparison of all solvers on the displayed step. Each solver
+//! solves the step to several tolerances, on a separate thread.
 
 use std::sync::OnceLock;
 
@@ -20,19 +20,19 @@ use crate::solver::{METHODS, Method, SolverSettings, StopTest};
 
 /// Tolerances of the residual, from loose to tight.
 const TOLERANCES: [f64; 8] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
-/// Time limit, s. A solver that takes longer for a step is not asked for tighter tolerances.
+/// Time limit, s. A solver that takes longer for a step is not tried with tighter tolerances.
 const LIMIT_SECS: f64 = 0.25;
-/// Number of repeats of a step. The shortest time counts.
+/// Number of repeats of a solve. The shortest time is reported.
 const REPEATS: usize = 3;
 const MOST_SWEEPS: u32 = 20_000;
-/// Largest number of steps whose times are added, and time limit for them, s.
+/// Largest number of steps whose times are added, and time limit for these steps, s.
 const TIMED_STEPS: u32 = 50;
 const TIMED_SECS: f64 = 1.0;
 
 /// Result of one solver.
 struct RaceCurve {
     method: &'static str,
-    /// Time of the step (ms) and its residual, from loose to tight.
+    /// Time of the step, ms, and its residual, from loose to tight tolerance.
     points: Vec<[f64; 2]>,
 }
 
@@ -40,21 +40,22 @@ struct RaceCurve {
 pub(super) struct StepRace {
     /// Simulated time of the step, s.
     time_secs: f64,
-    /// Results, once all solvers are finished.
+    /// Results; empty until all solvers have finished.
     measured: Measured,
     work: Option<Work<Measured>>,
 }
 
-/// Measured times of the steps after a moment.
+/// Measured times of the steps after the displayed moment.
 #[derive(Default)]
 struct Measured {
     /// Number of measured steps and the sum of their times.
     times: Option<(u32, StepTimes)>,
-    /// Results of the solvers. Empty for a stepper without a solver.
+    /// Results of the solvers; empty for a stepper without a solver.
     curves: Vec<RaceCurve>,
 }
 
-/// Measures all solvers on the step after the visible moment. `run` is `None` if the user cancelled before it arrived.
+/// Measures all solvers on the step after the displayed moment. `run` is `None` if the user cancelled before the run
+/// arrived.
 fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Measured> {
     let Some(run) = run else { return Ok(Measured::default()) };
     let simulation = &run.world.simulation;
@@ -85,7 +86,8 @@ fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Measured> {
     Ok(Measured { times, curves })
 }
 
-/// Number of the next steps and the sum of their times, with the present settings. `None` if the run cannot continue.
+/// Takes the next steps with the present settings. Returns their number and the sum of their times. `None` if the run
+/// cannot continue.
 fn times_of_steps(mut simulation: Simulation) -> Option<(u32, StepTimes)> {
     let (mut steps, mut sum) = (0, StepTimes::default());
     while steps < TIMED_STEPS && sum.total_secs < TIMED_SECS {
@@ -98,13 +100,13 @@ fn times_of_steps(mut simulation: Simulation) -> Option<(u32, StepTimes)> {
     (steps > 0 && sum.total_secs > 0.0).then_some((steps, sum))
 }
 
-/// Time since the first call, s.
+/// Returns the time since the first call of this function, s.
 fn now_secs() -> f64 {
     static BEGUN: OnceLock<Instant> = OnceLock::new();
     BEGUN.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
-/// Text on the times of a step.
+/// Returns a sentence on the times of the parts of a step.
 fn told(&(steps, times): &(u32, StepTimes)) -> String {
     let part = |secs: f64| 100.0 * secs / times.total_secs;
     let (contacts, solving) = (part(times.detection_secs), part(times.solving_secs));
@@ -116,7 +118,7 @@ fn told(&(steps, times): &(u32, StepTimes)) -> String {
     )
 }
 
-/// Shortest time of the step, ms, and its residual. `None` if the solver cannot take the step.
+/// Returns the shortest time of the step, ms, and its residual. `None` if the solver cannot solve the step.
 fn timed(
     simulation: &Simulation,
     method: Method,
@@ -150,7 +152,7 @@ fn timed(
 
 /// Height of the plot, points.
 const HEIGHT: f32 = 230.0;
-/// Number of colours. Further curves repeat them with other line styles.
+/// Number of colours. Further curves have the same colours with other line styles.
 const COLOURS: usize = 6;
 
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace>) {
@@ -183,7 +185,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace
     ui.label(RichText::new(text).small().weak());
 }
 
-/// Shows the button that measures the visible step.
+/// Shows the button that measures the displayed step.
 fn measure(ui: &mut Ui, run: &mut WatchedRun, shown: &mut Option<StepRace>) {
     let goes_on = |world: &&WorldFrame| world.failure.is_none();
     let time_secs = run.world().filter(goes_on).map(|world| world.snapshot.observables.time_secs);
@@ -201,7 +203,8 @@ fn measure(ui: &mut Ui, run: &mut WatchedRun, shown: &mut Option<StepRace>) {
     }
 }
 
-/// Place of the present solver on the chart: the run's own mean time, while it is at that step.
+/// Returns the point of the present solver on the chart, if the displayed moment is at the measured step. Its time is
+/// the mean time per step of the run.
 fn now(run: &WatchedRun, race: &StepRace) -> Option<[f64; 2]> {
     let world = run.world()?;
     let row = &world.snapshot.observables;
@@ -235,7 +238,8 @@ fn draw(ui: &mut Ui, curves: &[RaceCurve], now: Option<[f64; 2]>) {
         });
 }
 
-/// Colour and line style of a curve, different for all curves, and a sign for the line style.
+/// Returns the colour and the line style of a curve, which are different for all curves, and a character that shows the
+/// line style.
 fn look(index: usize, dark: bool) -> (Color32, LineStyle, &'static str) {
     let (style, sign) = match index / COLOURS {
         0 => (LineStyle::Solid, "━"),
@@ -245,7 +249,7 @@ fn look(index: usize, dark: bool) -> (Color32, LineStyle, &'static str) {
     (theme::world_colour(index % COLOURS, dark), style, sign)
 }
 
-/// Shows the key of colours and line styles below the chart, where it hides nothing.
+/// Shows the key of colours and line styles below the chart, where it covers no curve.
 fn legend(ui: &mut Ui, curves: &[RaceCurve]) {
     let dark = ui.visuals().dark_mode;
     ui.horizontal_wrapped(|ui| {
@@ -267,7 +271,7 @@ mod tests {
     #[test]
     fn tighter_tolerances_come_to_smaller_residuals() {
         let mut scene = built_in("pile").unwrap();
-        // With this threshold the step has a solution.
+        // With this restitution threshold the step has a solution.
         scene.parameters.restitution_threshold = 2.0;
         let mut simulation = scene.simulation().unwrap();
         simulation.take_steps(20).unwrap();

@@ -1,4 +1,4 @@
-//! The status bar: speed, trust, warnings, and buttons for pages and help.
+//! The status bar, with the speed of the run, the verdict on trust, warnings, and buttons for pages and help.
 
 use egui::{Align, Label, Layout, Rect, RichText, Ui};
 
@@ -9,7 +9,7 @@ use crate::app::page::Page;
 use crate::app::theme;
 use crate::live::LiveFrame;
 
-/// Shows the bar.
+/// Shows the status bar.
 pub(super) fn show(
     ui: &mut Ui,
     context: &mut PanelContext<'_>,
@@ -50,7 +50,7 @@ fn ways(ui: &mut Ui, context: &mut PanelContext<'_>, help: &mut bool) {
     }
 }
 
-/// Shows the speed while time passes.
+/// Shows the speed of the run while it plays.
 fn pace(ui: &mut Ui, frame: &LiveFrame) {
     if frame.seeking {
         ui.label(RichText::new("computing that moment").weak());
@@ -85,7 +85,7 @@ fn messages(ui: &mut Ui, context: &mut PanelContext<'_>, trust: &TrustPanel) {
     }
 }
 
-/// Shows a line in the remaining space. Hovering shows the whole text.
+/// Shows one line of text in the remaining space. If the line is cut off, a hover text shows the whole text.
 fn message(ui: &mut Ui, text: &str, colour: egui::Color32) -> Rect {
     // A truncated label shows its whole text by itself.
     ui.add(Label::new(RichText::new(text).color(colour)).truncate()).rect

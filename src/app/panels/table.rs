@@ -1,5 +1,5 @@
-//! Panel: grains and contacts of the visible moment as a table that can be filtered and sorted. A click on a row pins
-//! its grain.
+//! Panel: grains and contacts at the displayed moment as a table, which the user can filter and sort. A click on a row
+//! pins the grain of that row.
 
 use egui::{RichText, ScrollArea, TextEdit, Ui};
 
@@ -10,29 +10,30 @@ use crate::sim::{ContactView, GrainView, Snapshot};
 
 /// Height of the visible rows, points.
 const HEIGHT: f32 = 240.0;
-/// Font of the rows, points.
+/// Font size of the rows, points.
 const FONT: f32 = 10.5;
 
 /// State of the table.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BodyTable {
-    /// True for contacts, false for grains.
+    /// True for a table of contacts, false for a table of grains.
     contacts: bool,
-    /// Filter as typed.
+    /// Filter, as the user typed it.
     filter: String,
     /// Index of the sorted column, and true for descending order.
     sort: Option<(usize, bool)>,
 }
 
-/// A column of a table whose rows are `T`.
+/// A column of a table whose rows have the type `T`.
 struct ShownColumn<T> {
     name: &'static str,
     /// Width in characters.
     width: usize,
-    /// True for whole numbers.
+    /// True if the values are whole numbers.
     whole: bool,
     hint: &'static str,
-    /// Value of a row, from its index and the mean diameter d. Lengths are in units of d.
+    /// Function that returns the value of a row, given its index, the row, and the mean diameter d (m). Lengths are in
+    /// units of d.
     value: fn(usize, &T, f64) -> f64,
 }
 
@@ -48,7 +49,7 @@ const GRAINS: [ShownColumn<GrainView>; 7] = [
     column("n", 2, true, "Number of contacts.", |_, grain, _| f64::from(grain.coordination)),
 ];
 
-/// Number that stands for a fixed body.
+/// Number that is shown for a fixed body.
 const FIXED: f64 = -1.0;
 
 const CONTACTS: [ShownColumn<ContactView>; 7] = [
@@ -111,7 +112,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, table: &mut BodyTable) {
     }
 }
 
-/// Shows head and rows. Returns the index of the row that was clicked.
+/// Shows the head and the rows of the table. Returns the index of the row that the user clicked.
 fn rows<T>(
     ui: &mut Ui,
     table: &mut BodyTable,
@@ -170,7 +171,7 @@ fn rows<T>(
     clicked
 }
 
-/// Formats a number in the width of its column.
+/// Formats a number for the width of its column.
 fn written<T>(value: f64, column: &ShownColumn<T>) -> String {
     if column.whole {
         return format!("{value}");
@@ -180,7 +181,7 @@ fn written<T>(value: f64, column: &ShownColumn<T>) -> String {
     if fits { format!("{value:.decimals$}") } else { format!("{value:.1e}") }
 }
 
-/// Indices of the rows that pass the filter, in the order of the sorted column.
+/// Returns the indices of the rows that pass the filter, in the order of the sorted column.
 fn chosen<T>(
     table: &BodyTable,
     all: &[T],
@@ -200,14 +201,14 @@ fn chosen<T>(
     Ok(chosen)
 }
 
-/// A comparison of a column with a number.
+/// A comparison of a column with a number, as part of a filter.
 struct Comparison {
     column: usize,
     sign: &'static str,
     number: f64,
 }
 
-/// Longer signs first, because "<=" begins with "<".
+/// Signs of comparison. Longer signs come first, because "<=" begins with "<".
 const SIGNS: [&str; 5] = ["<=", ">=", "<", ">", "="];
 
 impl Comparison {
@@ -222,7 +223,7 @@ impl Comparison {
     }
 }
 
-/// Reads comparisons joined by "and".
+/// Reads a filter: comparisons joined by "and".
 fn read_filter<T>(text: &str, columns: &[ShownColumn<T>]) -> Result<Vec<Comparison>, String> {
     let parts = text.split(" and ").map(str::trim).filter(|part| !part.is_empty());
     let read = |part: &str| -> Option<Comparison> {

@@ -1,6 +1,8 @@
-//! "Can I trust this?": one word on the run that is shown, and a panel with the reason: a sentence, the bars of an error
-//! budget, how the steps were solved, warnings, and the slump of other initial states. Idle cores compute the budget
-//! once the panel has been opened. They continue when the panel is closed, until the settings change.
+//! The verdict "Can I trust this?" on the displayed run: one word in the status bar, and a panel that gives the
+//! reasons. The panel contains a sentence, the bars of an error budget (estimated effects of initial state, contact
+//! law, time step and solver on a result), how well the steps were solved, warnings, and the slump of other initial
+//! states. Idle cores compute the budget after the panel was opened. They continue when the panel is closed, until the
+//! settings change.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -27,14 +29,14 @@ use crate::output::counted;
 use crate::sim::{AlarmKind, Settings};
 use crate::study::{BudgetAnswer, BudgetEffect, BudgetOptions, ErrorBudget, Trust, made_budget};
 
-/// Time that a budget may take of the idle cores, s.
+/// Time limit for the computation of an error budget on the idle cores, s.
 const COST_SECS: f64 = 300.0;
-/// Of other scenes than heaps, what a budget is of.
+/// Quantity of the error budget for scenes that are not heaps, which have no slump.
 const OTHERWISE: &str = "mean(kinetic_energy)";
-/// Part of the steps up to which unsolved ones leave the rest worth something.
+/// Largest fraction of unsolved steps at which a run can be trusted.
 const FEW: f64 = 0.01;
 
-/// The answer before the first one.
+/// Text of the panel until the first result of the error budget.
 const UNDER_WAY: &str = "Idle cores compute an error budget. The first answer takes a minute for a hundred grains, \
     and hours for thousands.";
 
@@ -44,7 +46,7 @@ const NAMES: f32 = 150.0;
 const ROW: f32 = 18.0;
 const BAR: f32 = 9.0;
 
-/// The word in the status bar, and the panel behind it.
+/// The verdict in the status bar, and the panel with its reasons.
 #[derive(Default)]
 pub(crate) struct TrustPanel {
     /// True while the panel is open.
@@ -52,19 +54,19 @@ pub(crate) struct TrustPanel {
     budget: Option<RunBudget>,
 }
 
-/// The budget of a run, or what there is of it.
+/// The error budget of a run, finished or in progress.
 struct RunBudget {
-    /// What it is of: the command line that the run is made by.
+    /// Command line that reproduces the run, by which the budget is matched with the run.
     of: String,
-    /// Its answer so far.
+    /// Present result of the error budget.
     told: Arc<Mutex<Option<BudgetAnswer>>>,
     work: Option<Work<()>>,
-    /// Why there is none.
+    /// The reason why the budget could not be computed, if it could not.
     failure: Option<String>,
 }
 
 impl TrustPanel {
-    /// The verdict on the run that is shown, and its reason in a sentence.
+    /// Returns the verdict on the displayed run, and its reason in a sentence.
     fn verdict(&self, run: &WatchedRun) -> (Trust, String) {
         const BAD: [AlarmKind; 4] = [
             AlarmKind::NotFinite,
@@ -111,7 +113,7 @@ impl TrustPanel {
         (trust, reason)
     }
 
-    /// What the budget says, where there is one of the present settings.
+    /// Returns the result of the error budget, if there is a budget for the present settings.
     fn of_budget(&self, run: &WatchedRun) -> Option<BudgetAnswer> {
         let budget = self.budget.as_ref()?;
         let told = budget.told.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
@@ -184,7 +186,7 @@ impl TrustPanel {
         });
     }
 
-    /// The findings of the error budget in words, or its progress.
+    /// Shows the findings of the error budget in words, or its progress.
     fn show_budget(&self, ui: &mut Ui, answer: Option<&BudgetAnswer>) {
         if IN_BROWSER {
             let text = "A page has no idle cores: slump budget, with the command line of this run, computes its \
@@ -209,7 +211,7 @@ impl TrustPanel {
         }
     }
 
-    /// Has the budget follow the run that is shown.
+    /// Starts an error budget for the displayed run, or discards a budget that belongs to other settings.
     pub(super) fn follow(&mut self, ui: &Ui, context: &PanelContext<'_>) {
         if let Some(budget) = &mut self.budget
             && let Some(outcome) = outcome_of_ended(&mut budget.work)
@@ -267,7 +269,7 @@ fn bars(ui: &mut Ui, answer: &BudgetAnswer) {
     });
 }
 
-/// One bar: the name of the change, its effect, and its interval.
+/// Draws one bar with the name of the change, its effect, and the confidence interval of the effect.
 fn bar(ui: &mut Ui, effect: &BudgetEffect, within: f64, reach: f64) {
     let BudgetEffect { share, colour: (red, green, blue), changed, adds: [mean, low, high] } =
         effect;
@@ -296,12 +298,12 @@ fn bar(ui: &mut Ui, effect: &BudgetEffect, within: f64, reach: f64) {
     response.response.on_hover_text(text);
 }
 
-/// A warning of the time step of a world.
+/// Returns a warning if the time step of a simulation is too long.
 fn warning(world: &WorldFrame) -> Option<String> {
     too_long(&world.controls.settings, &world.snapshot.surroundings, world.substeps)
 }
 
-/// How the steps of a world were solved, a line a statement.
+/// Returns sentences on how well the steps of a simulation were solved.
 fn solved(world: &WorldFrame) -> Vec<String> {
     let last = &world.snapshot.observables;
     if !world.controls.settings.stepper.uses_method() {
@@ -339,7 +341,7 @@ fn solved(world: &WorldFrame) -> Vec<String> {
     lines
 }
 
-/// Begins the budget of a run.
+/// Starts to compute the error budget of a run.
 fn begin(ui: &Ui, context: &PanelContext<'_>, of: String, config: Config) -> RunBudget {
     let quantities = if context.run.slumps() { Vec::new() } else { vec![OTHERWISE.to_owned()] };
     let options = BudgetOptions {

@@ -1,4 +1,4 @@
-//! The state of window and run as a JSON file, for tests that drive the window from outside.
+//! The state of the window and of the run as a JSON file, for tests that control the program from outside.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -9,10 +9,10 @@ use super::keeping::replace_file;
 use crate::app::state::AppState;
 use crate::app::told::told;
 
-/// Least time between two writes.
+/// Least time between two writes of the file while the run plays.
 const INTERVAL: Duration = Duration::from_millis(50);
 
-/// Writes the file, at most once per interval.
+/// Writer of the file, which limits the rate of writes.
 pub(super) struct StateFile {
     path: PathBuf,
     written: Option<Instant>,

@@ -1,6 +1,6 @@
 //! The file in which the window stores its preferences between starts.
 //!
-//! A file that cannot be read, for example from another version, is ignored, so that nobody has to repair it. If the
+//! A file that cannot be read, for example a file of another version, is ignored, so that nobody must repair it. If the
 //! file cannot be written, only the preferences are lost.
 
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ pub(super) fn forget() {
     }
 }
 
-/// Time between two checks for changes. A window that is killed loses at most the changes of this time.
+/// Time between two checks for changes. If the window is killed, at most the changes of this period are lost.
 const INTERVAL: Duration = Duration::from_secs(2);
 
 /// Stores changed preferences while the window is open.
@@ -38,13 +38,13 @@ pub(super) struct Keeper {
 }
 
 impl Keeper {
-    /// `kept` are the preferences that were loaded.
+    /// Returns a keeper that compares with `kept`, the preferences that were loaded.
     pub(super) fn new(kept: Preferences) -> Self {
         Self { looked: Instant::now(), kept, text: String::new() }
     }
 
-    /// Stores the preferences if a check is due. If they have changed but no check is due, returns the time until the
-    /// next.
+    /// Stores the preferences if a check is due. If the preferences have changed but no check is due, returns the time
+    /// until the next check.
     pub(super) fn look(
         &mut self,
         preferences: &Preferences,
@@ -58,7 +58,7 @@ impl Keeper {
         None
     }
 
-    /// Stores the preferences now, if the text of the file changes.
+    /// Stores the preferences now, if the text of the file has changed.
     pub(super) fn keep(&mut self, preferences: &Preferences, context: &egui::Context) {
         self.looked = Instant::now();
         self.kept.clone_from(preferences);
@@ -72,8 +72,8 @@ impl Keeper {
     }
 }
 
-/// Writes a new file and renames it over the old one: after a crash there is the old or the new file, and readers see
-/// a whole file.
+/// Writes a new file and renames it to the name of the old file. After a crash either the old or the new file exists,
+/// and readers always see a complete file.
 pub(super) fn replace_file(path: &Path, text: &str) {
     let fresh = path.with_extension("new");
     if std::fs::write(&fresh, text).is_ok() {

@@ -1,4 +1,4 @@
-//! The window: winit's events, egui's input and output, and when to draw.
+//! The window: it passes winit's events to egui, and decides when to draw.
 
 mod export_state;
 mod keeping;
@@ -28,19 +28,19 @@ pub(crate) use start::WindowOptions;
 use start::{attributes, first, no_display};
 use surface::{Drawn, WindowSurface};
 
-/// Least time between two frames that only the run asks for.
+/// Least time between two frames that are drawn because the run has advanced.
 pub(crate) const FRAME_INTERVAL: Duration = Duration::from_millis(16);
 /// Least time between two frames if the processor draws. More than 25 frames per second hardly look smoother, and
 /// drawing takes processor time from the solver.
 pub const SOFTWARE_FRAME_INTERVAL: Duration = Duration::from_millis(40);
-/// Number of device losses in a row after which the window gives up.
+/// Number of consecutive losses of the graphics device after which the program ends with an error.
 const MOST_LOSSES: u32 = 3;
 
 /// Opens the window and returns when it is closed.
 ///
 /// # Errors
-/// If there is no display or no graphics driver; the message names the package that provides it. Otherwise passes on
-/// the system's error.
+/// If there is no display or no graphics driver; the message names the package that provides it. Other errors have the
+/// message of the operating system.
 pub(crate) fn run(
     config: &Config,
     pictures: &HeadlessOptions,
@@ -53,7 +53,7 @@ pub(crate) fn run(
     stored.preferences.follow(pictures)?;
     let restart = pictures.restart.as_deref();
     let open_first = first(config, restart, options, &stored.preferences)?;
-    // Other threads send an event when there is a new frame or a file was written.
+    // Other threads send an event when a new frame is available or a file was written.
     let events = EventLoop::with_user_event().build().map_err(|error| no_display(&error))?;
     let proxy = events.create_proxy();
     let wake = proxy.clone();
@@ -84,7 +84,7 @@ pub(crate) fn run(
     app.failure.map_or(Ok(()), Err)
 }
 
-/// A context in the window's style. It wakes the event loop when another thread asks for a frame.
+/// Returns an egui context in the style of the window. It wakes the event loop when another thread requests a frame.
 fn context(proxy: &EventLoopProxy<()>, layout: egui::Memory) -> egui::Context {
     let context = egui::Context::default();
     context.memory_mut(|memory| *memory = layout);
@@ -92,7 +92,7 @@ fn context(proxy: &EventLoopProxy<()>, layout: egui::Memory) -> egui::Context {
     let wake = proxy.clone();
     let window_thread = std::thread::current().id();
     context.set_request_repaint_callback(move |info| {
-        // A repaint that the window's own thread requests comes back as the delay of its pass.
+        // A repaint that the window's own thread requests is reported as the delay after the present pass.
         if info.delay.is_zero() && std::thread::current().id() != window_thread {
             let _ = wake.send_event(());
         }
@@ -153,7 +153,7 @@ impl App {
     }
 
     /// Opens the graphics device again after it was lost. The old surface is dropped first, because a window can have
-    /// only one. The new context sends all textures again; the layout is taken from the old one.
+    /// only one surface. The new egui context sends all textures again; the layout is copied from the old context.
     fn recover(&mut self, events: &ActiveEventLoop) {
         let Some(Open { window, input, surface }) = self.open.take() else { return };
         drop(surface);

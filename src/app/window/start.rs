@@ -36,14 +36,15 @@ pub(crate) struct WindowOptions {
 const SIZE: [f64; 2] = [1280.0, 800.0];
 const LEAST_SIZE: [f64; 2] = [640.0, 480.0];
 
-/// Loads the first contents of a window.
+/// Callback that loads the first contents of a window.
 pub(super) type Opener = Box<dyn FnOnce(&mut AppState)>;
 
-/// Chooses the first contents of a window: a session, link, saved run or scene of the command line; otherwise the
-/// lessons, until the user leaves them; then the last scene, or the default scene if the last no longer exists.
+/// Chooses the first contents of a window. A session, link, saved run or scene of the command line comes first; then
+/// the lessons, unless the user has left them; then the last scene, or the default scene if the last scene no longer
+/// exists.
 ///
 /// # Errors
-/// Names the first field of the command line or the saved run that is outside its range, or the file that cannot be
+/// Names the first field of the command line or of the saved run that is outside its range, or the file that cannot be
 /// read.
 pub(super) fn first(
     asked: &Config,
@@ -74,7 +75,7 @@ pub(super) fn first(
         let at = preferences.lesson.at;
         return Ok(Box::new(move |state| state.visit(at)));
     }
-    // A pile is made on the solver thread; the rest of a scene is checked before a window opens.
+    // A new pile is made on the solver's thread. All other parts of a scene are checked before the window opens.
     let config = if !asked.is_empty() {
         asked.without_settling()?;
         asked.clone()
@@ -86,7 +87,8 @@ pub(super) fn first(
     Ok(Box::new(move |state| state.load(config)))
 }
 
-/// Attributes of a new window. Its size is that of the last window (points) if there was one, limited to the screen.
+/// Returns the attributes of a new window. The window has the size of the last window (points) if there was one,
+/// limited to the size of the screen.
 pub(super) fn attributes(
     events: &ActiveEventLoop,
     window_points: Option<[f64; 2]>,
@@ -94,7 +96,7 @@ pub(super) fn attributes(
     let [width, height] = window_points.unwrap_or(SIZE);
     let on_screen = |monitor: MonitorHandle| monitor.size().to_logical(monitor.scale_factor());
     let screen: Option<LogicalSize<f64>> = events.primary_monitor().map(on_screen);
-    // A driver may report no screen, or one without a size.
+    // A driver may report no screen, or a screen without a size.
     let screen = screen.filter(|screen| screen.width > 0.0 && screen.height > 0.0);
     let most = screen.unwrap_or(LogicalSize::new(f64::INFINITY, f64::INFINITY));
     Window::default_attributes()
@@ -103,10 +105,10 @@ pub(super) fn attributes(
         .with_min_inner_size(LogicalSize::new(LEAST_SIZE[0], LEAST_SIZE[1]))
 }
 
-/// Error for a missing display: the cause and the packages that provide one.
+/// Returns the error for a missing display, with its cause and the packages that provide a display.
 pub(super) fn no_display(error: &dyn std::fmt::Display) -> Error {
     let message = error.to_string();
-    // winit puts positions in its own source code in front.
+    // The messages of winit begin with positions in its own source code, which are removed.
     let reason = message.rsplit(": ").next().unwrap_or(&message).trim_end_matches('.');
     Error::Renderer(format!(
         "no window can be opened ({reason}): start Slump on a desktop, or install the Debian \

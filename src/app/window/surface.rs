@@ -1,4 +1,4 @@
-//! The window's surface on a graphics device, and the recovery when either is lost.
+//! The surface of the window on a graphics device, and the recovery when the surface or the device is lost.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,7 +12,7 @@ use crate::app::canvas::Screen;
 use crate::error::{Error, Result};
 use crate::render::RendererChoice;
 
-/// Largest side of font textures, pixels. Every driver allows it.
+/// Largest side of font textures, pixels. Every driver allows this size.
 const LARGEST_SIDE_NEEDED: u32 = 2048;
 
 /// Result of drawing a frame.
@@ -28,7 +28,7 @@ pub(super) enum Drawn {
 
 /// The surface and the device that draws on it.
 pub(super) struct WindowSurface {
-    // Before the window, so that it is dropped first.
+    // This field is before the window, so that it is dropped first.
     surface: wgpu::Surface<'static>,
     instance: wgpu::Instance,
     window: Arc<Window>,
@@ -41,16 +41,16 @@ pub(super) struct WindowSurface {
 }
 
 impl WindowSurface {
-    /// Opens the most powerful device that can draw in the window, by Vulkan, then by the system's own interface, then
-    /// by OpenGL; or by the requested one.
+    /// Opens the requested graphics driver. With `auto`, opens the fastest device that can draw in the window: first by
+    /// Vulkan, then by the system's own interface, then by OpenGL.
     pub(super) fn new(
         events: &ActiveEventLoop,
         window: &Arc<Window>,
         renderer: RendererChoice,
     ) -> Result<Self> {
-        // Each backend is tried alone: a driver that exists but cannot draw on this display must not hide another.
-        // `WGPU_BACKEND` overrides the choice. Under Wine, Direct3D 12 opens and then draws nothing, so it comes after
-        // Vulkan.
+        // Each backend is tried separately, because a driver that exists but cannot draw on this display must not hide
+        // another driver. The environment variable `WGPU_BACKEND` overrides the choice. Under Wine, Direct3D 12 opens
+        // but draws nothing, so it is tried after Vulkan.
         let of_system = wgpu::Backends::PRIMARY;
         let first = match renderer {
             RendererChoice::Auto => wgpu::Backends::from_env().unwrap_or(wgpu::Backends::VULKAN),
@@ -101,7 +101,7 @@ impl WindowSurface {
         let lost = Arc::new(AtomicBool::new(false));
         let seen = Arc::clone(&lost);
         device.set_device_lost_callback(move |_, _| seen.store(true, Ordering::Relaxed));
-        // An error that no call reports leaves the picture unchanged; it must not end the program.
+        // An error that no function call returns leaves the picture unchanged; it must not end the program.
         device.on_uncaptured_error(Arc::new(|_| {}));
 
         let size = window.inner_size();
@@ -126,7 +126,7 @@ impl WindowSurface {
         })
     }
 
-    /// True if the processor draws.
+    /// True if the device is a software driver, so that the processor draws.
     pub(super) fn is_software(&self) -> bool {
         self.software
     }
@@ -158,7 +158,7 @@ impl WindowSurface {
     /// Draws egui's output.
     pub(super) fn draw(&mut self, context: &egui::Context, output: egui::FullOutput) -> Drawn {
         self.textures.append(output.textures_delta);
-        // `poll` runs callbacks of the device, including the one that reports its loss.
+        // `poll` runs callbacks of the device, including the callback that reports its loss.
         let polled = self.screen.device.poll(wgpu::PollType::Poll);
         if polled.is_err() || self.lost.load(Ordering::Relaxed) {
             self.textures.clear();
@@ -191,7 +191,7 @@ impl WindowSurface {
         Drawn::Shown
     }
 
-    /// Makes a new surface on the same device.
+    /// Creates a new surface on the same device.
     fn replace_surface(&mut self) -> Drawn {
         match self.instance.create_surface(Arc::clone(&self.window)) {
             Ok(surface) => {
@@ -204,7 +204,7 @@ impl WindowSurface {
     }
 }
 
-/// A format without conversion to sRGB: colours are blended as they are stored in files.
+/// Returns a texture format without conversion to sRGB, because colours are blended as they are stored in files.
 fn plain_format(formats: &[wgpu::TextureFormat]) -> Option<wgpu::TextureFormat> {
     let plain = [wgpu::TextureFormat::Bgra8Unorm, wgpu::TextureFormat::Rgba8Unorm];
     formats.iter().copied().find(|format| plain.contains(format))

@@ -1,5 +1,5 @@
-//! Piles made by drop and roll: final places of single discs, properties of all packings, and settled piles that stay
-//! at rest.
+//! Tests of piles made by drop and roll: final positions of single discs, properties of all packings, and settled piles
+//! that stay at rest.
 
 use proptest::prelude::*;
 use rand::SeedableRng;
@@ -11,12 +11,12 @@ use crate::program::*;
 
 const FLOOR: f64 = -10.0;
 
-/// A dropped disc: name, half width, discs (place and radius), start and radius, expected place, and expected
-/// supports if they are checked.
+/// A test case: name, half the width of the box, discs that lie there already (x, y, radius), start and radius of the
+/// dropped disc, its expected position, and its expected supports (`None` if they are not checked).
 type Drop<'a> =
     (&'a str, f64, &'a [[f64; 3]], [f64; 2], [f64; 2], Option<(Support, Option<Support>)>);
 
-/// Each disc is dropped, and so is its mirror image on the mirrored surface.
+/// Each disc is dropped twice: on the surface of the case, and at the mirrored position on the mirrored surface.
 #[test]
 fn single_discs_come_to_lie_where_geometry_says() {
     let (floor, between) = ((Support::Floor, None), (Support::Disc(0), Some(Support::Disc(1))));
@@ -56,7 +56,7 @@ fn single_discs_come_to_lie_where_geometry_says() {
             [2.625, (9.0f64 - 2.625 * 2.625).sqrt()],
             None,
         ),
-        // A 3-4-5 triangle with the first disc.
+        // The final position forms a 3-4-5 triangle with the first disc.
         (
             "the second is above the disc that leans on it",
             50.0,
@@ -82,8 +82,8 @@ fn single_discs_come_to_lie_where_geometry_says() {
             None,
         ),
         ("against the wall", 2.2, &one, [0.5, 1.0], [1.2, 1.6], on(Support::Wall)),
-        // The disc starts beside the first and passes below the second, which must not catch it from above. It leaves
-        // the first at x = 2 and then the left side of the third at x = 0.5.
+        // The disc starts at the side of the first disc and passes below the second disc, which must not catch it from
+        // above. It leaves the first disc at x = 2 and then the left side of the third disc at x = 0.5.
         (
             "past what hangs over",
             50.0,
@@ -110,7 +110,7 @@ fn single_discs_come_to_lie_where_geometry_says() {
     }
 }
 
-/// Gap below which discs touch, in d.
+/// Largest gap of touching discs, in diameters.
 const TOUCHING: f64 = 1e-9;
 
 proptest! {
@@ -155,7 +155,7 @@ proptest! {
     }
 }
 
-/// True if forces along two of these directions can carry a weight.
+/// Returns true if compressive forces along two of these normals can carry a weight.
 fn is_held(normals: &[DVec2]) -> bool {
     let bear = |one: DVec2, other: DVec2| {
         let across = one.perp_dot(other);
@@ -189,7 +189,7 @@ fn a_packing_does_not_depend_on_what_was_dropped_later() {
     assert_eq!(dropped(40)[..], dropped(90)[..40]);
 }
 
-/// d, m.
+/// Mean diameter d of the piles, m.
 const DIAMETER: f64 = 5e-3;
 
 fn pile(grains: usize, width: f64, seed: u64) -> NewPile {
@@ -206,7 +206,7 @@ fn walled(grains: Vec<Grain>, width: f64) -> Scene {
     Scene { boundaries: vec![wall(-1.0), wall(1.0)], ..pile }
 }
 
-/// Mean kinetic energy of a grain, in m g d.
+/// Returns the kinetic energy divided by the weight of all grains times d.
 fn energy(run: &Simulation) -> f64 {
     let mass: f64 = run.grains().masses.iter().sum();
     run.observables().kinetic_energy / (mass * 9.8 * DIAMETER)
@@ -229,7 +229,7 @@ fn a_pile_says_how_much_it_moves_and_overlaps_and_both_are_little() {
 fn a_pile_at_rest_stays_at_rest_under_the_papers_law() {
     for seed in 0..4 {
         let grains = settle(&pile(300, 24.0, seed), |_| true).expect("at rest");
-        // Without cohesion, and with the scene's own.
+        // Without cohesion, and with Bond 20.
         for bond in [0.0, 20.0] {
             let mut scene = walled(grains.clone(), 24.0);
             scene.parameters.bond = bond;
@@ -243,7 +243,7 @@ fn a_pile_at_rest_stays_at_rest_under_the_papers_law() {
             let slump = run.observables().slump;
             assert!(slump.abs() < 1e-3, "Bond {bond}, seed {seed}: it sank by {slump:e}");
         }
-        // Without the walls the pile moves, so the check above can fail.
+        // Without the walls the pile moves, so the check above is able to fail.
         let mut released = pile_of(grains, 24.0).expect("a pile");
         released.parameters.bond = 0.0;
         let mut run = start(&released);
@@ -340,7 +340,7 @@ fn options_and_scene_files_ask_for_the_same_pile() {
     };
     let dropped = read(&format!("{source}deposition = \"drop-and-roll\"\n")).expect("a scene");
     assert!(dropped == asked.grains);
-    // Files from before the option `deposition` existed.
+    // Older files have no option `deposition` and name the pile `rain`. They must still be read.
     let rained = read(&source.replace("new-pile", "rain")).expect("a scene");
     assert_eq!(rained, read(source).expect("a scene"));
     assert!(rained != dropped);

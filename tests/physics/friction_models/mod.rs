@@ -1,5 +1,5 @@
-//! The convex friction models: the exact effect of each on one contact, and that the problem that replaces Coulomb's
-//! law has one solution, which the solver finds.
+//! Tests of the convex friction models: the exact effect of each model on one contact, and the uniqueness of the
+//! solution of the problem that replaces Coulomb friction.
 
 mod piles;
 
@@ -9,7 +9,8 @@ const RADIUS: f64 = 0.1;
 const MU: f64 = 0.3;
 const DT: f64 = 1e-3;
 
-/// A disc without rotation on the level y = 0 under gravity inclined by `slope` = tan θ, with a speed along the level.
+/// Returns a scene of a disc without rotation on the level y = 0 under gravity inclined by θ (`slope` = tan θ), with an
+/// initial speed along the level (m/s).
 fn on_incline(model: FrictionModel, slope: f64, speed: f64) -> Scene {
     let place = DVec2::new(0.0, RADIUS * (1.0 - 1e-10));
     let gravity = G * DVec2::new(slope, -1.0).normalize();
@@ -75,7 +76,8 @@ fn what_slides_keeps_its_level_under_tresca_and_is_lifted_by_the_cone_models() {
             _ => 0.0,
         };
         assert!((lift - expected).abs() < 1e-15, "{model}: lifted by {lift:e}, not {expected:e}");
-        // σ follows from v_n = σ − g_n Δt and v_t = v + g_t Δt − μσ.
+        // σ is the normal impulse divided by the mass (m/s). It follows from v_n = σ − g_n Δt, and gives v_t = v + g_t
+        // Δt − μσ.
         let risen = expected / DT;
         let pressure = risen + onto * DT;
         assert_close(after.x, speed + along * DT - MU * pressure, 1e-13, model.name());
@@ -90,7 +92,7 @@ fn what_slides_keeps_its_level_under_tresca_and_is_lifted_by_the_cone_models() {
     assert!(dilated > 5e-4, "{dilated}: that the lift is there is seen");
 }
 
-/// (P_n, P_t) of the single contact.
+/// Returns the impulses (P_n, P_t) of the only contact, N·s.
 fn impulse(run: &Simulation) -> [f64; 2] {
     let [impulse] = run.contacts().impulses() else { panic!("one contact") };
     [impulse.normal, impulse.tangential]
@@ -134,7 +136,7 @@ fn within_bounds_that_sweeps_lead_to_friction_keeps_up_with_the_pressure_on_what
     }
 }
 
-/// A disc that slides on the floor and one that rolls down on it, after one step.
+/// Returns a run of a disc that slides on the floor and a disc that rolls down on it, after two steps.
 fn two_bodies(model: FrictionModel) -> Simulation {
     let below = moving(DVec2::new(0.0, 0.999 * RADIUS), RADIUS, DVec2::new(0.8, 0.0));
     let above = Grain::at_rest(below.position + 1.998 * RADIUS * DVec2::new(0.6, 0.8), RADIUS);
@@ -144,7 +146,7 @@ fn two_bodies(model: FrictionModel) -> Simulation {
     };
     scene.solver.friction_model = model;
     let mut run = after(&scene, 1);
-    // The pull changes the load, so it differs from that of the previous step.
+    // The pull changes the load, so friction bounds from the previous step would be wrong.
     let target = run.place(1) - DVec2::new(0.0, 8.0 * RADIUS);
     run.set_pull(Some(Pull { grain: 1, target }));
     take_steps(&mut run, 1);
@@ -162,7 +164,8 @@ fn within_bounds_that_sweeps_lead_to_two_bodies_obey_coulombs_law() {
 
 #[test]
 fn a_fixed_disc_holds_by_friction_as_a_grain_does() {
-    // Friction at two fixed discs holds a disc between them: a wedge that Coulomb's law allows.
+    // Friction at two fixed discs holds a disc between them. Under Coulomb friction this wedge is a possible
+    // equilibrium.
     for &model in FrictionModel::ALL {
         let mut scene =
             under_g(parameters(3.0, DT, 0.0, 2.0), vec![Grain::at_rest(DVec2::ZERO, RADIUS)]);

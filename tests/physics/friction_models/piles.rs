@@ -1,5 +1,5 @@
-//! Piles under every convex model: the solver solves the model, whose solution is unique. Also: steps that are not
-//! solved under Coulomb's law.
+//! Tests of piles under every convex friction model: the solver solves the model, and its solution is unique. Also
+//! tests of steps that are not solved under Coulomb friction.
 
 use proptest::prelude::*;
 
@@ -9,7 +9,7 @@ use crate::common::*;
 pub const CONVEX: [FrictionModel; 3] =
     [FrictionModel::Tresca, FrictionModel::Associated, FrictionModel::Desaxce];
 
-/// Piles under every convex model, with both cones if the model accepts both.
+/// Returns piles under every convex friction model, with both cones if the model accepts both.
 fn piles(count: usize, bond: f64, speed: f64, dt: f64) -> Vec<Scene> {
     let mut all = Vec::new();
     for (model, restitution, cone) in triples(CONVEX, [0.0, 0.9], FrictionCone::ALL) {
@@ -63,7 +63,7 @@ fn solved_steps_obey_the_model_as_world_data_show_it() {
             if pile.solver.friction_model == FrictionModel::Tresca {
                 assert!(small((-p).max(0.0)) && small(mass * (-w).max(0.0)), "{what}");
                 assert!(small(p.min(mass * w)), "{what}: p {p:e}, w {w:e}");
-                // `scene::certificates` checks the bound itself.
+                // The friction bound itself is checked by `scene::certificates`.
                 assert!(small((impulse.tangential * v).max(0.0) / 0.05), "{what}: pushed on");
                 slid += usize::from(mass * v.abs() > 1e-3 * scale);
             } else {
@@ -87,10 +87,11 @@ fn solved_steps_obey_the_model_as_world_data_show_it() {
     }
 }
 
-/// μ of [`piles`].
+/// Friction coefficient of [`piles`].
 const MU_OF_PILES: f64 = 0.5;
 
-/// Velocities of the bodies if a problem is solved from random impulses.
+/// A visitor that solves a contact problem from random impulses with this seed. It returns the velocities of the
+/// bodies.
 struct FromRandomStarts<'a>(&'a SolverSettings, u64);
 
 impl ProblemVisitor for FromRandomStarts<'_> {
@@ -112,7 +113,7 @@ impl ProblemVisitor for FromRandomStarts<'_> {
 
 #[test]
 fn the_velocities_of_a_cone_model_are_the_same_from_any_start() {
-    // The bounds of `tresca` come from sweeps that continue from the start.
+    // `tresca` is omitted, because its friction bounds come from sweeps that start from the initial impulses.
     let of_cones = |pile: &Scene| pile.solver.friction_model != FrictionModel::Tresca;
     for pile in piles(25, 20.0, 0.05, 1e-5).into_iter().filter(of_cones) {
         let what = what(&pile);
@@ -168,8 +169,9 @@ fn every_step_of_a_pile_that_slumps_is_solved_within_its_model() {
     }
 }
 
-/// Velocity errors against Coulomb's law, m/s, from world data, as defined in `solver::problem::velocity_error`: the
-/// root of the gap over the mass of touching bodies, and the movement that all contacts need to be fulfilled.
+/// Returns two estimates of the velocity error under Coulomb friction, m/s, from positions, velocities and impulses.
+/// The definitions are in `solver::problem::velocity_error`: the root of the duality gap over the mass of touching
+/// bodies, and the velocity change that all contacts need to obey their laws.
 fn errors_of_world(run: &Simulation, pile: &Scene, before: &Simulation) -> [f64; 2] {
     let (mut gap, mut touches) = (0.0, vec![false; run.grains().len()]);
     let grains = run.grains().len();
@@ -217,7 +219,7 @@ fn the_error_of_the_velocities_is_what_world_data_make_it() {
     let mut kinds = [0; 2];
     for (model, sweeps) in pairs(FrictionModel::ALL.iter().copied(), [1, 2, 4]) {
         let mut pile = pressed_pile(30, 0.3, 11, parameters(2.0, 1e-6, 0.3, 0.5));
-        // Few sweeps, so that the gap is far above rounding.
+        // With this few sweeps the duality gap is far above rounding errors.
         pile.solver = SolverSettings { max_sweeps: sweeps, ..by_interior_point(model, 1e-8) };
         pile.solver.method = Method::Nsgs;
         let mut run = after(&pile, 3);
@@ -228,7 +230,7 @@ fn the_error_of_the_velocities_is_what_world_data_make_it() {
         };
         assert_eq!(pairs(&before), pairs(&run), "velocities are judged at the same contacts");
         let [of_gap, of_way] = errors_of_world(&run, &pile, &before);
-        // Smaller gaps are rounding: `tresca` begins with fifty sweeps.
+        // A smaller error is only rounding: `tresca` begins with fifty sweeps.
         if of_gap.is_nan() || of_gap < 1e-6 {
             continue;
         }
@@ -244,20 +246,22 @@ fn the_error_of_the_velocities_is_what_world_data_make_it() {
     assert!(kinds[0] > 0 && kinds[1] > 0 && kinds[0] + kinds[1] > 5, "{kinds:?} of both kinds");
 }
 
-/// Upper bound on the error over the root of the residual, m/s. The largest in 4,500 steps of such piles was 0.35.
+/// Upper bound on the velocity error divided by the root of the residual, m/s. The largest value in 4,500 steps of such
+/// piles was 0.35.
 const ERROR_PER_ROOT_OF_RESIDUAL: f64 = 0.5;
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    // The error is the root of the gap, which is the impulses times their errors. Of two solves the one with the
-    // smaller residual may have the larger error: 1.8e-5 m/s at a residual of 0.9e-8, but 1.6e-5 m/s at 1.1e-8.
+    // The velocity error is the root of the duality gap, which is a sum of impulses times their errors. So the solve
+    // with the smaller residual may have the larger error: 1.8e-5 m/s at a residual of 0.9e-8, but 1.6e-5 m/s at
+    // 1.1e-8.
     #[test]
     fn the_error_against_a_model_falls_with_the_root_of_its_residual(
         seed in 0u64..1000,
         bond in prop_oneof![Just(0.0), 0.0..50.0],
         restitution in 0.0..1.0,
-        // Cones this narrow allow any pile of discs to come apart (see below).
+        // With friction cones this narrow, any pile of discs can come apart (see the next test).
         friction in 0.02..0.2,
         model in prop::sample::select(CONVEX.to_vec()),
     ) {
@@ -279,8 +283,8 @@ proptest! {
     }
 }
 
-/// A disc wedged between two fixed ones. The cones leave it no way out: at each contact it would have to leave at
-/// more than the angle atan μ from the tangent.
+/// A disc is wedged between two fixed discs. The associated friction model leaves it no possible velocity: at each
+/// contact it would have to leave at an angle of more than atan μ from the tangent.
 #[test]
 fn a_step_that_no_velocity_solves_says_so_and_leaves_no_huge_impulses() {
     let radius = 0.1;
@@ -310,7 +314,8 @@ fn a_step_that_no_velocity_solves_says_so_and_leaves_no_huge_impulses() {
     }
 }
 
-/// Bounds from impulses that friction has wedged would let the next impulses grow further.
+/// Checks that impulses do not grow without limit. If friction bounds came from impulses of wedged discs, the impulses
+/// of the next step could grow further.
 #[test]
 fn discs_that_friction_wedges_press_each_other_no_harder_from_step_to_step() {
     for (bond, friction, restitution) in [(0.0, 10.0, 0.1), (20.0, 5.0, 0.9), (20.0, 10.0, 0.1)] {

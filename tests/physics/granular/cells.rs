@@ -1,4 +1,4 @@
-//! Cell areas, against known areas and against the nearest disc of every point of a raster.
+//! Tests of the cell areas of grains, against known areas and against counting the points of a raster.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,8 @@ use super::packings::{among, box_walls, disc, discs};
 
 const EXACT: f64 = 1e-12;
 
-/// The owner of a point by definition: the disc of least power, if that is below 3r̄².
+/// Returns the disc that owns a point by definition: the disc with the smallest power (squared distance minus r²), if
+/// this power is below `largest_power` = 3r̄² (r̄: mean radius).
 fn owner(point: DVec2, discs: &[(DVec2, f64)], largest_power: f64) -> Option<usize> {
     let power =
         |&(centre, radius): &(DVec2, f64)| (point - centre).length_squared() - radius * radius;
@@ -18,8 +19,8 @@ fn owner(point: DVec2, discs: &[(DVec2, f64)], largest_power: f64) -> Option<usi
     (least < largest_power).then_some(index)
 }
 
-/// Cell areas by counting the points of a raster with `steps` steps along the box around all grains: within the box,
-/// and within the whole room.
+/// Returns two areas for each grain, m², from the points of a raster: the part of its cell within the box around all
+/// grains, and the part within `room`. The raster divides the box into `steps` steps along each side.
 fn areas_by_counting(moment: &Moment, steps: i32, room: [DVec2; 2]) -> Vec<[f64; 2]> {
     let grains = &moment.grains;
     let radii: f64 = grains.iter().map(|grain| grain.radius).sum();
@@ -51,7 +52,7 @@ fn areas_by_counting(moment: &Moment, steps: i32, room: [DVec2; 2]) -> Vec<[f64;
     areas
 }
 
-/// Discs of very different sizes that overlap, touch or are isolated.
+/// Returns discs of very different sizes that overlap, touch or are isolated.
 fn scattered(count: usize, seed: u64) -> Vec<GrainState> {
     let mut random = random(seed);
     let grains = (0..count).map(|_| {
@@ -69,7 +70,7 @@ fn assert_counted(moment: &Moment, room: [DVec2; 2]) {
         let is_open = measured.solid_fraction.is_nan();
         let counted = if is_open { inside } else { everywhere };
         let off = measured.cell_area - counted;
-        // A border of 1 m passes through some 60 squares of the raster.
+        // A border of 1 m length crosses about 60 squares of the raster.
         assert!(off.abs() < 0.01 * counted + 6e-3, "{measured:?} of {counted}");
         sum_of_cells += measured.cell_area;
         sum_counted += counted;
@@ -120,7 +121,7 @@ fn cells_of_unequal_discs_that_lie_close_fill_their_box() {
 
 #[test]
 fn two_discs_that_touch_part_at_their_contact() {
-    // A large and a small disc in a box as high as the large one.
+    // A large and a small disc in a box with the height of the large disc.
     let (large, small) = (3.0, 1.0);
     let grains = vec![
         disc(DVec2::new(large, large), large),
@@ -141,11 +142,11 @@ fn a_disc_alone_has_the_room_within_its_reach() {
     let one = alone(&discs(vec![disc(DVec2::new(0.3, 0.7), 1.0)]));
     assert_close(one.cell_area, 4.0, EXACT, "in the box around it");
     assert!(one.solid_fraction.is_nan());
-    // Two discs far apart in a row share a long box. Each owns the points within 2r.
+    // Two discs in a row, far apart in a long box. Each disc owns the points within 2r of its centre.
     let two = discs(vec![disc(DVec2::ZERO, 1.0), disc(DVec2::new(50.0, 0.0), 1.0)]);
     let expected = 2.0 + 3f64.sqrt() + 2.0 * PI / 3.0;
     assert_close(alone(&two).cell_area, expected, EXACT, "in a long box");
-    // The disc at the lower left of a wide box owns a quarter of the circle, two strips, and the square in the corner.
+    // The lower left disc in a wide box owns a quarter of a circle, two strips, and the square in the corner.
     let far = [DVec2::ZERO, DVec2::new(90.0, 30.0), DVec2::new(20.0, 80.0)];
     let three = discs(far.map(|place| disc(place, 1.0)).to_vec());
     let strip = 0.5 * 3f64.sqrt() + PI / 3.0;
@@ -162,7 +163,7 @@ fn a_vacancy_opens_the_cells_around_it_and_a_pore_does_not() {
     assert_eq!(measured.pile.closed_cells, closed - 7);
     let empty: Vec<_> = measured.grains.iter().filter(|grain| grain.cell_area.is_nan()).collect();
     assert_eq!(empty.len(), 1);
-    // The middle of the hole is exactly on the border of the packing, so the packing includes all of it.
+    // The middle of the hole is exactly on the border of the packing, so the packing includes the whole hole.
     assert_close(measured.pile.area, area, EXACT, "A");
 }
 
@@ -211,11 +212,12 @@ fn walls_made_of_sides_cut_as_the_planes_they_lie_in() {
 
 #[test]
 fn a_corner_cuts_the_cell_of_what_rests_on_it() {
-    // The point half a radius below the centre is the upper corner of a square that stands on another corner.
+    // The upper corner of a square, which stands on its opposite corner, is half a radius below the centre of the disc.
     let tip = DVec2::new(0.0, -0.5);
     let others = [DVec2::NEG_ONE, DVec2::new(0.0, -2.0), DVec2::new(1.0, -1.0)];
     let square = others.map(|corner| tip + corner).into_iter().chain([tip]).collect();
-    // The line through (0.6, 0.8) across its direction leaves the box at (1/3, 1) and (1, 1/2).
+    // The bisecting line through the end point (0.6, 0.8), perpendicular to the direction of the wall, leaves the box
+    // at (1/3, 1) and (1, 1/2).
     let end = Boundary::Segment { from: DVec2::new(0.6, 0.8), to: DVec2::new(6.0, 8.0) };
     for (wall, expected) in
         [(Boundary::ConvexPolygon { points: square }, 3.0), (end, 4.0 - 0.5 * (2.0 / 3.0) * 0.5)]

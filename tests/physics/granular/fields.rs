@@ -1,4 +1,4 @@
-//! Smoothed fields: their sums are exact for any position of the borders, and their width is the stated one.
+//! Tests of smoothed fields: their sums are exact for any position of the borders, and their width is the stated width.
 
 use glam::DMat2;
 use slump::granular::{Fields, PileMeasures};
@@ -7,8 +7,8 @@ use slump::sim::Moment;
 
 use crate::common::*;
 
-/// Moving scenes and the number of steps to the moment: with walls, with borders that wrap along x, along both axes,
-/// and with shear.
+/// Names of moving scenes and the number of steps that are run: with walls, with cells that are periodic in x or in
+/// both directions, and with shear.
 const SCENES: [(&str, u64); 5] =
     [("pile", 60), ("collapse", 100), ("shear", 400), ("shear-periodic", 300), ("drum", 200)];
 
@@ -48,7 +48,7 @@ fn sums_over_all_cells_are_those_of_grains_and_contacts() {
             assert!((found / mass - 1.0).abs() < 1e-12, "{what}: {found} {mass}");
             let found = area * fields.momentum.iter().sum::<DVec2>();
             let off = (found - momentum).length() / (mass * fastest);
-            // Momentum smoothed across a sheared border gets the velocity on its other side.
+            // Momentum that is smoothed across a sheared border gets the velocity of the other side.
             let crossing = if cell.border_speed() == 0.0 { 1e-12 } else { 0.1 };
             assert!(off < crossing, "{what}: {found} {momentum}");
             let found =
@@ -58,7 +58,7 @@ fn sums_over_all_cells_are_those_of_grains_and_contacts() {
                 let off = (area * found - pile.area * stress).abs() / (pile.area * largest);
                 assert!(off < 1e-11, "{what}: {found} {stress}");
             }
-            // The kinetic energy is that of the mean flow plus that of the fluctuations.
+            // The kinetic energy is the energy of the mean flow plus the energy of the fluctuations.
             let flow = fields.momentum.iter().zip(&fields.velocity);
             let flow = flow.filter(|(_, velocity)| velocity.is_finite());
             let flow: f64 = flow.map(|(momentum, velocity)| momentum.dot(*velocity)).sum();
@@ -94,7 +94,8 @@ fn a_grain_is_smeared_over_the_width_that_is_said() {
                 squares += share * off * off;
             }
         }
-        // A cell's contents count at its middle, which adds the variance of the cell's width.
+        // The content of a cell counts at the cell's middle, which adds the variance of a uniform distribution over the
+        // cell.
         let expected = (width * width + fields.cell * fields.cell / 12.0).x;
         assert!(mean.length() < 1e-3 * width, "{width}: {mean}");
         assert!((squares / expected - 1.0).abs().max_element() < 2e-3, "{squares} {expected}");
@@ -120,7 +121,7 @@ fn a_flow_that_shears_has_its_rate_to_the_borders_and_beyond() {
     assert!(speed > 0.0, "the situation");
     for (number, velocity) in fields.velocity.iter().enumerate() {
         let expected = cell.shear_rate * (y[number / fields.counts[0]] - middle);
-        // The largest difference of speeds among grains within a width.
+        // The largest difference of grain speeds within one smoothing width.
         let most = 2.0 * cell.shear_rate.abs() * fields.width;
         assert!(
             (velocity.x - expected).abs() < most && most < 0.3 * speed,

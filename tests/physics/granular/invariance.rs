@@ -1,4 +1,5 @@
-//! No measure depends on the pile's position, the side from which it is seen, or the numbering of the grains.
+//! Tests that no measured quantity depends on the position of the pile, on the side from which it is seen, or on the
+//! numbering of the grains.
 
 use std::sync::Arc;
 
@@ -17,7 +18,8 @@ fn for_random_moments(property: impl Fn(u64, Moment) -> Result<(), TestCaseError
     });
 }
 
-/// Random discs over a floor and some fixed discs, with random forces where they overlap. One disc is lost.
+/// Returns random discs over a floor and some fixed discs, with random forces at all overlaps. One disc is marked as
+/// lost.
 fn heap(seed: u64, count: usize) -> Moment {
     let mut random = random(seed);
     let grains = (0..count).map(|_| {
@@ -53,7 +55,7 @@ fn heap(seed: u64, count: usize) -> Moment {
     heap
 }
 
-/// Maps every place by one function and every vector by another.
+/// Returns the state with all positions mapped by one function and all vectors (velocities, forces) by another.
 fn mapped(
     moment: &Moment,
     place: impl Fn(DVec2) -> DVec2,
@@ -84,7 +86,7 @@ fn mapped(
     mapped
 }
 
-/// Expected new value of a column, given its name and all old values of the row.
+/// Function that returns the expected new value of a column from its name and the old values of all columns in the row.
 type Expected<'a> = &'a dyn Fn(&str, &dyn Fn(&str) -> f64) -> f64;
 
 fn compare<Row>(
@@ -100,7 +102,7 @@ fn compare<Row>(
         let (found, expected) =
             (column.value.number(after).unwrap_or(f64::NAN), expected(column.name, &was));
         let off = if column.name.ends_with("_direction") {
-            // 0° and 180° are the same axis.
+            // Angles of an axis: 0° and 180° are the same.
             (found - expected).to_radians().sin().abs()
         } else {
             (found - expected).abs() / expected.abs().max(1.0)
@@ -208,7 +210,7 @@ fn numbers_of_grains_are_names_alone() {
     });
 }
 
-/// The contact of these grains as seen from the one with the smaller number.
+/// Returns a contact between these two grains as seen from the grain with the smaller number.
 fn by_number(contact: ContactState, [grain, other]: [u32; 2]) -> ContactState {
     if grain < other {
         return ContactState { grain, other: OtherBody::Grain(other), ..contact };

@@ -1,4 +1,4 @@
-//! Measures of piles, against exact results for packings and against properties of all piles.
+//! Tests of the measured quantities of piles against exact results for packings, and of properties of all piles.
 
 mod cells;
 mod fields;

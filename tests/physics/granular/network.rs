@@ -1,13 +1,13 @@
-//! Rattlers, clusters, fractions of contacts and force distributions that can be counted by hand; moments with few or
-//! no measures.
+//! Tests of rattlers, clusters, fractions of contacts and force distributions that can be counted by hand, and of
+//! states with few or no measurable quantities.
 
 use super::packings::{RADIUS, among, box_walls, disc, discs, lean, touch, triangular_discs};
 use crate::common::*;
 
 const EXACT: f64 = 1e-12;
 
-/// A ring of four discs with a chain of two attached and a disc inside that pushes no other. Beside it two discs
-/// press each other, and one is isolated.
+/// Returns a ring of four discs with a chain of two discs attached, and a disc inside the ring that presses on no other
+/// disc. At the side, two discs press on each other, and one disc is isolated.
 fn ring_and_chain() -> Moment {
     let place = |x: f64, y: f64| disc(2.0 * RADIUS * DVec2::new(x, y), RADIUS);
     let ring = [place(0.0, 0.0), place(1.0, 0.0), place(1.0, 1.0), place(0.0, 1.0)];
@@ -42,7 +42,7 @@ fn rattlers_are_taken_away_until_none_is_left() {
 
 #[test]
 fn a_body_that_does_not_move_holds_grains() {
-    // A disc that leans into a corner has two contacts; another on the floor beside it has one.
+    // Of two discs, one is in a corner and has two contacts. The other disc lies on the floor and has one contact.
     let floor = [RADIUS, 9.0 * RADIUS].map(|x| disc(DVec2::new(x, RADIUS), RADIUS));
     let walls = box_walls(DVec2::ZERO, DVec2::splat(1.0));
     let mut moment = among(discs(floor.to_vec()), walls, Vec::new());
@@ -63,7 +63,7 @@ fn clusters_are_what_contacts_join() {
         (pile.clusters, pile.largest_cluster)
     };
     assert_eq!(clusters(&moment), (3, 7));
-    // Without the disc that joins the end of the chain to the ring.
+    // Removes the disc that connects the end of the chain with the ring.
     moment.grains[4].lost = true;
     assert_eq!(clusters(&moment), (4, 5));
     moment.contacts.clear();
@@ -86,7 +86,7 @@ fn shares_are_parts_of_all_contacts() {
     assert!(pile.open_share > 0.0);
 }
 
-/// Discs side by side on a plane under inclined gravity (rad).
+/// Returns a scene of discs side by side on a plane under gravity inclined by `angle` (rad).
 fn on_a_slope(angle: f64, friction: f64) -> Scene {
     let radius = 0.1;
     let grains = (0..5)
@@ -109,7 +109,7 @@ fn on_a_slope_discs_slip_where_friction_is_below_a_third_of_its_tangent() {
     }
 }
 
-/// Pairs of touching discs with these forces.
+/// Returns pairs of touching discs, one pair for each of these forces (N).
 fn pairs_under(forces: &[f64]) -> Moment {
     let place = |k: usize, x: f64| disc(RADIUS * DVec2::new(x, 8.0 * k as f64), RADIUS);
     let mut moment =
@@ -125,7 +125,7 @@ fn histogram(moment: &Moment, quantity: &str) -> Histogram {
     all.into_iter().find(|histogram| histogram.quantity == quantity).expect("a histogram")
 }
 
-/// Lower edges and counts of all bins that are not empty.
+/// Returns the lower edges and counts of all bins that are not empty.
 fn filled(histogram: &Histogram) -> Vec<(f64, u64)> {
     let bins = histogram.edges.iter().copied().zip(histogram.counts.iter().copied());
     bins.filter(|&(_, count)| count > 0).collect()
@@ -134,7 +134,7 @@ fn filled(histogram: &Histogram) -> Vec<(f64, u64)> {
 #[test]
 fn moments_of_forces_are_those_of_their_ratios_to_the_mean() {
     let pile = PileMeasures::of(&pairs_under(&[1.0, 2.0, 3.0, 6.0, -3.0, 0.0]));
-    // Contacts without a force do not count: five contacts have ⟨|N|⟩ = 3.
+    // Contacts without a force do not count, so five contacts have the mean ⟨|N|⟩ = 3 N.
     assert_close(pile.mean_normal_force, 3.0, EXACT, "⟨|N|⟩");
     assert_close(pile.normal_force_second_moment, 59.0 / 45.0, EXACT, "⟨f²⟩");
     assert_close(pile.normal_force_third_moment, 279.0 / 135.0, EXACT, "⟨|f|³⟩");
@@ -145,7 +145,7 @@ fn moments_of_forces_are_those_of_their_ratios_to_the_mean() {
 
 #[test]
 fn exponential_forces_have_the_moments_and_the_histogram_of_an_exponential() {
-    // One force per slice of equal probability, so that the only error is the width of the slices.
+    // One force per interval of equal probability, so the only error is the width of the intervals.
     let count = 4000;
     let forces: Vec<f64> =
         (0..count).map(|k| -7.0 * (1.0 - (f64::from(k) + 0.5) / f64::from(count)).ln()).collect();
@@ -170,14 +170,15 @@ fn directions_of_a_triangular_packing_fall_into_three_bins() {
     let centres: Vec<DVec2> = moment.grains.iter().map(|grain| grain.position).collect();
     let mut along_rows = 0;
     for (i, j) in pairs(0..centres.len(), 0..centres.len()) {
-        // The axis does not depend on the order of the pair.
+        // The direction of a contact must not depend on the order of the pair.
         let ends = if (i + j) % 2 == 0 { [i, j] } else { [j, i] };
         if i < j && centres[i].distance(centres[j]) < 2.0001 * RADIUS {
             along_rows += u64::from(centres[i].y == centres[j].y);
             touch(&mut moment, ends, [1.0, 0.0]);
         }
     }
-    // The two diagonal directions alternate in having one more: there are seven steps between rows.
+    // Between two rows, one of the two diagonal directions has one contact more, alternating from gap to gap. There are
+    // seven gaps, so one direction has one contact more in total.
     let across = (moment.contacts.len() as u64 - along_rows) / 2;
     let directions = histogram(&moment, "contact_orientation");
     assert_eq!(filled(&directions), [(-2.5, along_rows), (57.5, across + 1), (117.5, across)]);
@@ -200,7 +201,7 @@ fn what_lies_beyond_the_bins_is_in_the_outermost() {
         contact.gap = -overlap * 2.0 * RADIUS;
     }
     let forces = filled(&histogram(&moment, "normal_force"));
-    // ⟨|N|⟩ = 10: all weak contacts are in the first bin of positive forces.
+    // The mean ⟨|N|⟩ is 10 N, so all weak contacts are in the first bin of positive forces.
     assert_eq!(forces, [(f64::NEG_INFINITY, 1), (0.0, 20), (8.0, 1)]);
     let below = (f64::NEG_INFINITY, 1);
     let pressed = [(0.0, 2), (1e-7, 1), (1e-4, 1), (2e-4, 14), (1e-2, 1), (2e-2, 1), (1e-1, 1)];
@@ -281,7 +282,7 @@ fn discs_on_a_line_have_the_box_around_them() {
     assert_close(pile.area, 4.0, EXACT, "A");
     assert_close(pile.stress_xx, 3.0, EXACT, "three forces of 4 N over 1 m each, by 4 m²");
     assert_eq!((pile.stress_yy, pile.stress_xy, pile.closed_cells), (0.0, 0.0, 0));
-    // A scene with one axis.
+    // A scene in one dimension must have measured quantities, too.
     let mut cradle = built_in("cradle").expect("the cradle").simulation().expect("a run");
     cradle.take_steps(50).expect("finite steps");
     let pile = PileMeasures::of(&cradle.moment());
@@ -296,7 +297,7 @@ fn discs_in_one_place_share_one_cell() {
         assert_close(measured.grains[0].cell_area, 1.0, EXACT, "the first has all");
         assert!(measured.grains[1..].iter().all(|grain| grain.cell_area == 0.0));
     }
-    // A small disc inside a large one, at its centre and beside it, has no cell. Both have contacts.
+    // A small disc inside a large disc, at its centre or off the centre, has no cell. Both discs have contacts.
     for x in [0.0, 1e-300, 0.1] {
         let mut two = discs(vec![disc(DVec2::ZERO, 1.0), disc(DVec2::new(x, 0.0), 0.2)]);
         two.contacts.clear();
@@ -321,7 +322,7 @@ fn what_no_simulation_makes_is_left_out() {
         strange.contacts.push(ContactState { grain: 71, ..contact });
     }
     let measured = measure(&strange);
-    // Compares as text, because NaN ≠ NaN.
+    // The comparison is by text, because NaN is not equal to NaN.
     assert_eq!(format!("{:?}", measured.pile), format!("{:?}", whole.pile));
     assert_eq!(measured.histograms, whole.histograms);
 }

@@ -1,4 +1,4 @@
-//! Handmade moments, and square and triangular packings under known loads.
+//! Handmade states of grains and contacts, and tests of square and triangular packings under known loads.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -43,14 +43,15 @@ pub fn discs(grains: Vec<GrainState>) -> Moment {
     }
 }
 
-/// The moment with these fixed bodies.
+/// Returns the state with these boundaries and fixed discs.
 pub fn among(mut moment: Moment, boundaries: Vec<Boundary>, fixed_discs: Vec<Disc>) -> Moment {
     let around = (*moment.surroundings).clone();
     moment.surroundings = Arc::new(Surroundings { fixed_discs, boundaries, ..around });
     moment
 }
 
-/// Adds a contact of grain i with a body along a normal, with its gap, N and T.
+/// Adds a contact of grain i with a body: branch vector from the body to the grain, gap (m), normal and tangential
+/// force (N).
 fn press_on(
     moment: &mut Moment,
     i: usize,
@@ -75,7 +76,7 @@ fn press_on(
     });
 }
 
-/// Adds a contact of grains i and j with N and T.
+/// Adds a contact of the grains i and j with these normal and tangential forces (N).
 pub fn touch(moment: &mut Moment, [i, j]: [usize; 2], forces: [f64; 2]) {
     let (grain, other) = (moment.grains[i], moment.grains[j]);
     let branch = grain.position - other.position;
@@ -83,7 +84,7 @@ pub fn touch(moment: &mut Moment, [i, j]: [usize; 2], forces: [f64; 2]) {
     press_on(moment, i, (OtherBody::Grain(j as u32), branch, gap), forces);
 }
 
-/// Adds a contact of grain i with half-space number `wall`, with N and T.
+/// Adds a contact of grain i with the half-space number `wall`, with these normal and tangential forces (N).
 pub fn lean(moment: &mut Moment, i: usize, wall: usize, forces: [f64; 2]) {
     let Boundary::HalfSpace { point, normal } = moment.surroundings.boundaries[wall] else {
         panic!("boundary {wall} is no half-space");
@@ -94,7 +95,7 @@ pub fn lean(moment: &mut Moment, i: usize, wall: usize, forces: [f64; 2]) {
     press_on(moment, i, (wall, height * normal, height - grain.radius), forces);
 }
 
-/// The walls of a box: left, right, bottom, top.
+/// Returns the walls of a box in the order left, right, bottom, top.
 pub fn box_walls(low: DVec2, high: DVec2) -> Vec<Boundary> {
     let wall = |point, normal| Boundary::HalfSpace { point, normal };
     vec![
@@ -108,7 +109,7 @@ pub fn box_walls(low: DVec2, high: DVec2) -> Vec<Boundary> {
 pub const RADIUS: f64 = 2e-3;
 const EXACT: f64 = 1e-12;
 
-/// Loads of a packing, N/m: σ_xx, σ_yy, and a shear σ_xy = σ_yx.
+/// Stress of a packing, N/m: σ_xx, σ_yy, and the shear stress σ_xy = σ_yx.
 #[derive(Clone, Copy)]
 struct Loads {
     xx: f64,
@@ -116,7 +117,7 @@ struct Loads {
     xy: f64,
 }
 
-/// Discs in rows and columns that fill a box whose lower left corner is `corner`.
+/// Returns discs in rows and columns that fill a box with the lower left corner at `corner`.
 fn square_discs(columns: usize, rows: usize, corner: DVec2) -> Moment {
     let centre = |index: usize| {
         let place = DVec2::new((index % columns) as f64, (index / columns) as f64);
@@ -127,11 +128,11 @@ fn square_discs(columns: usize, rows: usize, corner: DVec2) -> Moment {
     among(discs(grains), box_walls(corner, corner + size), Vec::new())
 }
 
-/// [`square_discs`] with the contact forces of homogeneous loads.
+/// Returns [`square_discs`] with the contact forces of a homogeneous stress.
 fn square_packing(columns: usize, rows: usize, corner: DVec2, loads: Loads) -> Moment {
     let mut moment = square_discs(columns, rows, corner);
     let [along_x, along_y] = [loads.xx, loads.yy].map(|load| 2.0 * RADIUS * load);
-    // On the body at the right, t is +y and the shear points there; on the body above, t is −x.
+    // For a body on the right the tangent t is +y, the direction of the shear force. For a body above, t is −x.
     let shear = 2.0 * RADIUS * loads.xy;
     for row in 0..rows {
         for column in 0..columns {
@@ -153,7 +154,7 @@ fn square_packing(columns: usize, rows: usize, corner: DVec2, loads: Loads) -> M
     moment
 }
 
-/// Rows of `columns` discs, each second row shifted by a radius, without walls.
+/// Returns rows of `columns` touching discs without walls. Each second row is shifted by a radius.
 pub fn triangular_discs(columns: usize, rows: usize) -> Moment {
     let centre = |index: usize| {
         let (row, column) = (index / columns, index % columns);
@@ -163,7 +164,7 @@ pub fn triangular_discs(columns: usize, rows: usize) -> Moment {
     discs((0..columns * rows).map(|index| disc(centre(index), RADIUS)).collect())
 }
 
-/// Adds contacts to all touching pairs, with one force for each direction: 0°, 60° and 120°.
+/// Adds contacts to all touching pairs, with one normal force (N) for each of the directions 0°, 60° and 120°.
 fn press(moment: &mut Moment, forces: [f64; 3]) {
     let centres: Vec<DVec2> = moment.grains.iter().map(|grain| grain.position).collect();
     for i in 0..centres.len() {
@@ -178,7 +179,7 @@ fn press(moment: &mut Moment, forces: [f64; 3]) {
     }
 }
 
-/// True if a grain has all six neighbours.
+/// Returns true if a grain has all six neighbours.
 fn is_inside(moment: &Moment, grain: &GrainState) -> bool {
     let near = |other: &&GrainState| other.position.distance(grain.position) < 2.0001 * RADIUS;
     moment.grains.iter().filter(near).count() == 7
@@ -234,7 +235,7 @@ fn the_principal_direction_is_that_of_largest_compression() {
 #[test]
 fn a_square_packing_has_no_fabric_and_a_chain_all_of_it() {
     let loads = Loads { xx: 1.0, yy: 0.0, xy: 0.0 };
-    // There are as many contacts along x as along y, because all sides have walls.
+    // All sides have walls, so there are as many contacts along x as along y.
     let square = PileMeasures::of(&square_packing(4, 4, DVec2::ZERO, loads));
     assert_close(square.fabric_xx, 0.5, EXACT, "F_xx of a square packing");
     assert_close(square.fabric_yy, 0.5, EXACT, "F_yy of a square packing");
@@ -261,7 +262,7 @@ fn cells_of_a_triangular_packing_have_its_stress_and_its_density() {
     let forces = [3.0, 5.0, 11.0];
     press(&mut moment, forces);
     let directions = [0.0f64, 60.0, 120.0].map(|degrees| DVec2::from_angle(degrees.to_radians()));
-    // Each inner grain has two halves of a branch per direction, in a cell of 2√3 r².
+    // In each direction, an inner grain has two halves of a branch vector. The area of its cell is 2√3 r².
     let scale = 2.0 * RADIUS / (2.0 * 3f64.sqrt() * RADIUS * RADIUS);
     let sum = |of: fn(DVec2) -> f64| {
         scale * directions.iter().zip(forces).map(|(&n, force)| force * of(n)).sum::<f64>()
@@ -285,7 +286,7 @@ fn cells_of_a_triangular_packing_have_its_stress_and_its_density() {
 
 #[test]
 fn a_triangular_packing_without_walls_fills_the_box_around_it() {
-    // Each second row is one disc shorter, so that the first and last rows reach both sides.
+    // Each second row has one disc less, so that the first and last rows reach both sides.
     let mut moment = triangular_discs(9, 5);
     let is_last_of_short_row = |index: usize| index % 18 == 17;
     let mut index = 0..;
@@ -295,7 +296,7 @@ fn a_triangular_packing_without_walls_fills_the_box_around_it() {
     let (width, height) = (18.0 * RADIUS, (2.0 + 4.0 * 3f64.sqrt()) * RADIUS);
     assert_close(measured.pile.box_area, width * height, EXACT, "the box");
     assert_close(measured.pile.area, width * height, EXACT, "A");
-    // The cells of the first and last rows and at both ends of all other rows are open.
+    // Cells of the first and last rows are open, and so are the cells at both ends of all other rows.
     assert_eq!(measured.pile.closed_cells, 6 + 7 + 6);
 }
 

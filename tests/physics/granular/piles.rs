@@ -1,4 +1,4 @@
-//! Measures of simulated piles, against the balance of forces.
+//! Tests of measured quantities of simulated piles against the balance of forces.
 
 use std::path::Path;
 
@@ -9,14 +9,14 @@ use super::packings::box_walls;
 
 const RADIUS: f64 = 0.1;
 
-/// Measured Σ f ⊗ ℓ: xx, xy, yx, yy, J.
+/// Returns the measured sum Σ f ⊗ ℓ of contact forces times branch vectors (components xx, xy, yx, yy), J.
 fn virial(pile: &PileMeasures) -> [f64; 4] {
     [pile.stress_xx, pile.stress_xy, pile.stress_yx, pile.stress_yy]
         .map(|stress| stress * pile.area)
 }
 
-/// Like [`virial`], computed from outside: the contact force on each grain times its place, minus the forces on fixed
-/// bodies times their contact points.
+/// Returns the same sum as [`virial`], computed from external forces: the total contact force on each grain times its
+/// position, minus the forces on fixed bodies times their contact points.
 fn virial_from_outside(
     moment: &Moment,
     before: &Moment,
@@ -55,7 +55,7 @@ fn weight(moment: &Moment, index: usize, gravity: &Gravity) -> DVec2 {
     acts * gravity.acceleration(grain.position)
 }
 
-/// Steps a scene and compares its stress with the momentum that the grains gained in the last step.
+/// Runs a scene and compares its stress with the momentum that the grains gained in the last step.
 fn assert_balance_of_momentum(mut run: Simulation, steps: usize) {
     take_steps(&mut run, steps);
     let before = run.moment();
@@ -93,7 +93,7 @@ fn walls_of_all_shapes_take_their_part_of_the_stress() {
 #[test]
 fn stress_of_a_pile_at_rest_is_what_its_weight_says() {
     let mut scene = built_in("pile").expect("the pile");
-    // The walls of the box in which the pile was made: nothing yields.
+    // Adds the walls of the box in which the pile was made, so that nothing moves.
     let half_width = 8.0 * scene.mean_diameter;
     let walls = box_walls(DVec2::new(-half_width, -1.0), DVec2::new(half_width, 1.0));
     scene.boundaries.extend(walls);
@@ -111,7 +111,7 @@ fn stress_of_a_pile_at_rest_is_what_its_weight_says() {
     assert!(pile.sliding_share < 0.2 && pile.coordination > 3.0, "{pile:?}");
 }
 
-/// A scene whose discs touch despite gaps of rounding size.
+/// Returns a scene whose discs touch even if rounding opens their gaps slightly.
 fn at_rest(physics: Physics, grains: Vec<Grain>, boundaries: Vec<Boundary>) -> Scene {
     let gravity = DVec2::new(0.0, -G);
     Scene {
@@ -129,7 +129,7 @@ fn stress_in_a_column_grows_with_depth() {
     let floor = level();
     let run = after(&at_rest(SMOOTH, grains.collect(), vec![floor]), 1);
     let measured = measure(&run.moment());
-    // ρ g h, in a column of the width of a disc.
+    // The stress is ρ g h at the depth h, in a column with the width of one disc (ρ: mean density).
     let weight_by_area = std::f64::consts::PI / 4.0 * G;
     for (k, grain) in (0..count).zip(&measured.grains) {
         let depth = (2.0 * f64::from(count - k) - 1.0) * RADIUS;
@@ -141,11 +141,12 @@ fn stress_in_a_column_grows_with_depth() {
     assert_eq!(measured.pile.principal_direction, 90.0);
     assert_close(measured.pile.fabric_yy, 1.0, 1e-12, "F_yy");
     assert_close(measured.pile.normal_force_second_moment, 2.0 * 25.0 / 39.0, 1e-6, "⟨f²⟩");
-    // The top disc has a single contact, so it is a rattler; without it the next one is, and so on.
+    // The top disc has a single contact, so it is a rattler. Without it, the next disc has a single contact, and so on.
     assert_eq!(measured.pile.rattlers, count);
 }
 
-/// Rows of n and n − 1 discs between two walls. Only the top row has weight.
+/// Returns a scene with rows of n and n − 1 discs between two walls, and the row of each disc. Only the top row has
+/// weight.
 fn under_a_lid(columns: usize, rows: usize) -> (Scene, Vec<usize>) {
     let (mut grains, mut row_of) = (Vec::new(), Vec::new());
     for row in 0..rows {
@@ -175,13 +176,13 @@ fn a_force_on_a_packing_between_walls_goes_through_each_of_its_rows() {
     for row in 1..rows - 1 {
         let of_row = || grains.iter().zip(&row_of).filter(|&(_, &other)| other == row);
         let pushed: f64 = of_row().map(|(grain, _)| grain.cell_area * grain.stress_yy).sum();
-        // σ = F/L over the strip of a row: L · √3 r.
+        // The stress is σ = F/L on the width L, and the strip of a row has the area L · √3 r.
         assert_close(pushed, force * 3f64.sqrt() * RADIUS, 1e-7, "σ_yy of a row");
     }
     let pile = PileMeasures::of(&moment);
     let height = moment.grains.last().expect("a grain").position.y;
     assert_close(pile.stress_yy, force * height / pile.area, 1e-7, "σ_yy");
-    // Both walls get the same force over the width between them.
+    // Both walls carry the same force, which gives σ_xx over the width between them.
     let on_wall = |wall: u32| -> f64 {
         let on =
             moment.contacts.iter().filter(|contact| contact.other == OtherBody::Boundary(wall));
@@ -205,7 +206,7 @@ fn motion_carries_momentum_of_its_own() {
         3,
     );
     let mut moment = run.moment();
-    // The grains fall side by side, which is not a pressure.
+    // The grains fall side by side at the same velocity, which is not a pressure.
     let pile = PileMeasures::of(&moment);
     assert!(moment.grains[0].velocity.y < 0.0 && pile.kinetic_pressure == 0.0, "{pile:?}");
     for (grain, speed) in moment.grains.iter_mut().zip([3.0, -1.0]) {
@@ -213,7 +214,7 @@ fn motion_carries_momentum_of_its_own() {
     }
     let pile = PileMeasures::of(&moment);
     let mass = moment.grains[0].mass;
-    // ±2 m/s about the mean.
+    // Both grains move at 2 m/s relative to the mean velocity.
     assert_close(
         pile.kinetic_pressure,
         2.0 * mass * 4.0 / (2.0 * pile.area),

@@ -1,11 +1,11 @@
-//! Changes by hand between two steps: added and removed grains, and drawn walls.
+//! Tests of changes by the user between two steps: added and removed grains, dragged walls, and forces on grains.
 
 use crate::common::*;
 
 const RADIUS: f64 = 2.5e-3;
 const GRAVITY: DVec2 = DVec2::new(0.0, -9.8);
 
-/// Three rows of cohesive grains that have fallen on a floor between walls.
+/// Returns a scene with three rows of cohesive grains that fall on a floor between walls.
 fn heap() -> Scene {
     let grains = (0..12).map(|number| {
         let (row, column) = (number / 4, number % 4);
@@ -23,14 +23,15 @@ fn heap() -> Scene {
     heap
 }
 
-/// The heap in each way to step that accepts it.
+/// Returns the scene [`heap`] with every combination of stepper and method that accepts the scene, and the name of the
+/// combination.
 fn in_every_way() -> Vec<(String, Scene)> {
     let mut heap = heap();
     heap.solver.max_sweeps = 200;
     in_each_way(&heap, every_way()).filter(|(_, scene)| scene.simulation().is_ok()).collect()
 }
 
-/// Bits of the positions and velocities of some grains.
+/// Returns the bit patterns of positions and velocities of some grains.
 fn bits(run: &Simulation, grains: std::ops::Range<usize>) -> Vec<[u64; 6]> {
     crate::common::bits(run)[grains].to_vec()
 }
@@ -76,11 +77,11 @@ fn forces_and_bonds_of_the_others_outlive_a_grain_that_comes_and_goes() {
 #[test]
 fn the_grains_after_one_that_is_taken_out_keep_what_they_have() {
     for (way, scene) in in_every_way() {
-        // The springs' stiffness depends on the weight of all grains.
+        // Under `dem` the stiffness depends on the weight of all grains, so the two scenes differ.
         if scene.stepper == Stepper::Dem {
             continue;
         }
-        // A grain without contacts comes first in one scene and is missing in the other.
+        // One scene has an additional first grain without contacts.
         let mut with = scene.clone();
         let Disc { position, radius } = far(RADIUS);
         with.grains.insert(0, Grain::at_rest(position, radius));
@@ -148,9 +149,9 @@ fn a_grain_that_is_added_in_motion_is_one_of_the_scene() {
     assert_eq!(added.world().grains.len(), 13);
 }
 
-/// Errors of the last step's balances: the largest part of a grain's momentum change that weight, body forces and
-/// contacts do not explain, over the largest body force times Δt; and the difference between kinetic energy change
-/// and works, over the kinetic energy.
+/// Takes one step. Returns two relative errors of its balances. The first is the largest momentum change of a grain
+/// that weight, body forces and contacts do not explain, divided by the largest body force times Δt. The second is the
+/// change of kinetic energy that the works do not explain, divided by the kinetic energy.
 fn left_open(run: &mut Simulation) -> [f64; 2] {
     let before = run.world().grains.velocities.clone();
     let energy = run.observables().kinetic_energy;
@@ -191,7 +192,7 @@ fn body_forces_are_in_momentum_and_works_of_every_way_and_are_held() {
         run.set_body_forces(&forces).expect("sound forces");
         for _ in 0..10 {
             let [momentum, energy] = left_open(&mut run);
-            // `avbd` conserves neither.
+            // The stepper `avbd` conserves neither momentum nor energy.
             let is_exact = momentum < 1e-9 && energy < 1e-9;
             assert!(is_exact || scene.stepper == Stepper::Avbd, "{way}: {momentum} {energy}");
         }
@@ -245,13 +246,13 @@ fn slump_counts_a_new_grain_from_where_it_is_put() {
     let settled = run.observables().slump;
     run.edit(&Edit::Add(far(RADIUS))).expect("there is room");
     take_steps(&mut run, 1);
-    // It has fallen by less than a thousandth of the sum of all heights.
+    // The new grain has fallen by less than a thousandth of the sum of all heights.
     let heights: f64 = run.places().iter().map(|at| at.y).sum();
     let slump = run.observables().slump;
     assert!(slump.abs() < settled.abs() + 1e-3 && heights > 0.15, "{settled} {slump} {heights}");
 }
 
-/// A weightless grain before a wall.
+/// Returns a scene with a weightless grain in front of a wall.
 fn before_a_wall(stepper: Stepper, restitution: f64) -> Scene {
     let grain = Grain::at_rest(DVec2::new(4.0 * RADIUS, 0.0), RADIUS);
     let physics = Physics::FULL;
@@ -263,7 +264,7 @@ fn before_a_wall(stepper: Stepper, restitution: f64) -> Scene {
     scene
 }
 
-/// Speed of a hand on a scene without gravity, m/s: half of √(g·d) with g = 9.8 m/s².
+/// Returns the speed of a wall that the user drags in a scene without gravity, m/s: half of √(g·d) with g = 9.8 m/s².
 fn speed_of_hand() -> f64 {
     0.5 * (9.8 * 2.0 * RADIUS).sqrt()
 }
@@ -286,11 +287,11 @@ fn a_wall_that_is_drawn_hits_grains_with_its_speed_and_stays_where_it_was_drawn(
         }
         assert!((fastest_wall - speed_of_hand()).abs() < 1e-9, "{stepper:?}: {fastest_wall}");
         assert!(place(&run).distance(goal) < 1e-12, "{stepper:?}");
-        // The grain was at rest, so a heavy wall gives it (1 + ρ) times the wall's speed.
+        // The grain is at rest and the wall is infinitely heavy, so the grain gets (1 + ρ) times the speed of the wall.
         let speed = run.velocity(0).x;
         let rebound = if stepper == Stepper::Avbd { 0.0 } else { restitution };
         let expected = (1.0 + rebound) * speed_of_hand();
-        // Springs with many substeps are approximate.
+        // Steppers with springs or many substeps are approximate.
         let tolerance = if stepper == Stepper::Moreau { 1e-9 } else { 0.06 };
         assert!(
             (speed / expected - 1.0).abs() < tolerance,

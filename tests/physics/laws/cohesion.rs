@@ -1,11 +1,11 @@
-//! Cohesion that refers to an acceleration of its own and therefore needs no gravity.
+//! Tests of cohesion that is defined by its own acceleration (`bond_acceleration`) and therefore needs no gravity.
 
 use crate::common::*;
 
 const RADIUS: f64 = 0.01;
 const BOND: f64 = 20.0;
 
-/// Two weightless discs that touch; one moves away at 1 mm/s.
+/// Returns a scene of two weightless discs that touch. One disc moves away at 1 mm/s.
 fn pulled_pair(stepper: Stepper, gravity: DVec2, bond_acceleration: f64) -> Scene {
     let at_rest = weightless(Grain::at_rest(DVec2::ZERO, RADIUS));
     let place = 2.0 * RADIUS * (1.0 - 1e-6) * DVec2::X;
@@ -15,7 +15,8 @@ fn pulled_pair(stepper: Stepper, gravity: DVec2, bond_acceleration: f64) -> Scen
     Scene { stepper, solver: SolverSettings::default(), ..scene }
 }
 
-/// Relative speed after 0.2 s, m/s, and gap in radii. Each step is solved.
+/// Runs 0.2 s and checks that each step is solved. Returns the relative speed of the discs (m/s) and their gap (in
+/// radii).
 fn parted(scene: &Scene) -> [f64; 2] {
     let mut run = start(scene);
     for _ in 0..200 {
@@ -61,7 +62,8 @@ fn numbers_of_cohesion_go_by_its_acceleration() {
     let gravity = 0.0;
     let free = Parameters { bond_acceleration: 4.0, ..parameters(BOND, 1e-3, 0.0, 0.5) };
     assert_close(free.capture_speed(gravity), 20.0 * 4.0 * 1e-3, 1e-15, "capture speed");
-    // √(a d) without gravity, √(g d) with it.
+    // The speed that scales the cohesive time is √(a d) without gravity (a: acceleration of cohesion), and √(g d) with
+    // gravity.
     let cohesive_time = free.capture_speed(gravity) / (4.0 * 0.01f64).sqrt();
     assert_close(free.cohesive_time(0.01, gravity), cohesive_time, 1e-14, "without gravity");
     let cohesive_time = free.capture_speed(G) / (G * 0.01f64).sqrt();

@@ -1,8 +1,9 @@
-//! Quantities that contacts cannot change: momentum, angular momentum except for the overlap, and the energy budget.
+//! Tests of quantities that contacts cannot change: momentum, angular momentum (except for an effect of overlap), and
+//! the energy balance.
 
 use crate::common::*;
 
-/// 40 discs of unequal size that fly towards the origin and spin, without gravity.
+/// Returns a scene of 40 discs of unequal size that spin and fly towards the origin, without gravity.
 fn cluster(physics: Physics, bond: f64, restitution: f64, friction: f64) -> Scene {
     let mut random = random(7);
     let grains = (0..40)
@@ -26,7 +27,7 @@ fn cluster(physics: Physics, bond: f64, restitution: f64, friction: f64) -> Scen
     }
 }
 
-/// Angular momentum about the origin, spins included, and the sum of the absolute terms, kg·m²/s.
+/// Returns the angular momentum about the origin, including spins, and the sum of the absolute terms, kg·m²/s.
 fn angular_momentum(run: &Simulation) -> (f64, f64) {
     let grains = run.grains();
     let orbits = (0..grains.len())
@@ -56,18 +57,19 @@ fn a_free_cluster_keeps_its_momentum() {
 
 #[test]
 fn the_overlap_alone_changes_the_angular_momentum() {
-    // The impulses of a pair act at r_i from one centre and r_j from the other, but the centres are only r_i + r_j +
-    // gap apart: P_t on both exerts the couple gap·P_t. Nothing else changes the angular momentum: a moment against
-    // rolling turns both.
+    // The impulses of a contact act at the distance r_i from one centre and r_j from the other, but the centres are r_i
+    // + r_j + gap apart. So the tangential impulse P_t exerts the moment gap·P_t on the pair. Nothing else changes the
+    // angular momentum: a rolling moment acts on both discs with opposite signs.
     let mut scene = cluster(Physics::FULL, 30.0, 0.3, 0.5);
     let (explained, scale) = check_angular_momentum(&scene);
-    // With steps of 1e-3 s the overlaps change this cluster's angular momentum by 0.1 % in all.
+    // With steps of 1e-3 s the overlaps change the angular momentum of this cluster by 0.1 % in total.
     assert!(explained.abs() < 2e-3 * scale, "{explained:e} of {scale:e}");
     scene.parameters.rolling_friction = 0.3;
     check_angular_momentum(&scene);
 }
 
-/// Checks each step. Returns the change of the angular momentum and its scale, kg·m²/s.
+/// Runs 400 steps and checks in each step that overlaps explain the change of the angular momentum. Returns the sum of
+/// the explained changes and the scale of the angular momentum, kg·m²/s.
 fn check_angular_momentum(scene: &Scene) -> (f64, f64) {
     let mut run = start(scene);
     let (mut explained, mut largest) = (0.0, 0f64);
@@ -91,7 +93,8 @@ fn check_angular_momentum(scene: &Scene) -> (f64, f64) {
     (explained, scale)
 }
 
-/// Steps and checks the energy budget of each step: ΔKE = work of gravity + works of contacts.
+/// Takes `count` steps and checks the energy balance of each step: the change of kinetic energy is the work of gravity
+/// plus the works of the contacts.
 fn check_budget(run: &mut Simulation, count: usize) {
     let mut contacts = 0;
     for _ in 0..count {
@@ -99,7 +102,8 @@ fn check_budget(run: &mut Simulation, count: usize) {
         let (after, off, scale) = balance(run);
         contacts += after.contacts;
         assert!(off <= 1e-11 * scale, "step {}: off by {off:e}", after.step);
-        // Gravity's work, computed separately: its impulse times the mean velocity.
+        // The work of gravity, computed independently: gravity's impulse times the mean of the velocities before and
+        // after the step.
         let world = run.world();
         let by_gravity: f64 = (0..world.grains.len())
             .filter(|&k| world.grains.feels_gravity[k])
@@ -121,7 +125,7 @@ fn every_step_of_a_cohesive_pile_closes_its_energy_budget() {
     for ((bond, friction), touch_tolerance) in pairs(kinds, [0.0, 1e-5, 1e-2]) {
         let mut scene = paper_pile().expect("the shipped state");
         scene.parameters = Parameters { touch_tolerance, ..parameters(bond, 2e-3, 0.1, friction) };
-        // The budget closes even if steps are badly solved.
+        // The energy balance must be exact even if steps are badly solved.
         scene.solver.max_sweeps = 50;
         check_budget(&mut start(&scene), 100);
     }
@@ -133,13 +137,14 @@ fn every_step_of_a_cohesive_pile_closes_its_energy_budget() {
 
 #[test]
 fn contacts_with_one_restitution_lose_what_moreaus_theorem_says() {
-    // Without friction, cohesion and gravity, u^n − u^{n−1} = W P and P ⟂ v̄ give the work ½P·(u^n + u^{n−1}) = P·v̄
-    // − ½ (1−ρ)/(1+ρ) P·WP, and P·WP = Σ m |v^n − v^{n−1}|²: kinetic energy never grows, falls by exactly that
+    // P are the impulses, W is the Delassus operator, m are the masses, and u are the contact velocities. Without
+    // friction, cohesion and gravity, u^n − u^{n−1} = W P and P ⟂ v̄ give the work ½P·(u^n + u^{n−1}) = P·v̄ − ½
+    // (1−ρ)/(1+ρ) P·WP, and P·WP = Σ m |v^n − v^{n−1}|². So the kinetic energy never grows, falls by exactly that
     // amount, and is constant for ρ = 1.
     for restitution in [0.0, 0.3, 0.7, 1.0] {
         let mut scene = cluster(SMOOTH, 0.0, restitution, 0.0);
         scene.solver = tight();
-        // Closing a gap within the touch tolerance is not a shock.
+        // The impulse that closes an open gap within the touch tolerance is not a shock.
         scene.parameters.touch_tolerance = 0.0;
         let mut run = start(&scene);
         let (mut shocks, mut most_contacts) = (0, 0);

@@ -1,8 +1,10 @@
-//! The paper's cradle (§4): time steps that lose the bond between i and j. Also: chains that hang by their cohesion.
+//! Tests of the paper's cradle (§4): the time steps at which the bond between discs i and j is lost. Further tests are
+//! about chains of discs that hang by their cohesion.
 
 use crate::common::*;
 
-/// True if i and j are more than 0.1 d apart after 2.5 s: the latest shock, from 8.5 d, comes at √(2·7.5 d/g) = 1.5 s.
+/// Runs a cradle for 2.5 s. Returns true if the discs i and j are then more than 0.1 d apart. The latest shock, of a
+/// disc k that starts 8.5 d away, happens at √(2·7.5 d/g) = 1.5 s.
 fn opens(mut scene: Scene, dt: f64) -> bool {
     scene.parameters.time_step_secs = dt;
     let run = after(&scene, (2.5 / dt).round() as usize);
@@ -49,7 +51,7 @@ fn after_a_shock_solved_well_i_and_j_move_together() {
     assert!(relative(&run).abs() < 1e-9, "v_ij = {:e}", relative(&run));
 }
 
-/// The fraction of bonds lost over 100 initial heights between 6 and 8.5 d.
+/// Returns the fraction of runs that lose the bond, of 100 runs in which disc k starts between 6 and 8.5 d away.
 fn share_lost(dt: f64, tolerance: f64) -> f64 {
     let lost = (0..100).filter(|&k| {
         let mut scene = cradle_from(6.0 + 2.5 * (f64::from(k) + 0.5) / 100.0);
@@ -62,8 +64,10 @@ fn share_lost(dt: f64, tolerance: f64) -> f64 {
 
 #[test]
 fn the_share_of_lost_bonds_grows_with_the_time_step() {
-    // The expected fractions are those over 5,000 initial heights (0.51, 0.86; 0.51, 0.79) or, with the preset's stop
-    // test, those of another implementation over 500 (0.52, 0.85).
+    // Each case is Δt (s), the stopping tolerance (m/s), the expected fraction, and the number of runs that gave this
+    // fraction. Over 5,000 start distances the fractions are 0.51 and 0.86 with the tolerance of the preset (2.2e-3
+    // m/s), and 0.51 and 0.79 with 1e-6 m/s. Another implementation with the stop test of the preset gave 0.52 and 0.85
+    // over 500 start distances.
     for (dt, tolerance, expected, of) in [
         (4e-3, 2.2e-3, 0.52, 500.0),
         (1e-2, 2.2e-3, 0.85, 500.0),
@@ -71,7 +75,7 @@ fn the_share_of_lost_bonds_grows_with_the_time_step() {
         (1e-2, 1e-6, 0.79, 5000.0),
     ] {
         let share = share_lost(dt, tolerance);
-        // In 95 % of cases two samples, of 100 here and of `of` there, differ by less than this.
+        // Two samples of a fraction, one of 100 runs and one of `of` runs, differ by less than this in 95 % of cases.
         let variance = expected * (1.0 - expected) * (1.0 / 100.0 + 1.0 / of);
         let allowed = 1.96 * f64::sqrt(variance);
         assert!((share - expected).abs() < allowed, "Δt {dt}, stop {tolerance:e}: lost {share}");
@@ -80,25 +84,27 @@ fn the_share_of_lost_bonds_grows_with_the_time_step() {
 
 #[test]
 fn no_bond_is_lost_where_the_residual_opens_less_than_the_gap_tolerance() {
-    // The stop test of 1e-6 m/s above leaves up to 1e-6 m/s × Δt per step, more than the tolerance of 1e-9 m, so the
-    // contact and its cohesion are lost. If the error of a step is below the tolerance, i and j still touch in the
-    // next step, at every Δt.
+    // With the stop at 1e-6 m/s in the previous test, a step can open the gap by up to 1e-6 m/s × Δt. This is more than
+    // the touch tolerance of 1e-9 m, so the contact and its cohesion are lost. If a step is solved so well that this
+    // gap is below the touch tolerance, i and j still touch in the next step, at every Δt.
     for dt in [1e-3, 4e-3, 6e-3, 1e-2] {
         assert_eq!(share_lost(dt, 1e-10), 0.0, "Δt {dt}");
     }
 }
 
 const RADIUS: f64 = 0.05;
-/// Overlap of neighbours, m: only the rounding of the positions.
+/// Overlap of neighbours in a chain, m. It is just above the rounding errors of positions.
 const OVERLAP: f64 = 1e-12;
 const TIME_STEPS: [f64; 4] = [1e-5, 1e-4, 1e-3, 5e-3];
 
-// Let m be the mass of a disc. The contact with the fixed disc has C₀ = Bond·m·g and carries n·m·g. The contact under
-// the k-th disc has C₀ = Bond·(m/2)·g and carries (n − k)·m·g. So a chain holds if n < Bond and n − 1 < Bond/2: a
-// single disc falls at Bond = 1, and a chain of three or more breaks under its first disc at Bond = 2(n − 1). With
-// two discs both contacts reach their limits together, at Bond = 2.
+// Let m be the mass of a disc and n the number of hanging discs. The contact with the fixed disc has the cohesion force
+// C₀ = Bond·m·g and carries the weight n·m·g. The contact under the k-th disc has C₀ = Bond·(m/2)·g and carries (n −
+// k)·m·g. So a chain holds if n < Bond and n − 1 < Bond/2: a single disc falls at Bond = 1, and a chain of three or
+// more discs breaks under its first disc at Bond = 2(n − 1). With two discs both contacts reach their limits together,
+// at Bond = 2.
 
-/// n discs below a fixed disc, in a line along gravity: `down` is x on one axis.
+/// Returns a run of n discs that hang below a fixed disc, in a line along gravity. In one dimension gravity acts along
+/// x.
 fn chain(n: usize, bond: f64, dt: f64, physics: Physics) -> Simulation {
     let down = if physics.axes == 1 { DVec2::X } else { -DVec2::Y };
     let place = |k: usize| k as f64 * (2.0 * RADIUS - OVERLAP) * down;
@@ -111,12 +117,12 @@ fn chain(n: usize, bond: f64, dt: f64, physics: Physics) -> Simulation {
     })
 }
 
-/// The lowest Bond that holds n discs.
+/// Returns the lowest Bond number that holds n discs.
 fn breaking_bond(n: usize) -> f64 {
     (n as f64).max(2.0 * (n as f64 - 1.0))
 }
 
-/// Relative distance to the threshold on either side.
+/// Relative difference between the Bond number of a test and the breaking Bond number.
 const NEAR: f64 = 1e-4;
 
 #[test]
@@ -153,7 +159,8 @@ fn a_chain_breaks_above_its_threshold_where_it_is_overloaded() {
                 run.step().expect("a finite state");
                 assert!(run.observables().converged);
                 assert_eq!(run.observables().contacts, n as u32, "all touch at first");
-                // At each of these time steps NEAR·g opens the overlap within a few steps.
+                // At each of these time steps the missing cohesion, NEAR of the weight, opens the overlap within a few
+                // steps.
                 let mut steps = 0;
                 while run.observables().contacts == n as u32 {
                     run.step().expect("a finite state");

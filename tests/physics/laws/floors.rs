@@ -1,4 +1,5 @@
-//! Floors made of adjoining pieces: a disc that slides or rolls over the floor does not feel the seams.
+//! Tests of floors made of adjoining pieces: seams between the pieces must not disturb a disc that slides or rolls over
+//! them.
 
 use crate::common::*;
 
@@ -12,9 +13,9 @@ fn segment(from: f64, to: f64) -> Boundary {
     Boundary::Segment { from: at(from), to: at(to) }
 }
 
-/// A level floor from 0 to 4 m in pieces of 0.1 m.
+/// Returns level floors along the x axis from 0 to 4 m, most of them made of pieces of 0.1 m, with their names.
 fn floors() -> Vec<(&'static str, Vec<Boundary>)> {
-    // The ends of neighbours are equal except for rounding.
+    // The end of a piece and the start of the next piece are equal except for rounding.
     let ends = || (0..40).map(|k| (0.1 * f64::from(k), 0.1 * f64::from(k) + 0.1));
     let polygon = |(left, right): (f64, f64), depth: f64| Boundary::ConvexPolygon {
         points: vec![
@@ -73,7 +74,8 @@ fn a_disc_does_not_feel_where_the_pieces_of_a_floor_meet() {
     }
 }
 
-/// Pieces that move apart form a step; pieces that move together are one floor.
+/// If two pieces move apart, their seam becomes a step that stops the disc. If they move together, they remain one
+/// floor.
 #[test]
 fn a_seam_is_where_pieces_go_together() {
     let run_over = |second: MotionCourse| {
@@ -83,7 +85,7 @@ fn a_seam_is_where_pieces_go_together() {
         let boundaries = vec![segment(0.0, 1.0), segment(1.0, 4.0)];
         after(&Scene { boundaries, motions, ..scene }, 600).velocity(0).x
     };
-    // The second piece rises by 3.5 mm until the disc is there.
+    // The second piece has risen by 3.5 mm when the disc arrives at the seam.
     let stepped = run_over(straight(DVec2::Y * 1e-2));
     assert!(stepped < 1.9, "{stepped} m/s after a step");
     let grain = moving(DVec2::new(0.3, RADIUS), RADIUS, 2.0 * DVec2::X);
@@ -94,7 +96,8 @@ fn a_seam_is_where_pieces_go_together() {
     assert!(lifted.distance(DVec2::new(2.0, 0.1)) < 1e-6, "{lifted}");
 }
 
-/// Drawing a piece away by hand opens the seam, and releasing it at the other piece closes the seam.
+/// A piece of the floor that the user drags 2 mm above the other piece becomes a step that stops the disc. Without
+/// dragging, the disc does not feel the seam.
 #[test]
 fn a_hand_opens_and_closes_a_seam() {
     let grain = moving(DVec2::new(0.3, RADIUS), RADIUS, 2.0 * DVec2::X);

@@ -1,5 +1,5 @@
-//! Shocks that run through touching grains one after the other, and shocks of walls that move along their normal:
-//! exact results and general properties.
+//! Tests of shocks that run one after the other through touching grains, and of shocks by walls that move along their
+//! normal: exact results and general properties.
 
 use proptest::prelude::*;
 use slump::scene::stability::{bounce, heap};
@@ -7,18 +7,19 @@ use slump::scene::stability::{bounce, heap};
 use crate::common::*;
 
 const RADIUS: f64 = 0.05;
-/// Overlap of grains that touch, in diameters.
+/// Overlap of touching grains, in diameters.
 const TOUCH: f64 = 1e-9;
 const SPEED: f64 = 2.0;
 
-/// Grains without gravity, cohesion and friction, whose shocks run one after the other.
+/// Returns a scene without gravity, cohesion and friction in which Slump treats shocks one after the other (remedy
+/// `sequential_impacts`).
 fn struck(physics: Physics, restitution: f64, grains: Vec<Grain>) -> Scene {
     let mut scene = scene(physics, DVec2::ZERO, parameters(0.0, 1e-4, restitution, 0.0), grains);
     scene.remedies.sequential_impacts = true;
     scene
 }
 
-/// `count` touching balls along `axis` with these velocities.
+/// Returns touching balls in a row along `axis`, one for each of the velocities (m/s).
 fn row_of(axis: DVec2, velocities: &[f64]) -> Vec<Grain> {
     let ball = |(place, &velocity): (usize, &f64)| {
         let x = place as f64 * 2.0 * RADIUS * (1.0 - TOUCH);
@@ -33,7 +34,7 @@ fn energy(run: &Simulation) -> f64 {
     0.5 * grains.masses.iter().zip(squares).map(|(mass, squared)| mass * squared).sum::<f64>()
 }
 
-/// Velocities along `axis` after a step.
+/// Returns the velocities along `axis` after one step, m/s.
 fn after_a_step(scene: &Scene, axis: DVec2) -> Vec<f64> {
     let run = after(scene, 1);
     run.velocities().iter().map(|velocity| velocity.dot(axis)).collect()
@@ -75,7 +76,8 @@ fn balls_from_both_ends_change_places() {
 
 #[test]
 fn each_ball_hands_on_the_share_that_a_pair_does() {
-    // A pair transmits (1 + ρ)/2. With these ρ no ball catches up with the last one afterwards.
+    // An impact of two equal balls transmits the fraction (1 + ρ)/2 of the speed. With these ρ no ball catches up with
+    // the last one afterwards.
     for (restitution, count) in [(0.95, 3), (0.9, 5), (0.99, 8)] {
         let velocities: Vec<f64> =
             (0..count).map(|ball| if ball == 0 { SPEED } else { 0.0 }).collect();
@@ -87,7 +89,8 @@ fn each_ball_hands_on_the_share_that_a_pair_does() {
     }
 }
 
-/// Fifteen balls in a triangle about the x axis and one that strikes its apex. `order` gives their numbers.
+/// Returns fifteen touching balls in a triangle about the x axis and one ball that strikes the apex. `order` gives the
+/// order in which the balls are numbered.
 fn rack(restitution: f64, order: &[usize]) -> Scene {
     let spacing = 2.0 * RADIUS * (1.0 - TOUCH);
     let mut grains = vec![moving(-spacing * DVec2::X, RADIUS, SPEED * DVec2::X)];
@@ -140,7 +143,7 @@ fn a_break_shot_is_symmetric_and_does_not_depend_on_the_numbering() {
     }
 }
 
-/// Discs of unequal size on a lattice, nearly touching, with random velocities.
+/// Returns a scene of discs of unequal size on a lattice, nearly touching, with random velocities.
 fn crowd(restitution: f64, count: usize, seed: u64) -> Scene {
     let mut random = random(seed);
     let columns = (count as f64).sqrt().ceil() as usize;
@@ -205,13 +208,15 @@ fn a_wall_that_moves_strikes_twice_and_its_work_is_no_gain_of_the_bounces() {
     scene.parameters.friction = 0.5;
     let point = -RADIUS * (1.0 - TOUCH) * DVec2::X;
     scene.boundaries = vec![piston(point, DVec2::X, SPEED, 1.0)];
-    // The first ball transmits its 2V to the second and is struck again.
+    // The wall moves at V. The first ball passes its speed 2V on to the second ball and is then struck again by the
+    // wall.
     for velocity in after_a_step(&scene, DVec2::X) {
         assert_close(velocity, 2.0 * SPEED, 1e-9, "a ball in front of the wall");
     }
 }
 
-/// Largest difference of velocities between runs with and without the remedy, over the largest velocity.
+/// Returns the largest difference of a velocity between runs with and without the remedy `sequential_impacts`, divided
+/// by the largest velocity.
 fn difference(scene: &Scene, steps: usize) -> f64 {
     let mut runs = [false, true].map(|sequential_impacts| {
         let mut scene = scene.clone();
@@ -266,7 +271,8 @@ fn a_pile_whose_shocks_are_followed_closes_its_energy_budget() {
 const DT: f64 = 1e-3;
 const WALL_SPEED: f64 = 0.2;
 
-/// A wall along the y axis that moves from `distance` on the left towards the disc at the origin.
+/// Returns a scene with a wall along the y axis that starts at `distance` to the left of a disc at the origin, moves
+/// towards the disc and stops after `travel` (m).
 fn pushed(physics: Physics, restitution: f64, distance: f64, travel: f64) -> Scene {
     let grains = vec![Grain::at_rest(DVec2::ZERO, RADIUS)];
     let point = DVec2::new(-RADIUS - distance, 0.0);
@@ -286,7 +292,7 @@ fn wall(run: &Simulation) -> f64 {
 #[test]
 fn a_wall_hits_a_disc_at_rest_as_a_moving_disc_hits_a_wall() {
     for (physics, restitution) in pairs([LINE, Physics::FULL], [0.0, 0.5, 1.0]) {
-        // The wall begins outside the reach of any list of near pairs.
+        // The wall starts so far away that no list of near pairs contains it.
         let run = after(&pushed(physics, restitution, 20.0 * RADIUS, 10.0), 10_000);
         let expected = (1.0 + restitution) * WALL_SPEED;
         let speed = run.velocity(0).x;
@@ -360,8 +366,8 @@ fn a_wall_that_cannot_be_is_refused_with_its_field() {
     }
 }
 
-/// Each shock runs through the row and gives 2V to the last ball that has not been struck. In the end no contact
-/// closes, and every ball has 2V.
+/// The wall moves at V. Each shock runs through the row and gives the speed 2V to the last ball that has not been
+/// struck yet. In the end no contact closes, and every ball has the speed 2V.
 #[test]
 fn shocks_of_a_moving_wall_run_through_a_row_of_touching_balls() {
     for balls in 1..=4 {
@@ -369,7 +375,7 @@ fn shocks_of_a_moving_wall_run_through_a_row_of_touching_balls() {
         let mut scene = pushed(LINE, 1.0, 0.0, 10.0);
         let row = (0..balls).map(|ball| Grain::at_rest(place(ball), RADIUS));
         scene.grains = row.collect();
-        // The balls touch even if rounding opens their gaps.
+        // With this tolerance the balls touch even if rounding opens their gaps slightly.
         scene.gap_tolerance = 1e-9;
         scene.remedies = Remedies { sequential_impacts: true, ..Remedies::default() };
         let run = after(&scene, 1);

@@ -1,20 +1,21 @@
-//! Single steps of piles against LMGC90, an independent program, under its law `RST_WET_CLB` with thickness 0: the
-//! law of `moreau` with the shifted cone. `tests/lmgc90/README.md` says how LMGC90 made the velocities.
+//! Compares single steps of piles with LMGC90, an independent program, under its law `RST_WET_CLB` with thickness 0.
+//! This is the law of the stepper `moreau` with the shifted cone. `tests/lmgc90/README.md` describes how LMGC90
+//! computed the reference velocities.
 
 use crate::common::*;
 
-/// Largest difference of a grain's velocity, and of its spin times its radius, m/s. LMGC90's masses are 2.8e-8 too
-/// large, because its π has single precision.
+/// Largest allowed difference of a grain's velocity, and of its angular velocity times its radius, m/s. The masses in
+/// LMGC90 are 2.8e-8 too large, because its π has single precision.
 const LARGEST_DIFFERENCE: f64 = 1e-8;
 
-/// A disc before a step, and its velocity and spin after it in LMGC90.
+/// A disc before a step, and the velocity and angular velocity that it has in LMGC90 after the step.
 struct Reference {
     before: Grain,
     velocity: DVec2,
     spin: f64,
 }
 
-/// The lines of a file of numbers, without the head.
+/// Returns the fields of each line of a CSV file in `tests/lmgc90`, without the header.
 fn lines(name: &str) -> Vec<Vec<String>> {
     let path = format!("{}/tests/lmgc90/{name}", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect(&path);
@@ -41,7 +42,7 @@ fn references(name: &str) -> Vec<Reference> {
     lines(name).into_iter().map(reference).collect()
 }
 
-/// The step in Slump, solved as far as Gauss–Seidel can solve it.
+/// Takes the step of the reference data in Slump, solved as precisely as Gauss–Seidel can solve it.
 fn step(references: &[Reference], bond: f64, time_step_secs: f64) -> Simulation {
     let grains = references.iter().map(|reference| reference.before.clone()).collect();
     let scene = pile_of(grains, NewPile::default().box_width_in_diameters).expect("a pile");

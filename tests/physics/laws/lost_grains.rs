@@ -1,5 +1,5 @@
-//! Grains that pass through walls or leave the world are reported and do not count for the slump. Contacts detected
-//! ahead of a step prevent tunnelling.
+//! Tests of grains that pass through walls or leave the simulated region: Slump reports them and omits them from the
+//! slump. Contacts that are detected before grains touch prevent tunnelling through walls.
 
 use slump::scene::stability::{WALL_DISTANCE, heap, thin_wall};
 
@@ -20,7 +20,7 @@ fn at(x: f64, y: f64) -> DVec2 {
     DVec2::new(x, y)
 }
 
-/// Number of lost grains; checks that an alarm reports them.
+/// Returns the number of lost grains. Checks that an alarm reports them if the number is above 0.
 #[track_caller]
 fn lost(run: &Simulation) -> u32 {
     let lost = run.observables().lost_grains;
@@ -43,7 +43,7 @@ fn a_grain_that_jumps_through_a_wall_of_any_shape_is_lost() {
         plane(at(0.0, 0.0), at(-1.0, 0.0)),
     ];
     for wall in walls {
-        // 0.6 m per step: the grain is on the other side before any contact is detected.
+        // The grain moves 0.6 m per step, so it is on the other side of the wall before any contact is detected.
         let fast = moving(at(-0.3, 0.0), RADIUS, at(60.0, 0.0));
         let run = after(&world(0.0, vec![fast], vec![wall.clone()]), 1);
         assert!(run.place(0).x > 0.2, "{wall:?} held it");
@@ -57,7 +57,8 @@ fn a_grain_that_jumps_through_a_wall_of_any_shape_is_lost() {
 
 #[test]
 fn a_grain_that_goes_around_the_end_of_a_wall_is_not_lost() {
-    // The grain rolls over the upper end of a wall, down the other side, and onto a floor.
+    // The grain rolls over the upper end of a wall, down on the other side, and onto a floor. So it did not pass
+    // through the wall.
     let walls = vec![
         Boundary::Segment { from: at(0.0, 0.0), to: at(0.0, 1.0) },
         Boundary::Segment { from: at(-1.0, 0.0), to: at(1.0, 0.0) },
@@ -139,8 +140,9 @@ fn no_grain_leaves_a_closed_box_at_random_without_being_counted() {
 
 const PHASES: u32 = 20;
 
-/// A disc that flies at a thin wall with restitution ρ and `travel` diameters per step. Returns final over initial
-/// velocity for each phase of the step; negative if the disc rebounds.
+/// Runs a disc that flies at a thin wall with restitution ρ and moves `travel` diameters per step. Returns the final
+/// velocity divided by the initial velocity, for each phase of the step at the impact; a negative ratio is a rebound.
+/// `mend` changes the scene.
 fn rebounds(travel: f64, restitution: f64, mend: impl Fn(&mut Scene)) -> Vec<f64> {
     let rebound = |phase| {
         let mut scene = thin_wall(travel, (f64::from(phase) + 0.5) / f64::from(PHASES));
@@ -159,7 +161,7 @@ fn nothing_goes_through_a_wall_but_the_bounce_is_half_lost() {
     let restitution = 0.8;
     for travel in [0.4, 1.0, 4.0] {
         let ahead = rebounds(travel, restitution, |scene| scene.remedies.speculative = true);
-        // The remaining speed is evenly spread between none and all.
+        // The rebound speeds are evenly spread between 0 and ρ times the initial speed.
         let mean = ahead.iter().sum::<f64>() / f64::from(PHASES);
         assert!((mean + 0.5 * restitution).abs() < 0.08, "travel {travel}: {mean}");
         let in_pieces = rebounds(travel, restitution, |scene| {
@@ -185,7 +187,7 @@ fn a_falling_disc_lands_in_touch_and_rests() {
             deepest = deepest.max(run.step().expect("a finite state").max_overlap);
         }
         assert_eq!(run.observables().contacts, 1, "Bond {bond}");
-        // Without it, a step would bury the disc by up to a step of its fall, 0.1 d.
+        // Without contacts detected ahead, the overlap would be up to the distance of one step of the fall, 0.1 d.
         assert!(deepest < 2e-4, "Bond {bond}: {deepest} d");
         assert!(run.velocity(0).length() < 1e-12);
     }

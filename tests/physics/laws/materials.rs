@@ -1,10 +1,10 @@
-//! Pairs of materials with their own friction, restitution and cohesion, and grains of different density.
+//! Tests of pairs of materials with their own friction, restitution and cohesion, and of grains of different density.
 
 use crate::common::*;
 
 const RADIUS: f64 = 0.1;
 const DT: f64 = 1e-3;
-/// Overlap of grains that touch, in radii.
+/// Overlap of touching grains, in radii.
 const TOUCH: f64 = 1e-10;
 
 fn material(name: &str) -> Material {
@@ -19,7 +19,7 @@ fn made_of(name: &str, grain: Grain) -> Grain {
     Grain { material: Some(name.into()), ..grain }
 }
 
-/// Solver settings of every method that supports pairs of materials.
+/// Returns solver settings for every method that supports pairs of materials.
 fn every_solver() -> impl Iterator<Item = SolverSettings> {
     METHODS.iter().filter(|info| info.takes_pairs).map(|info| solved_by(info.method, 1e-12))
 }
@@ -43,7 +43,7 @@ fn each_disc_holds_on_a_slope_up_to_the_friction_of_its_own_pair() {
         let pair =
             |(name, friction)| MaterialPair { friction: Some(friction), ..between(name, "ground") };
         scene.pairs = FRICTIONS.map(pair).to_vec();
-        // Two grains of another material never meet, and only make the cone matter.
+        // These two materials never touch. Their cohesion only makes the choice of friction cone matter.
         scene.pairs.push(MaterialPair { cohesion_force: Some(1.0), ..between("rough", "smooth") });
         let run = after(&scene, 100);
         let contacts = run.moment().contacts;
@@ -68,7 +68,7 @@ fn each_disc_holds_on_a_slope_up_to_the_friction_of_its_own_pair() {
 #[test]
 fn each_pair_bounces_by_its_own_restitution() {
     const SPEED: f64 = 1.0;
-    // A pair of grains, a grain on a wall, and a grain on a piston that comes to meet it.
+    // Three impacts: a grain on a grain, a grain on a wall, and a piston on a grain.
     let pair_at = |x: f64, other: &str| {
         let gap = 2.0 * RADIUS * (1.0 - TOUCH);
         let struck = made_of(other, Grain::at_rest(DVec2::new(x + gap, 0.0), RADIUS));
@@ -108,7 +108,8 @@ fn each_pair_bounces_by_its_own_restitution() {
 #[test]
 fn a_pair_is_pulled_off_by_its_cohesion_force_whatever_its_masses_and_without_gravity() {
     const FORCE: f64 = 2.0;
-    // A small grain on a large one, on a wall and on a fixed disc; a heavy grain on a wall.
+    // Contacts with different effective masses: a small grain on a large grain, on a wall and on a fixed disc, and a
+    // heavy grain on a wall.
     let large = 2.0 * RADIUS;
     let above = |x: f64, height: f64| Grain::at_rest(DVec2::new(x, height * (1.0 - TOUCH)), RADIUS);
     let heavy = Grain { mass: Some(3.0), ..above(4.0, RADIUS) };
@@ -181,7 +182,8 @@ fn a_light_and_a_heavy_grain_collide_with_the_masses_of_their_materials() {
     }
 }
 
-/// A pile with cohesion over a rough base. Every third grain and the base are of the second material.
+/// Returns a scene of a cohesive pile over a rough base. Every third grain and the base have the material "other", all
+/// other grains the material "one".
 fn mixed_pile(parameters: Parameters) -> Scene {
     let mut pile = pressed_pile(30, 0.3, 5, parameters);
     pile.duration_secs = 0.1;
@@ -230,7 +232,7 @@ fn pairs_with_the_numbers_of_the_scene_change_no_bit() {
     }
 }
 
-/// The scene with grains that name no material.
+/// Returns the scene with grains that name no material.
 fn bare(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     scene.grains.iter_mut().for_each(|grain| grain.material = None);
@@ -241,8 +243,9 @@ fn bare(scene: &Scene) -> Scene {
 fn every_row_of_a_mixed_pile_is_within_the_bounds_of_its_own_pair() {
     const FORCE: f64 = 2e-3;
 
-    /// The largest λ_t over its bound and the smallest λ_n over the capture speed, by pair of materials; and true if
-    /// sweeps solve the problem, and Newton's method solves it quickly.
+    /// A visitor of contact problems. For each pair of materials it returns the largest ratio of the tangential impulse
+    /// to its bound and the smallest ratio of the normal impulse to the cohesion impulse. It also returns true if
+    /// sweeps solve the problem and Newton's method solves it within 100 sweeps.
     struct Extremes<'a>(&'a World);
 
     impl ProblemVisitor for Extremes<'_> {
@@ -290,13 +293,13 @@ fn every_row_of_a_mixed_pile_is_within_the_bounds_of_its_own_pair() {
             *all = [all[0].max(now[0]), all[1].min(now[1])];
         }
     }
-    // With the slopes of other pairs Newton's method needs hundreds of sweeps.
+    // If Newton's method used the friction slopes of other pairs, it would need hundreds of sweeps.
     assert!(quick > 20, "{quick} of 40 problems");
     for (pair, [rubbing, pull]) in all.into_iter().enumerate() {
         assert!((0.999..1.0 + 1e-9).contains(&rubbing), "pair {pair}: {rubbing} of the bound");
         let least = if pair == 2 { 0.0 } else { -1.0 };
         assert!(pull >= least - 1e-9, "pair {pair}: pulls {pull}");
-        // No bond of the middle pair is pulled that far.
+        // In this pile no bond of the middle pair ("one" and "other") pulls with its full cohesion force.
         assert!(pull <= least + 1e-3 || pair == 1, "pair {pair}: pulls {pull}");
     }
 }

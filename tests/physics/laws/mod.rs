@@ -1,4 +1,4 @@
-//! The contact laws on few bodies and small piles, against exact motion.
+//! Tests of the contact laws on few bodies and small piles, mostly against exact motion.
 
 mod cohesion;
 mod conservation;

@@ -1,5 +1,5 @@
-//! Reported moments: contacts against exact results, ages, unsolved steps and residuals. Also: effects of the paper's
-//! §3 in small piles.
+//! Tests of the reported contact states against exact results: status, forces, ages, unsolved steps and residuals.
+//! Further tests check effects of the paper's §3 in small piles.
 
 use rayon::prelude::*;
 
@@ -7,10 +7,10 @@ use crate::common::*;
 use crate::program::*;
 
 const RADIUS: f64 = 2e-3;
-/// Depth of discs in the floor, m. At a gap of exactly 0 they would not touch.
+/// Initial overlap of discs and floor, m. At a gap of exactly 0 they would not touch.
 const DEPTH: f64 = 1e-10;
 
-/// A disc on a floor under gravity inclined by an angle (rad).
+/// Returns a run of a disc on a floor. Gravity is inclined by `angle` (rad) against the normal of the floor.
 fn disc_on_floor(angle: f64, bond: f64, friction: f64, cone: FrictionCone) -> Simulation {
     let mut scene = scene_of(&[DVec2::new(0.0, RADIUS - DEPTH)], angle);
     scene.parameters.bond = bond;
@@ -38,7 +38,8 @@ fn only_contact(moment: &Moment) -> ContactState {
 
 #[test]
 fn a_disc_on_a_slope_sticks_or_slips_by_coulombs_law_in_either_cone() {
-    // A rolling disc needs T = ⅓ m g sin α. It slips if that is more than μ times the normal force that the cone uses.
+    // Without slip the disc needs the friction force T = ⅓ m g sin α. It slips if T is more than μ times the normal
+    // force in the friction cone.
     let (angle, friction) = (0.5f64, 0.1);
     let needed = angle.sin() / 3.0;
     let cases = [
@@ -70,7 +71,8 @@ fn a_disc_on_a_slope_sticks_or_slips_by_coulombs_law_in_either_cone() {
 
 #[test]
 fn a_disc_that_is_pulled_off_opens_at_its_cohesion() {
-    // Gravity points upwards. Half of the weight does not hold the disc, twice the weight does.
+    // Gravity points upwards, away from the floor. Cohesion of half the weight does not hold the disc, cohesion of
+    // twice the weight does.
     for (bond, status) in [(0.5, ContactStatus::Open), (2.0, ContactStatus::Slip)] {
         let mut run = disc_on_floor(std::f64::consts::PI, bond, 0.0, FrictionCone::Shifted);
         run.step().expect("a finite step");
@@ -84,14 +86,14 @@ fn a_disc_that_is_pulled_off_opens_at_its_cohesion() {
 
 #[test]
 fn a_contact_is_as_old_as_it_has_lasted() {
-    // One disc rests; the other falls onto the floor beside it within several steps.
+    // One disc rests on the floor. The other disc starts above the floor and lands after several steps.
     let height = 1.5 * RADIUS;
     let centres = [DVec2::new(0.0, RADIUS - DEPTH), DVec2::new(6.0 * RADIUS, RADIUS + height)];
     for stepper in Stepper::ALL.iter().copied() {
         let mut scene = scene_of(&centres, 0.0);
         scene.stepper = stepper;
         let mut run = start(&scene);
-        // The contact of the resting disc is detected at the start.
+        // Step in which each disc touched the floor for the first time. The resting disc already touches at the start.
         let mut touches = [Some(0), None];
         assert_eq!(only_contact(&run.moment()).age_steps, 0, "{stepper}");
         for step in 1..=60u64 {
@@ -124,7 +126,8 @@ fn grains_and_contacts_are_those_of_the_simulation() {
         assert_eq!(state.normal_force, view.normal_force);
         let on_grain = matches!(state.other, OtherBody::Grain(_));
         assert_eq!(on_grain, view.other_grain.is_some());
-        // A view shows the positions at the end of the step; forces belong to the positions at its beginning.
+        // The reported contact points belong to positions at the end of the step, the forces to positions at its
+        // beginning.
         assert!(state.branch.distance(view.from - view.to) <= reach, "{state:?} {view:?}");
     }
     assert!(moment.contacts.iter().any(|contact| contact.status == ContactStatus::Slip));
@@ -132,7 +135,7 @@ fn grains_and_contacts_are_those_of_the_simulation() {
     assert!(moment.contacts.iter().any(|contact| matches!(contact.other, OtherBody::FixedDisc(_))));
 }
 
-/// Below the rounding of any step of a pile.
+/// Tolerance that no step of a pile can reach, because it is below the rounding error.
 const OUT_OF_REACH: f64 = 1e-18;
 
 fn pile(stepper: Stepper) -> Scene {
@@ -181,7 +184,8 @@ fn a_method_never_converges_to_a_residual_that_is_not_finite_and_a_scheme_always
             let is_finite = seen.residual.is_finite();
             let is_scheme = !stepper.uses_method();
             assert!(is_finite || seen.converged == is_scheme, "{stepper} {method}: {seen:?}");
-            // Nothing moves at first, and rounding errors are not a residual.
+            // The residual of a solver method is finite even at the start, when nothing moves and all velocities are
+            // rounding errors.
             assert!(is_finite || is_scheme, "{stepper} {method}: {seen:?}");
         }
     }
@@ -202,14 +206,15 @@ fn a_run_ends_where_no_number_holds_its_energy() {
     }
 }
 
-// Piles are chaotic: any change shifts single slumps by some hundredths. Each claim is about the mean of paired
-// differences over the initial states, with Student's 95 % interval.
+// Piles are chaotic: any change shifts the slump of a single pile by some hundredths. So each test is about the mean of
+// paired differences over the initial states, with Student's 95 % interval.
 
 const BOX_WIDTH_IN_DIAMETERS: f64 = 8.0;
-/// Number of initial states, and Student's t for 95 % with one degree of freedom less.
+/// Number of initial states.
 const STATES: u64 = 8;
+/// Student's t of the 95 % interval with `STATES` − 1 degrees of freedom.
 const STUDENT_T: f64 = 2.365;
-/// Duration after which the collapse of a pile of this size has ended, s.
+/// Simulated duration of a collapse, s. A pile of this size has come to rest before.
 const DURATION_SECS: f64 = 0.4;
 
 fn states() -> Vec<Vec<Grain>> {
@@ -236,7 +241,7 @@ fn slumps(states: &[Vec<Grain>], bond: f64, dt: f64) -> Vec<f64> {
     states.par_iter().map(slump).collect()
 }
 
-/// Mean of the paired differences a − b, and half the width of its 95 % interval.
+/// Returns the mean of the paired differences a − b, and half the width of its 95 % interval.
 fn difference(a: &[f64], b: &[f64]) -> (f64, f64) {
     let count = a.len() as f64;
     let differences: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
@@ -264,7 +269,8 @@ fn cohesion_of_bond_100_holds_what_collapses_without() {
     let states = states();
     let (loose, bonded) = (slumps(&states, 0.0, 1e-3), slumps(&states, 100.0, 1e-3));
     for (loose, bonded) in loose.iter().zip(&bonded) {
-        // One of these narrow piles leans over and slumps 0.27; the others stay below 0.12.
+        // One of these narrow piles leans over and slumps by 0.27. All other piles with cohesion slump by less than
+        // 0.12.
         assert!(bonded + 0.2 < *loose, "{bonded} with cohesion, {loose} without");
     }
     let (change, error) = difference(&bonded, &loose);

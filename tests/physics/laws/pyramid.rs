@@ -1,12 +1,14 @@
-//! A pyramid of logs for which equilibrium forces exist: it stands if the touch tolerance preserves its contacts.
+//! Tests of a pyramid of logs for which equilibrium forces exist: it stands if the touch tolerance preserves its
+//! contacts.
 
 use crate::common::*;
 
 const RADIUS: f64 = 0.05;
 const ROWS_OF_LOGS: u32 = 6;
 
-/// 21 logs on a floor with μ = 1.7. Each coordinate is wrong by up to `scatter`, in diameters, and the logs overlap by as
-/// much, so that gaps have both signs.
+/// Returns a scene of 21 logs on a floor with the friction coefficient 1.7. Random errors of up to `scatter` (in
+/// diameters) are added to each coordinate. The logs overlap by the same distance, so that some gaps are positive and
+/// some negative.
 ///
 /// An equilibrium exists: linear programming finds forces within Coulomb's cones that carry all logs.
 fn pyramid(seed: u64, scatter: f64) -> Scene {
@@ -29,7 +31,7 @@ fn pyramid(seed: u64, scatter: f64) -> Scene {
     }
 }
 
-/// Longest distance that a log moves in a second, d.
+/// Returns the longest distance that a log moves within one second, in diameters.
 fn farthest_way(scene: &Scene) -> f64 {
     let mut run = start(scene);
     let places = run.places().to_vec();
@@ -40,14 +42,14 @@ fn farthest_way(scene: &Scene) -> f64 {
 #[test]
 fn a_pyramid_in_equilibrium_stands_with_a_touch_tolerance() {
     let default = Parameters::default().touch_tolerance;
-    // Positions with seven digits and with six.
+    // Errors of 1e-7 d and 1e-6 d, as in files that give positions with seven and six digits.
     for (scatter, seed) in pairs([1e-7, 1e-6], 0..12) {
         let mut scene = pyramid(seed, scatter);
         scene.parameters.touch_tolerance = default;
         let way = farthest_way(&scene);
         assert!(way < 1e-3, "{scatter} d, start {seed}: a log went {way} d");
     }
-    // The older tolerance, within which grains also push.
+    // The setting `gap_tolerance` is an alternative to the touch tolerance: within it, grains also push each other.
     for seed in 0..4 {
         let scene = Scene { gap_tolerance: default * 2.0 * RADIUS, ..pyramid(seed, 1e-7) };
         let way = farthest_way(&scene);
@@ -55,7 +57,7 @@ fn a_pyramid_in_equilibrium_stands_with_a_touch_tolerance() {
     }
 }
 
-/// Contacts open and close by chance if the errors of positions are as large as the tolerance: most pyramids fall.
+/// If position errors are as large as the touch tolerance, contacts open and close by chance, and most pyramids fall.
 #[test]
 fn pyramids_fall_with_a_touch_tolerance_that_is_not_above_the_errors_of_positions() {
     for (tolerance, scatter) in [(0.0, 1e-7), (1e-7, 1e-7), (1e-6, 1e-6), (1e-5, 1e-5)] {

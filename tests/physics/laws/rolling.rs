@@ -1,6 +1,7 @@
-//! Rolling resistance against exact motion. About the contact, a disc has the moment of inertia (3/2) m r². If it rolls
-//! down a slope of angle θ without slip, gravity turns it by r m g sinθ and M = μ_r r m g cosθ resists, so that
-//! a = ⅔ g (sinθ − μ_r cosθ).
+//! Tests of rolling resistance against exact motion. About the contact point, a solid disc of mass m and radius r has
+//! the moment of inertia (3/2) m r². If the disc rolls without slip down a slope of angle θ, gravity exerts the moment
+//! r m g sinθ and rolling friction, with the coefficient μ_r, resists with the moment M = μ_r r m g cosθ. So its
+//! acceleration is a = ⅔ g (sinθ − μ_r cosθ).
 
 use proptest::prelude::*;
 
@@ -15,7 +16,8 @@ fn rolling(rolling_friction: f64, friction: f64) -> Parameters {
     Parameters { rolling_friction, ..parameters(0.0, DT, 0.0, friction) }
 }
 
-/// A disc on the level y = 0 under gravity inclined by `slope` = tanθ, with much friction.
+/// Returns a scene with a disc on the level y = 0 under gravity inclined by θ (`slope` = tanθ). The friction
+/// coefficient of 5 prevents slip.
 fn on_slope(method: Method, slope: f64, cone: FrictionCone, bond: f64) -> Scene {
     let grain = Grain::at_rest(DVec2::new(0.0, RADIUS * (1.0 - 1e-10)), RADIUS);
     let gravity = G * DVec2::new(slope, -1.0).normalize();
@@ -37,7 +39,7 @@ fn a_disc_on_a_slope_stays_up_to_its_rolling_friction_and_rolls_above() {
             assert_eq!(run.observables().contacts, 1, "{method}");
             let [velocity, spin] = [run.velocity(0).length(), run.grains().angular_velocities[0]];
             assert!(velocity < 1e-12 && spin.abs() < 1e-11, "{method}: {velocity:e}, {spin:e}");
-            // The moment carries the weight: M = m g sinθ r.
+            // The rolling moment balances the weight: M = m g sinθ r.
             let carried = run.grains().masses[0] * G * slope / slope.hypot(1.0) * RADIUS * DT;
             assert_close(run.contacts().rolling(0).abs(), carried, 1e-9, "the moment");
         }
@@ -83,7 +85,7 @@ fn each_disc_resists_rolling_by_the_number_of_its_own_pair() {
 
 #[test]
 fn cohesion_steepens_the_slope_with_the_shifted_cone_alone() {
-    // The disc stays if sinθ ≤ μ_r (cosθ + Bond), because C₀ = Bond·m·g against a boundary.
+    // The disc stays at rest if sinθ ≤ μ_r (cosθ + Bond), because its cohesion to a boundary is C₀ = Bond·m·g.
     let bond = 2.0;
     let speed = |slope: f64, cone| {
         after(&on_slope(Method::Auto, slope, cone, bond), 200).velocity(0).x / (G * DT * 200.0)
@@ -99,8 +101,9 @@ fn cohesion_steepens_the_slope_with_the_shifted_cone_alone() {
 
 #[test]
 fn a_rolling_disc_stops_after_the_exact_distance() {
-    // The speed falls by aΔt per step, a = ⅔ μ_r g, until it is 0. The scheme moves the disc by Δt times the speed at
-    // the end of each step, so the distance is v²/2a − vΔt/2, up to aΔt²/8 of the last step.
+    // The speed v falls by aΔt per step, with a = ⅔ μ_r g, until it is 0. The scheme moves the disc by Δt times the
+    // speed at the end of each step, so the stopping distance is v²/2a − vΔt/2, except for at most aΔt²/8 in the last
+    // step.
     let (speed, slowing) = (0.7, 2.0 / 3.0 * ROLLING * G);
     for method in METHODS_THAT_ROLL {
         let mut scene = on_slope(method, 0.0, FrictionCone::Shifted, 0.0);
@@ -119,7 +122,8 @@ fn a_rolling_disc_stops_after_the_exact_distance() {
     }
 }
 
-/// Two discs of different size that touch and spin without friction, pulled together by Bond 3 (C₀ = 3 m_ij a).
+/// Returns a scene of two discs of different size that touch and spin without friction. Cohesion of Bond 3 (C₀ = 3 m_ij
+/// a, with the acceleration a of the setting `bond_acceleration`) pulls the discs together.
 fn spinning_pair(method: Method, cone: FrictionCone) -> Scene {
     let (one, other) = (0.1, 0.06);
     let spinning = |place: f64, radius: f64, rate: f64| Grain {
@@ -145,7 +149,8 @@ fn the_relative_spin_of_a_cohesive_pair_dies_and_its_angular_momentum_stays() {
     for method in METHODS_THAT_ROLL {
         let mut run = start(&spinning_pair(method, FrictionCone::Shifted));
         let (relative, momentum) = spins(&run);
-        // Without a load the moment is μ_r R C₀ on one disc and its opposite on the other.
+        // No external force presses the discs together, so the moment is μ_r R C₀ on one disc and the opposite on the
+        // other, where R is the reduced radius.
         let reduced = 0.1 * 0.06 / 0.16;
         let moment = ROLLING * reduced * 3.0 * 5.0 * effective_mass(&run);
         let slowing = moment * (1.0 / run.grains().inertia(0) + 1.0 / run.grains().inertia(1));
@@ -163,14 +168,15 @@ fn the_relative_spin_of_a_cohesive_pair_dies_and_its_angular_momentum_stays() {
         }
         assert_eq!(run.observables().contacts, 1);
     }
-    // With the compressive cone only a pressed contact resists.
+    // With the compressive cone a contact resists rolling only under pressure.
     let run = after(&spinning_pair(Method::Auto, FrictionCone::Compressive), 100);
     assert_close(spins(&run).0, 13.0, 1e-14, "the relative spin");
 }
 
 #[test]
 fn a_fixed_disc_counts_with_its_radius_and_its_spin() {
-    // Without friction, a disc on top of one that turns with Ω is turned by M = μ_r R m g, R = rB/(r + B), up to Ω.
+    // A disc of radius r on top of a fixed disc of radius B that turns with Ω, without friction: the moment M = μ_r R m
+    // g with R = rB/(r + B) turns the upper disc until its angular velocity is Ω.
     let (other, rate) = (0.3, 6.0);
     let grain = Grain::at_rest((other + RADIUS) * (1.0 - 1e-10) * DVec2::Y, RADIUS);
     let scene = Scene {
@@ -189,7 +195,7 @@ fn a_fixed_disc_counts_with_its_radius_and_its_spin() {
     assert_close(run.grains().angular_velocities[0], rate, 1e-9, "its last spin");
 }
 
-/// A collapsing pile with rolling friction, badly solved by a few sweeps of each method.
+/// Returns a scene of a collapsing pile with rolling friction. 40 sweeps of each method solve its steps badly.
 fn pile(method: Method, rolling_friction: f64) -> Scene {
     let mut scene = paper_pile().expect("the shipped state");
     scene.parameters = Parameters { rolling_friction, ..parameters(20.0, 2e-3, 0.1, 0.5) };
@@ -242,7 +248,7 @@ fn a_pile_with_rolling_friction_is_the_same_on_one_and_two_threads() {
     assert!(bits(&one) != bits(&after(&pile(Method::Auto, 0.0), 150)), "it matters");
 }
 
-/// The velocities of a solved step in one model, as bits.
+/// Solves the contact problem of the next step with one set of physics (`M`). Returns the velocities as bit patterns.
 fn solved_in<M: Model>(run: &Simulation, method: Method, rolling_friction: f64) -> Vec<[u64; 3]> {
     let (world, parameters) = (run.world(), run.parameters());
     let numbers = ProblemNumbers {
@@ -371,12 +377,12 @@ fn what_does_not_compute_rolling_friction_refuses_it() {
     );
 }
 
-/// Mean, and half of the width of a 95 % interval, of eight numbers.
+/// Returns the mean of eight numbers, and half the width of its 95 % interval.
 fn interval(numbers: &[f64]) -> (f64, f64) {
     let count = numbers.len() as f64;
     let mean = numbers.iter().sum::<f64>() / count;
     let squares = numbers.iter().map(|number| (number - mean).powi(2)).sum::<f64>();
-    // Student's t with 7 degrees of freedom.
+    // Student's t for 95 % and 7 degrees of freedom is 2.365.
     (mean, 2.365 * (squares / (count - 1.0) / count).sqrt())
 }
 

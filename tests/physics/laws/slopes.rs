@@ -1,10 +1,11 @@
-//! A disc on a slope: Coulomb's threshold, sliding and rolling on every kind of fixed shape.
+//! Tests of a disc on a slope, for every kind of fixed shape: Coulomb's threshold, sliding and rolling.
 //!
-//! The slope is a level shape under gravity inclined by θ. Per mass, g cosθ presses the disc on and g sinθ pulls it
-//! along. Without rotation it sticks up to tanθ = μ and then slides with g (sinθ − μ cosθ). With rotation it rolls
-//! without slip up to tanθ = 3μ, with ⅔ g sinθ for a solid disc. Above, it slides in the same way while its spin
-//! grows with 2μ g cosθ / r. In the scheme all of this is exact in every step and for every Δt, because one update
-//! solves one contact exactly.
+//! The slope is a level shape under gravity that is inclined by the angle θ. Per mass, g cosθ presses the disc against
+//! the slope and g sinθ pulls it down the slope. A disc that cannot rotate sticks up to tanθ = μ, and above slides with
+//! the acceleration g (sinθ − μ cosθ). A solid disc that rotates rolls without slip up to tanθ = 3μ, with the
+//! acceleration ⅔ g sinθ. Above, it slides with g (sinθ − μ cosθ) while its angular velocity grows by 2μ g cosθ / r per
+//! second. The scheme gives these values exactly in every step and for every Δt, because one update solves one contact
+//! exactly.
 
 use crate::common::*;
 
@@ -12,7 +13,7 @@ const RADIUS: f64 = 0.1;
 const MU: f64 = 0.3;
 const DT: f64 = 1e-3;
 
-/// A disc that touches the level y = 0 from above, under gravity inclined by `slope` = tanθ.
+/// Returns a scene with a disc that touches the level y = 0 from above, under gravity inclined by θ (`slope` = tanθ).
 fn on_level(physics: Physics, slope: f64, mu: f64, boundary: Boundary) -> Scene {
     let grain = Grain::at_rest(DVec2::new(0.0, RADIUS * (1.0 - 1e-10)), RADIUS);
     let gravity = G * DVec2::new(slope, -1.0).normalize();
@@ -56,7 +57,8 @@ fn a_disc_that_cannot_roll_slides_above_coulombs_threshold_and_not_below() {
             let (along, onto) = acceleration(slope);
             let velocity = sliding.velocity(0);
             let expected = (along - MU * onto) * DT * 500.0;
-            // At 1e-6 above the threshold, rounding errors of μ g cosθ are 1e-9 of the difference.
+            // At 1e-6 above the threshold the acceleration is a small difference, and rounding errors of μ g cosθ are
+            // 1e-9 of it.
             assert_close(velocity.x, expected, 1e-8, name);
             assert!(velocity.y.abs() < 1e-12, "{name}: stays on its level");
             assert_eq!(sliding.grains().angular_velocities[0], 0.0);
@@ -126,8 +128,9 @@ fn a_vertex_of_a_nearly_flat_polyline_is_not_felt() {
 
 #[test]
 fn a_disc_leaves_a_fixed_disc_at_four_sevenths() {
-    // For rolling without slip from rest at angle α from the top, energy gives ¾v² = g R (cosα − cosφ), where R is
-    // the distance of the centres. N = m (g cosφ − v²/R) vanishes at cosφ = 4/7 cosα.
+    // A disc that rolls without slip, from rest at the angle α from the top of a fixed disc, has ¾v² = g R (cosα −
+    // cosφ) at the angle φ, by conservation of energy. R is the distance of the centres. The normal force N = m (g cosφ
+    // − v²/R) vanishes at cosφ = 4/7 cosα.
     let (other, start_angle) = (0.4, 0.2f64);
     let leaving_cosine = |dt: f64| {
         let reach = other + RADIUS;
@@ -150,14 +153,15 @@ fn a_disc_leaves_a_fixed_disc_at_four_sevenths() {
     };
     let ideal = 4.0 / 7.0 * start_angle.cos();
     for dt in [1e-3, 1e-4] {
-        // Near N = 0 the two curves separate slowly, so late contacts are likely: the last one is late by about √Δt
-        // (measured: 0.75 and 0.98 of it).
+        // Near N = 0 the path of the free disc separates slowly from the surface, so contacts still occur after the
+        // ideal end. The last contact is late by about √Δt (measured: 0.75 and 0.98 times √Δt).
         let off = (leaving_cosine(dt) - ideal).abs();
         assert!(off < 1.2 * dt.sqrt(), "Δt {dt}: left at {off} off the ideal cosine");
     }
 }
 
-/// A disc on a half-space, with cohesion, stepped by a scheme.
+/// Returns a scene with a disc on an inclined half-space, with cohesion, for a stepper that does not solve the whole
+/// step.
 fn on_slope(
     stepper: Stepper,
     physics: Physics,
@@ -170,7 +174,8 @@ fn on_slope(
     scene
 }
 
-/// Velocity and acceleration of the disc after it has settled on the slope.
+/// Returns the velocity (m/s) and the acceleration (m/s²) of the disc along the slope, after it has settled on the
+/// slope.
 fn slides(scene: &Scene) -> (f64, f64) {
     let mut run = after(scene, 500);
     let velocity = run.velocity(0).x;

@@ -1,14 +1,16 @@
-//! The touch tolerance is the gap up to which contacts pull. Grains push each other only at gap 0, within rounding.
+//! Tests of the touch tolerance, the gap up to which contacts pull. Grains push each other only at gap 0, within
+//! rounding.
 
 use crate::common::*;
 
 const RADIUS: f64 = 0.01;
 const DIAMETER: f64 = 2.0 * RADIUS;
 const BOND: f64 = 20.0;
-/// Rounding of gaps, in diameters.
+/// Largest rounding error of gaps, in diameters.
 const ROUNDING: f64 = 1e-4;
 
-/// Two weightless discs with a gap, in diameters, that separate at a given speed.
+/// Returns a scene with this touch tolerance (in diameters): two weightless discs with a gap (in diameters) separate at
+/// the speed `opening` (m/s).
 fn pair(tolerance: f64, gap: f64, opening: f64, dt: f64, restitution: f64) -> Scene {
     let place = (RADIUS + 0.5 * gap * DIAMETER) * DVec2::X;
     let grains = [-1.0, 1.0]
@@ -22,7 +24,7 @@ fn gap(run: &Simulation) -> f64 {
     run.place(0).distance(run.place(1)) / DIAMETER - 1.0
 }
 
-/// Speed at which the discs part, m/s.
+/// Returns the speed at which the discs separate, m/s; negative if they approach.
 fn opening(run: &Simulation) -> f64 {
     let velocities = &run.world().grains.velocities;
     (velocities[1] - velocities[0]).dot((run.place(1) - run.place(0)).normalize())
@@ -33,7 +35,7 @@ fn discs_that_come_from_within_the_tolerance_meet_at_gap_0() {
     for (dt, speed) in pairs([1e-3, 1e-4], [0.0, -1e-3, -0.1]) {
         let run = after(&pair(0.01, 0.005, speed, dt, 0.0), (0.1 / dt) as usize);
         assert!(gap(&run).abs() <= ROUNDING, "{dt} s, {speed} m/s: {} d", gap(&run));
-        // Without cohesion, slow pairs do not reach gap 0.
+        // Without cohesion the discs keep their initial speed, so within 0.1 s slow pairs do not reach gap 0.
         let mut loose = pair(0.01, 0.005, speed, dt, 0.0);
         loose.parameters.bond = 0.0;
         let run = after(&loose, (0.1 / dt) as usize);
@@ -52,8 +54,8 @@ fn discs_bounce_from_within_the_tolerance_as_from_the_surface() {
     }
 }
 
-/// A pair that leaves loses the energy that the pull gave it on approach. With ρ = 1 only pairs that reach the
-/// surface so slowly that they end a step there lose energy.
+/// A pair that separates loses the energy that the pull gave it on the approach. With ρ = 1, the whole encounter costs
+/// energy only if the discs approach so slowly that a step ends with the gap at 0.
 #[test]
 fn the_pull_within_the_tolerance_gives_no_more_energy_than_it_takes() {
     let (mut kept, mut lost) = (0, 0);
@@ -81,20 +83,22 @@ fn the_pull_within_the_tolerance_gives_no_more_energy_than_it_takes() {
     assert!(kept > 100 && lost > 0, "{kept} leave with all of their speed, {lost} are caught");
 }
 
-/// ½ m_ij v² = C₀ (τ + the opening within a step), and C₀ = Bond m_ij g.
+/// The energy to break a bond is ½ m_ij v² = C₀ (τ + the opening within a step), where τ is the touch tolerance and C₀
+/// = Bond m_ij g the cohesion force.
 #[test]
 fn a_bond_takes_its_force_times_the_tolerance_to_break() {
     for tolerance in [1e-3, 0.01, 0.1] {
         let escape = (2.0 * BOND * G * tolerance * DIAMETER).sqrt();
         for (part, whole) in [(0.97, true), (1.03, false)] {
-            // Steps within which the pair opens little.
+            // The time step is so short that the pair opens by little in one step.
             let dt = 1e-3 * tolerance * DIAMETER / escape;
             let run = after(&pair(tolerance, 0.0, part * escape, dt, 0.0), 5_000);
             let stays = gap(&run) < tolerance;
             assert_eq!(stays, whole, "{tolerance} d, {part} of the escape speed");
         }
     }
-    // In a long step the impulse of a single step decides, for every tolerance.
+    // If the time step is long, cohesion removes the speed in a single step, so the escape speed is the capture speed
+    // Bond·g·Δt.
     let (dt, capture) = (1e-3, BOND * G * 1e-3);
     for (part, whole) in [(0.99, true), (1.01, false)] {
         let run = after(&pair(0.0, -1e-6, part * capture, dt, 0.0), 50);
@@ -102,9 +106,9 @@ fn a_bond_takes_its_force_times_the_tolerance_to_break() {
     }
 }
 
-/// A pair opens by ½ω²Δt²d in a step. If the bond is barely stronger than the circle requires, the pull needs some
-/// steps to reverse this. Meanwhile the gap grows by at most ω⁴Δt²d/8(ω_b² − ω²), where ω_b is the largest spin that
-/// the bond can carry.
+/// A pair with the angular velocity ω and the diameter d opens by ½ω²Δt²d in a step. If the bond is barely stronger
+/// than the circular motion requires, the pull needs some steps to reverse this opening. Meanwhile the gap grows by at
+/// most ω⁴Δt²d/8(ω_b² − ω²), where ω_b is the largest angular velocity that the bond can carry.
 #[test]
 fn a_pair_turns_for_good_up_to_the_spin_that_its_bond_bears() {
     let break_up = (BOND * G / DIAMETER).sqrt();
@@ -136,7 +140,7 @@ fn a_pair_turns_for_good_up_to_the_spin_that_its_bond_bears() {
     }
 }
 
-/// Numbers in a file are rounded, so discs that are written as touching have gaps of about 1e-16 d, of either sign.
+/// Numbers in a file are rounded, so discs that touch according to the file have gaps of about 1e-16 d, of either sign.
 #[test]
 fn discs_that_are_written_as_touching_are_bonded_by_default() {
     let mut random = random(9);

@@ -1,5 +1,6 @@
-//! Bonded pairs that circle each other. If bonds have a length, the pairs break at the spin √(Bond g/2r). If a bond
-//! lives while its gap is below zero, they break earlier, with a warning.
+//! Tests of bonded pairs that circle each other. If bonds have a length, a pair breaks at the angular velocity √(Bond
+//! g/2r), where r is the radius. If a bond ends at a gap of zero, the pair breaks at a lower angular velocity, and
+//! Slump warns.
 
 use crate::common::*;
 
@@ -7,7 +8,7 @@ const RADIUS: f64 = 0.01;
 /// Overlap at the start, in radii.
 const OVERLAP: f64 = 1e-3;
 
-/// Two weightless discs that touch and circle about their common centre.
+/// Returns a scene of two weightless discs that touch and circle about their common centre at `rate` (rad/s).
 fn doublet(stepper: Stepper, bond: f64, rate: f64, dt: f64) -> Scene {
     let place = RADIUS * (1.0 - OVERLAP) * DVec2::X;
     let grains = [-place, place].map(|place| Grain {
@@ -26,7 +27,8 @@ fn warning(run: &Simulation) -> Option<Alarm> {
     run.alarms().iter().find(|alarm| alarm.kind == AlarmKind::TurnedBonds).copied()
 }
 
-/// The largest spin that the bond can carry, rad/s: m ω² r = Bond ½m g.
+/// Returns the largest angular velocity ω that the bond can carry, rad/s. At this ω, m ω² r is the cohesion force Bond
+/// ½m g.
 fn break_up(bond: f64) -> f64 {
     (bond * G / (2.0 * RADIUS)).sqrt()
 }
@@ -45,7 +47,8 @@ fn a_pair_breaks_at_the_spin_that_its_bond_bears_where_bonds_have_a_length() {
     }
 }
 
-/// The circle needs 2e-4 of the bond's strength.
+/// Checks a pair whose circular motion needs only 2e-4 of the strength of its bond. A bond that ends at a gap of zero
+/// breaks nevertheless, and Slump warns. The pair stays together if the advice of the warning is followed.
 #[test]
 fn a_bond_that_turning_ends_is_counted_and_the_advice_helps() {
     let (bond, rate) = (1000.0, 10.0);
@@ -58,7 +61,7 @@ fn a_bond_that_turning_ends_is_counted_and_the_advice_helps() {
         assert_eq!(alarm.count, Some(1), "{what}");
         let said = alarm.message(&scene.settings());
         assert!(said.contains("1 so far") && said.contains("stepper range"), "{said}");
-        // The time step that the warning recommends.
+        // The stepper that the warning recommends.
         let advised =
             after(&Scene { stepper: Stepper::Range, ..scene.clone() }, (0.5 / dt) as usize);
         assert!(is_whole(&advised) && advised.alarms().is_empty(), "{:?}", advised.alarms());
@@ -75,7 +78,8 @@ fn a_bond_that_turning_ends_is_counted_and_the_advice_helps() {
     }
 }
 
-/// The gap grows by ω²Δt² r per step: a bond with overlap s lives for s/(ω²Δt² r) steps.
+/// In each step the gap of two discs of radius r that circle at the angular velocity ω grows by ω²Δt² r. So a bond with
+/// the overlap s lasts s/(ω²Δt² r) steps.
 #[test]
 fn the_gap_of_a_pair_grows_by_its_turning_in_each_step() {
     let (rate, dt) = (10.0, 1e-3);
@@ -94,7 +98,7 @@ fn the_gap_of_a_pair_grows_by_its_turning_in_each_step() {
 
 #[test]
 fn nothing_is_counted_without_a_bond_that_bears() {
-    // Without cohesion, and with a pull beyond the bond's strength.
+    // Two cases without a warning: no cohesion, and a motion that needs more than the strength of the bond.
     for (bond, part) in [(0.0, 0.1), (20.0, 3.0)] {
         let run = after(&doublet(Stepper::Moreau, bond, part * break_up(20.0), 1e-4), 1000);
         assert!(!is_whole(&run));

@@ -1,27 +1,29 @@
-//! One contact: the three cases of the paper's §2.2, and the force that pulls a contact open.
+//! Tests of a single contact: the three cases of the paper's §2.2, and the force that pulls a contact open.
 //!
-//! Let v = v^{n−1} be the normal velocity at the beginning of a step, a the relative normal acceleration by external
-//! forces, c = C₀Δt/m_ij and λ = P/m_ij. The step requires (`contact::law`) 0 ≤ λ + c ⟂ u ≥ 0 with u = v^n + ρv and
-//! v^n = v + aΔt + λ. The force that gives v̄ = 0, that is u = 0, is A = −m_ij ((1 + ρ) v/Δt + a). So
+//! Let v = v^{n−1} be the normal velocity at the beginning of a step (positive opens the contact), v^n the normal
+//! velocity at the end of the step, ρ the restitution, and a the relative normal acceleration by external forces. The
+//! normal impulse P and the cohesion force C₀ are divided by the effective mass m_ij: λ = P/m_ij and c = C₀Δt/m_ij. The
+//! contact law (`contact::law`) requires 0 ≤ λ + c ⟂ u ≥ 0 with u = v^n + ρv and v^n = v + aΔt + λ. The contact force
+//! that gives u = 0 is A = −m_ij ((1 + ρ) v/Δt + a). So there are these cases:
 //!
 //! * A ≥ −C₀: λ = AΔt/m_ij fulfils the law with u = 0, and v^n = −ρ v for any a. For A > 0 the contact pushes (a
-//!   closing pair bounces), for A < 0 it pulls (an opening pair closes again);
+//!   closing pair bounces), for A < 0 it pulls (an opening pair closes again).
 //! * A < −C₀: λ = −c, and v^n = v + aΔt − C₀Δt/m_ij: the contact opens (u > 0).
 
 use crate::common::*;
 
-/// Initial state of a contact between i and another body, with normal `direction`.
+/// Initial state of a contact between grain i and another body. The velocity (m/s) of i is along the normal.
 #[derive(Clone)]
 struct Case {
     parameters: Parameters,
     velocity: f64,
-    /// Sign of gravity: positive presses the pair together, negative pulls it apart, 0 is no gravity.
+    /// Sign of gravity: positive presses the pair together, negative pulls it apart, 0 switches gravity off.
     pressing: f64,
 }
 
 const RADIUS: f64 = 0.15;
 const OTHER_RADIUS: f64 = 0.1;
-/// Overlap in diameters: enough for a contact, too small for any other effect.
+/// Initial overlap, m: enough for a contact, too small for any other effect.
 const OVERLAP: f64 = 1e-9;
 
 fn cases() -> Vec<Case> {
@@ -37,7 +39,7 @@ fn cases() -> Vec<Case> {
     cases
 }
 
-/// i touches a fixed disc on the side to which `direction` points.
+/// Returns a scene in which grain i touches a fixed disc. `direction` points from the disc to the grain.
 fn against_fixed(case: &Case, physics: Physics, direction: DVec2) -> Scene {
     let place = (RADIUS + OTHER_RADIUS - OVERLAP) * direction;
     let mut grain = moving(place, RADIUS, case.velocity * direction);
@@ -45,13 +47,15 @@ fn against_fixed(case: &Case, physics: Physics, direction: DVec2) -> Scene {
     let gravity = if case.pressing == 0.0 { -G } else { -G * case.pressing } * direction;
     Scene {
         fixed_discs: vec![fixed(DVec2::ZERO, OTHER_RADIUS)],
-        // One update solves one contact. More would add rounding errors to P that are too small to move the bodies.
+        // One update solves a single contact. More updates would add rounding errors to P that are too small to move
+        // the bodies.
         solver: SolverSettings { max_sweeps: 1, ..tight() },
         ..scene(physics, gravity, case.parameters, vec![grain])
     }
 }
 
-/// i touches the free, moving, weightless disc j.
+/// Returns the scene of [`against_fixed`], with a free disc j without weight instead of the fixed disc. Both discs have
+/// an additional common velocity.
 fn free_pair(case: &Case, physics: Physics, direction: DVec2) -> Scene {
     let mut scene = against_fixed(case, physics, direction);
     let drift = 0.3 * direction;
@@ -61,7 +65,8 @@ fn free_pair(case: &Case, physics: Physics, direction: DVec2) -> Scene {
     scene
 }
 
-/// Takes one step, compares v^n and P with the three cases, and returns the case.
+/// Takes one step and compares the final normal velocity v^n and the normal impulse P with theory. Returns the number
+/// of the case (see the top of this file).
 fn check(case: &Case, scene: &Scene, direction: DVec2) -> usize {
     let mut run = start(scene);
     run.step().expect("a finite state");
@@ -84,7 +89,7 @@ fn check(case: &Case, scene: &Scene, direction: DVec2) -> usize {
     } else {
         (case.velocity + acceleration * dt - dt * cohesion_force / mass, -cohesion_force)
     };
-    // Velocities are sums of terms of this size.
+    // Velocities are sums of terms of this size (m/s), so their rounding errors are proportional to it.
     let scale = case.velocity.abs() + 0.3 + G * dt + dt * cohesion_force / mass;
     let off = (found - velocity).abs();
     assert!(off <= 1e-12 * scale, "A = {force}: v^n is {found}, not {velocity}");
@@ -127,7 +132,8 @@ fn one_contact_bounces_closes_again_or_opens_as_in_section_2_2() {
 /// Time steps for which the pull-off force must be equal, s.
 const TIME_STEPS: [f64; 7] = [1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 2e-3, 5e-3];
 
-/// Gravity pulls i off another body. The pull is m_ij g and C₀ is Bond·m_ij·g, so the threshold is Bond = 1.
+/// Returns a scene in which gravity pulls grain i off another body. The pull is m_ij g and C₀ is Bond·m_ij·g, so the
+/// bond breaks for Bond < 1.
 fn pulled(bond: f64, dt: f64, physics: Physics, free: bool) -> Scene {
     let parameters = Parameters { touch_tolerance: 0.0, ..parameters(bond, dt, 0.2, 0.5) };
     let case = Case { parameters, velocity: 0.0, pressing: -1.0 };
@@ -161,7 +167,7 @@ fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
         opening.step().expect("a finite state");
         let speed = relative(&opening).length();
         assert_close(speed, 1e-6 * G * dt, 1e-8, "the speed it opens with");
-        // The overlap is gone after at most √(2·OVERLAP / 1e-6 g).
+        // The pull exceeds C₀ by 1e-6 of the weight, so the overlap is gone after at most √(2·OVERLAP / 1e-6 g).
         let mut steps = 0.02 / dt;
         while opening.observables().contacts > 0 && steps > 0.0 {
             opening.step().expect("a finite state");
@@ -175,7 +181,7 @@ fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
 fn a_corner_of_a_polyline_holds_no_more_than_one_contact() {
     for (bond, holds) in [(1.0 + 1e-6, true), (1.0 - 1e-6, false)] {
         let mut scene = pulled(bond, 1e-3, Physics::FULL, false);
-        // The disc hangs under the middle corner, at which two segments meet.
+        // The disc hangs under the middle point of a polyline, in which two segments meet.
         let points = vec![DVec2::new(-1.0, 0.5), DVec2::ZERO, DVec2::new(1.0, 0.3)];
         scene.fixed_discs.clear();
         scene.boundaries = vec![Boundary::Polyline { points }];
@@ -192,7 +198,7 @@ const BALL_RADIUS: f64 = 0.05;
 const HEIGHT: f64 = 0.3;
 const DT: f64 = 1e-4;
 
-/// A disc dropped from [`HEIGHT`] on the plane through the origin, along `up`.
+/// Returns a scene with a disc at rest at the height [`HEIGHT`] above a plane through the origin with the normal `up`.
 fn drop(physics: Physics, up: DVec2, restitution: f64, bond: f64) -> Scene {
     let grain = Grain::at_rest((BALL_RADIUS + HEIGHT) * up, BALL_RADIUS);
     let parameters = parameters(bond, DT, restitution, 0.5);
@@ -202,7 +208,8 @@ fn drop(physics: Physics, up: DVec2, restitution: f64, bond: f64) -> Scene {
     }
 }
 
-/// Speeds (before, after) of the first `count` shocks, and the highest point after each.
+/// Runs until the disc has bounced `count` times. Returns the speeds before and after each shock (m/s), and the highest
+/// point between consecutive shocks (m).
 fn bounces(scene: &Scene, up: DVec2, count: usize) -> (Vec<[f64; 2]>, Vec<f64>) {
     let mut run = start(scene);
     let (mut shocks, mut heights) = (Vec::new(), Vec::new());
@@ -240,8 +247,8 @@ fn each_bounce_keeps_the_fraction_rho_of_the_speed() {
             let mut ideal = HEIGHT;
             for (bounce, height) in heights.into_iter().enumerate() {
                 ideal *= restitution * restitution;
-                // A shock is up to one step late, so its height is wrong by up to speed × Δt, and it omits gravity
-                // for that step: at most two times speed × Δt per bounce.
+                // A shock comes up to one step late. So the height at the shock is wrong by up to speed × Δt, and
+                // gravity is missing for one step, which makes the error at most two times speed × Δt per bounce.
                 let allowed = 2.0 * (bounce + 1) as f64 * (2.0 * G * HEIGHT).sqrt() * DT;
                 let off = (height - ideal).abs();
                 assert!(off <= allowed, "ρ {restitution}, bounce {bounce}: {height} for {ideal}");
@@ -264,7 +271,7 @@ fn without_restitution_the_first_shock_is_the_last() {
             }
         }
         assert!(shocked);
-        // The disc lies as deep as one step of its fall.
+        // The overlap is at most the distance that the disc falls in one step.
         let depth = run.observables().max_overlap * run.world().mean_diameter;
         assert!(depth > 0.0 && depth <= 1.01 * (2.0 * G * HEIGHT).sqrt() * DT);
     }
@@ -272,13 +279,13 @@ fn without_restitution_the_first_shock_is_the_last() {
 
 #[test]
 fn cohesion_holds_what_bounces_slower_than_the_capture_speed() {
-    // The shock itself is equal (A > 0). The next step pulls back by Bond·g·Δt; if that is more than (1 + ρ) times
-    // the speed, the contact closes again.
+    // The shock itself is the same with and without cohesion (A > 0). In the next step cohesion removes the speed
+    // Bond·g·Δt. If this is more than (1 + ρ) times the rebound speed, the contact closes again.
     let (restitution, speed) = (0.5, (2.0 * G * HEIGHT).sqrt());
     for (times, escapes) in [(0.8, true), (1.2, false)] {
         let bond = times * (1.0 + restitution) * restitution * speed / (G * DT);
         let mut scene = drop(LINE, DVec2::X, restitution, bond);
-        // Deep enough for the contact to persist after the shock.
+        // The disc starts one step deep in the plane, so that the contact still exists after the shock.
         scene.grains[0].position.x = BALL_RADIUS - speed * DT;
         scene.grains[0].velocity.x = -speed;
         let mut run = start(&scene);

@@ -1,4 +1,4 @@
-//! Walls driven by a force: contacts carry the force, momentum and energy balance, and walls may have any mass.
+//! Tests of walls driven by a force: load on contacts, momentum and energy balance, and walls of any mass.
 
 use super::{saved_and_read, through_a_file};
 use crate::common::*;
@@ -28,7 +28,7 @@ fn between(height: f64) -> Vec<Boundary> {
     vec![level(), plane(height * DVec2::Y, DVec2::NEG_Y)]
 }
 
-/// Five columns of logs side by side in a periodic cell, under a piston of this mass that presses with 40 N/m.
+/// Returns five columns of logs in a periodic cell, under a piston with this mass (kg) and the pressure 40 N/m.
 pub(super) fn pressed(mass: f64) -> Scene {
     let (radius, spacing) = (0.01, 0.05);
     let place = |k: i32| DVec2::new(spacing * f64::from(k / 3), 0.01 + 0.02 * f64::from(k % 3));
@@ -36,7 +36,7 @@ pub(super) fn pressed(mass: f64) -> Scene {
     let gravity = -9.8 * DVec2::Y;
     let mut scene = scene(Physics::FULL, gravity, parameters(0.0, 1e-3, 0.0, 0.5), grains);
     scene.boundaries = between(0.06);
-    // Contacts that touch at the start also touch in the first step.
+    // With this tolerance, contacts that exist at the start also exist in the first step.
     scene.gap_tolerance = 1e-8;
     scene.parameters.touch_tolerance = 0.0;
     scene.periodic = Some(Periodic::along_x([-0.025, 0.225]));
@@ -45,7 +45,7 @@ pub(super) fn pressed(mass: f64) -> Scene {
     scene
 }
 
-/// Σ N of the contacts of a boundary, N.
+/// Returns the sum of the normal forces of all contacts of a boundary, N.
 pub(super) fn carried(run: &Simulation, boundary: u32) -> f64 {
     let contacts = run.moment().contacts.into_iter();
     let of_it = contacts.filter(|contact| contact.other == OtherBody::Boundary(boundary));
@@ -55,10 +55,10 @@ pub(super) fn carried(run: &Simulation, boundary: u32) -> f64 {
 #[test]
 fn a_piston_at_rest_carries_its_pressure_however_light_it_is() {
     for method in methods() {
-        // On several columns, each sweep moves the load of a light wall from column to column by the wall's mass
-        // fraction only.
+        // A sweep moves only a small part of a light wall's load (its mass fraction) to the next column. So the
+        // lightest wall is on one column.
         for (mass_ratio, grains) in [(1e-6, 3), (0.1, 15), (1.0, 15), (1e4, 15)] {
-            // Methods that treat all contacts at once do not converge in time for a heavy wall on light columns.
+            // Methods that treat all contacts at once converge too slowly if a heavy wall is on light columns.
             let sweeps = [Method::Nsgs, Method::Nncg, Method::Auto].contains(&method);
             if mass_ratio > 1.0 && !sweeps {
                 continue;
@@ -74,14 +74,14 @@ fn a_piston_at_rest_carries_its_pressure_however_light_it_is() {
             assert_close(carried(&run, 1), 40.0 * 0.25, 1e-8, &what);
             let weight = grains as f64 * of_grain * 9.8;
             assert_close(carried(&run, 0), 40.0 * 0.25 + weight, 1e-8, &what);
-            // The rest of its speed comes from the solver's tolerance on F Δt/M.
+            // The remaining speed is the solver's tolerance times F Δt/M (F: force on the wall, M: mass of the wall).
             let left = 1e-10 * 10.0 * 1e-3 / (mass_ratio * of_grain);
             assert!(drive(&run).speed.abs() < 1e-9 + left, "{what}: {:?}", drive(&run));
         }
     }
 }
 
-/// The wall moves obliquely, so impulses along both directions of a contact move it.
+/// The wall moves obliquely, so the normal and the tangential impulses of a contact both change its speed.
 #[test]
 fn sweeps_and_the_interior_point_move_a_wall_alike_within_bounds_of_friction() {
     let of_grain = std::f64::consts::PI * 1e-4;
@@ -131,7 +131,7 @@ fn a_wall_that_nothing_holds_goes_as_its_force_and_its_damping_say() {
     let Boundary::HalfSpace { point, .. } = run.world().boundaries[0] else {
         panic!("it stays one")
     };
-    // Σ Δt V over steps, the first of which ends with V = FΔt/M.
+    // The path is Σ Δt V over all steps. In the first step the force F and the mass M give the speed V = FΔt/M.
     assert_close(point.y, 0.5 * 1.5 * 0.1 * 0.101, 1e-12, "the way");
     drive_of(&mut scene).damping = 60.0;
     assert_close(drive(&after(&scene, 1000)).speed, 3.0 / 60.0, 1e-9, "F/c");
@@ -146,20 +146,20 @@ fn a_grain_that_hits_a_wall_of_a_mass_gets_the_impulse_of_both_masses() {
         let grain = moving(DVec2::new(0.0, 0.10001), radius, -2.0 * DVec2::Y);
         let mut scene = without_g(parameters, vec![grain]);
         scene.solver.method = method;
-        // The grain hits a driven disc obliquely. The disc moves along y only; its guide takes the x component.
+        // The grain hits a driven disc obliquely. The disc moves along y only; its guide takes the impulse along x.
         let normal = DVec2::new(0.6, 0.8);
         scene.fixed_discs = vec![fixed(scene.grains[0].position - 0.2 * normal, 0.1)];
         let disc = by_force(DVec2::Y, 0.0, mass);
         scene.motions =
             vec![Motion { fixed_discs: vec![0], drive: Some(disc), ..Motion::default() }];
         let run = after(&scene, 3);
-        // 1/m_eff = 1/m + n_y²/M; the approach speed is 2 n_y.
+        // With the masses m (grain) and M (disc), 1/m_eff = 1/m + n_y²/M (n: normal). The approach speed is 2 n_y.
         let effective = 1.0 / (1.0 / of_grain + 0.64 / mass);
         let impulse = (1.0 + restitution) * effective * 1.6;
         let what = format!("{method}, {restitution}");
         let expected = -2.0 * DVec2::Y + impulse / of_grain * normal;
         let found = run.velocity(0);
-        // The movement of the first step turns the normal.
+        // The movement of the disc in the first step turns the normal slightly.
         assert!(found.distance(expected) < 1e-2, "{what}: {found} {expected}");
         let momentum = of_grain * found.y + mass * drive(&run).speed;
         assert_close(momentum, -2.0 * of_grain, 1e-12, &what);
@@ -203,7 +203,7 @@ fn on_a_line_a_driven_wall_is_as_good_as_a_bead_of_its_mass() {
     }
 }
 
-/// Grains between a level and a rough plate that moves along x and is pressed down by a force.
+/// Returns a scene of grains between a floor and a rough plate. A force presses the plate down while it moves along x.
 fn sheared(mass: f64) -> Scene {
     let grains = (0..24).map(|k| {
         let place = DVec2::new(0.011 * f64::from(k % 6), 0.0051 + 0.0101 * f64::from(k / 6));
@@ -231,7 +231,7 @@ fn energy_and_momentum_of_a_driven_wall_balance_in_every_step() {
         let mut scene = sheared(mass);
         (scene.solver.method, scene.solver.tolerance) = (method, 1e-6);
         scene.solver.max_sweeps = 500;
-        // The level does no work, and the plate's work along x is not the drive's.
+        // The floor does no work. The plate's work along x is done by its course, not by the drive.
         let mut run = start(&scene);
         let (mut turned, mut moved) = (0.0, 0f64);
         for step in 0..120 {
@@ -279,7 +279,7 @@ fn a_run_with_a_driven_wall_goes_on_from_a_file_bit_for_bit() {
 
 #[test]
 fn a_motion_of_another_wall_stays_what_it_was() {
-    // A driven wall without contacts changes no bit of the grains.
+    // A driven wall without contacts must not change any bit of the grains' state.
     let grain = |x: f64| moving(DVec2::new(x, 0.02), 0.01, DVec2::new(0.3, -0.2));
     let mut scene = under_g(parameters(0.0, 1e-3, 0.4, 0.5), vec![grain(0.0), grain(0.021)]);
     scene.solver = tight();
@@ -293,7 +293,7 @@ fn a_motion_of_another_wall_stays_what_it_was() {
     assert_eq!(alone.world().grains, with.world().grains);
 }
 
-/// Steppers that accept driven walls, each with the methods that solve for them.
+/// Returns the steppers that accept driven walls, each with every method that accepts driven walls.
 fn ways() -> impl Iterator<Item = (Stepper, Method)> {
     let methods = |stepper: Stepper| {
         let takes = METHODS.iter().filter(|info| info.takes_drives);
@@ -303,7 +303,7 @@ fn ways() -> impl Iterator<Item = (Stepper, Method)> {
     steppers.flat_map(move |stepper| methods(stepper).map(move |info| (stepper, info.method)))
 }
 
-/// Two pistons on jumping columns: one from above with damping, and one from the side.
+/// Returns a scene of jumping grains between a damped piston above and a piston at one side, both of this mass (kg).
 fn jumping(mass: f64) -> Scene {
     let mut scene = pressed(mass);
     for (k, grain) in (0..).zip(&mut scene.grains) {
@@ -362,7 +362,7 @@ fn a_piston_carries_its_pressure_and_catches_what_hits_it_under_other_laws() {
                 mean += carried(&run, 1) / 100.0;
             }
             assert_close(mean, 10.0, exact, &what);
-            // The wall trembles more slowly than one step of gravity.
+            // The wall vibrates with less than the speed that gravity gives in one step, 9.8e-3 m/s.
             assert!(drive(&run).speed.abs() < 9.8e-3, "{what}: {:?}", drive(&run));
             scene.parameters.restitution = 0.5;
             scene.grains.truncate(1);
@@ -373,13 +373,13 @@ fn a_piston_carries_its_pressure_and_catches_what_hits_it_under_other_laws() {
             let run = after(&scene, 4);
             let (grain, wall) = (run.velocity(0).y, -drive(&run).speed);
             assert_close(grain + mass_ratio * wall, 1.0, 1e-12, &what);
-            // Under `range`, bodies that have not separated within the step move on together.
+            // Under `range` the restitution is 0: bodies that do not separate within the step move on together.
             assert!((wall - grain - restitution).abs() < 1e-6, "{what}: {grain} {wall}");
         }
     }
 }
 
-/// Like [`pressed`], under `dem` with stiff springs.
+/// Returns the scene of [`pressed`] with the stepper `dem` and stiff springs.
 fn on_springs(mass: f64) -> Scene {
     let mut scene = pressed(mass);
     scene.stepper = Stepper::Dem;
@@ -412,7 +412,7 @@ fn a_piston_on_springs_carries_its_pressure_and_its_energy_balances() {
 
 #[test]
 fn a_wall_on_springs_that_is_lighter_than_its_grains_may_swing_up() {
-    // Five contacts of 2e4 N/m, without dashpots: h < 2 √(M/5k).
+    // The wall (mass M) is on five springs of stiffness k = 2e4 N/m. It is stable if the substep is below 2 √(M/5k).
     let fastest = |part: f64| {
         let mut scene = on_springs(0.01);
         scene.parameters.damping_ratio = 1e-9;
@@ -428,7 +428,7 @@ fn a_wall_on_springs_that_is_lighter_than_its_grains_may_swing_up() {
         (fastest, mass)
     };
     let ((calm, heavy), (wild, light)) = (fastest(0.3), fastest(3.0));
-    // The wall does not fall through a gap, so its speed is that of an oscillation about its load.
+    // The wall starts in contact, so if it is stable its speed is that of an oscillation under its load.
     assert!(calm < 10.0 / (5.0 * 2e4 * heavy).sqrt() * 10.0, "{calm} m/s of {heavy} kg");
     assert!(wild > 10.0 * calm * (heavy / light).sqrt(), "{wild} m/s of {light} kg, {calm} m/s");
 }
@@ -436,7 +436,7 @@ fn a_wall_on_springs_that_is_lighter_than_its_grains_may_swing_up() {
 /// Force on each wall, N.
 const FORCE: f64 = 0.03;
 
-/// 36 discs of different sizes, loosely placed between a floor and three walls that press with the same force.
+/// Returns a scene of 36 discs of different sizes in loose positions between a floor and three walls with [`FORCE`].
 fn pressed_together(seed: u64) -> Scene {
     let mut random = random(seed);
     let grain = |k: i32| {
@@ -465,12 +465,12 @@ fn pressed_together(seed: u64) -> Scene {
 fn walls_that_press_a_packing_at_rest_carry_each_its_force() {
     for seed in [1, 2] {
         let run = after(&pressed_together(seed), 2500);
-        // Grains without support may float. If the walls are at rest, the grains that carry them are too.
+        // Grains that carry nothing may float. If the walls are at rest, the grains that carry the walls rest, too.
         for motion in &run.world().motions {
             let speed = motion.drive.as_ref().expect("a drive").speed;
             assert!(speed.abs() < 1e-9, "{speed} m/s, seed {seed}: {:?}", run.observables());
         }
-        // Friction at the side walls carries the part of the load that the floor does not.
+        // Each wall carries its force. The floor may carry less, because friction at the side walls carries the rest.
         for wall in 1..4 {
             assert_close(carried(&run, wall), FORCE, 1e-8, &format!("wall {wall}, seed {seed}"));
         }
@@ -492,7 +492,7 @@ fn the_shipped_test_compresses_and_bears_more_along_than_across() {
             ratios.push(stress_ratio(&run));
         }
     }
-    // A single moment is off by up to a fifth, the mean of forty moments by some hundredths.
+    // A single ratio is wrong by up to a fifth, the mean of forty ratios by some hundredths.
     let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
     assert!(ratios.len() > 40 && (1.4..2.6).contains(&mean), "{mean} of {}", ratios.len());
     assert_eq!(run.observables().lost_grains, 0);

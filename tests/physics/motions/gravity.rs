@@ -1,5 +1,5 @@
-//! Gravity that turns by itself or is tilted by hand: falling and sliding, and that a tilted scene equals a scene
-//! whose gravity is written that way.
+//! Tests of gravity that turns with time or is tilted by the user: free fall, sliding, and equality of a tilted scene
+//! with a scene whose gravity is defined in the tilted direction.
 
 use super::{saved_and_read, through_a_file};
 use crate::common::*;
@@ -11,7 +11,8 @@ fn evenly(rate: f64) -> Option<GravityTurn> {
     Some(GravityTurn { course: TurnCourse::Rate { rate }, elapsed_secs: 0.0 })
 }
 
-/// ∫ g (sin Ωt, −cos Ωt) dt = g/Ω (1 − cos Ωt, −sin Ωt).
+/// Checks free fall under gravity that turns at the rate Ω. The velocity must be ∫ g (sin Ωt, −cos Ωt) dt = g/Ω (1 −
+/// cos Ωt, −sin Ωt).
 #[test]
 fn what_falls_freely_goes_as_the_integral_of_gravity() {
     for &stepper in Stepper::ALL {
@@ -29,7 +30,7 @@ fn what_falls_freely_goes_as_the_integral_of_gravity() {
         let angle = RATE * 2000.0 * DT;
         let expected = G / RATE * DVec2::new(1.0 - angle.cos(), -angle.sin());
         let grains = run.grains();
-        // A step uses gravity at its middle: error (ΩΔt)²/24.
+        // A step uses the gravity at its middle, which gives the relative error (ΩΔt)²/24.
         assert!(grains.velocities[0].distance(expected) < 2e-7, "{stepper}");
         let energy = 0.5 * grains.masses[0] * grains.velocities[0].length_squared();
         assert_close(work, energy, 1e-12, stepper.name());
@@ -38,7 +39,8 @@ fn what_falls_freely_goes_as_the_integral_of_gravity() {
     }
 }
 
-/// A table of angles tilts a level to tan θ just below μ and then just above.
+/// A table of angles tilts gravity to an angle θ with tan θ just below μ, and later to an angle with tan θ just above
+/// μ.
 #[test]
 fn a_disc_on_a_level_slides_once_gravity_leans_by_more_than_friction_holds() {
     let mu: f64 = 0.3;
@@ -64,13 +66,14 @@ fn a_disc_on_a_level_slides_once_gravity_leans_by_more_than_friction_holds() {
             "{what}: {speed}"
         );
         take_steps(&mut run, 1100);
-        // The acceleration g (sin θ − μ cos θ) is 0 at tan θ = μ, at 0.65 s, and then rises evenly until 0.7 s.
+        // The acceleration g (sin θ − μ cos θ) reaches 0 at 0.65 s, when tan θ = μ, and then rises linearly until 0.7
+        // s.
         let push = G * (above.sin() - mu * above.cos());
         assert_close(run.velocity(0).x, push * (1.0 + 0.025), 5e-3, &what);
     }
 }
 
-/// Grains that rest, fall and are bonded, on a floor.
+/// Returns a scene of grains on a floor: some rest, one falls, one is held by a bond.
 fn on_a_floor() -> Scene {
     let mut scene = at_rest_and_falling();
     scene.boundaries = vec![level()];
@@ -134,7 +137,8 @@ fn a_run_that_is_tilted_on_the_way_goes_on_from_its_file_bit_for_bit() {
             take_steps(run, 10);
         }
         assert_eq!(bits(&simulation), bits(&again));
-        // An initial state made from here has the scene's own turn, and the tilt as a setting.
+        // An initial state made from the saved state has the turning gravity of the scene itself and the tilt as a
+        // setting.
         let start = read.as_start();
         assert_eq!(start.parameters.tilt, -12.5);
         assert_eq!(start.gravity, read.scene.gravity);

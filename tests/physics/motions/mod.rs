@@ -1,5 +1,5 @@
-//! Bodies that move by themselves, and gravity that turns: the effect of their surfaces on grains, independence of
-//! the frame of reference, and their part in energy, momentum, restart and mirror images.
+//! Tests of bodies that move on prescribed courses, and of gravity that turns: effect of moving surfaces on grains,
+//! independence of the frame of reference, energy and momentum balance, restart, and mirror images.
 
 mod driven;
 mod gravity;
@@ -14,14 +14,14 @@ mod views;
 use crate::common::*;
 use slump::config::{SavedState, scene_to_toml};
 
-/// A run, saved and read again.
+/// Saves a run to bytes and reads it again.
 fn saved_and_read(scene: &Scene, run: &Simulation) -> SavedState {
     let state = SavedState::new(scene.clone(), run.clone(), Tally::default());
     let bytes = state.to_bytes().expect("bytes");
     SavedState::from_bytes(&bytes, "a.slump").expect("a state")
 }
 
-/// The scene, written to its own file format and read again.
+/// Writes the scene in Slump's own file format, reads it again, checks that it is equal, and returns it.
 fn through_a_file(scene: &Scene) -> Scene {
     let text = scene_to_toml(scene).expect("TOML");
     let read: Scene = toml::from_str(&text).expect("a scene");

@@ -1,10 +1,11 @@
-//! Borders that wrap at the sides, below and above, or both: nothing depends on their position.
+//! Tests of cells that are periodic in x, in y, or in both: results do not depend on the position of the borders.
 
 use super::images::gas;
 use super::through_a_file;
 use crate::common::*;
 
-/// The scene with a cell of this width whose left border is at `left`, and all discs moved by `shift`, m.
+/// Returns the scene in a periodic cell of this width with the left border at `left`, and moves all discs by `shift`
+/// (m).
 pub(super) fn in_cell(scene: &Scene, [left, width]: [f64; 2], shift: f64) -> Scene {
     let cell = Periodic::along_x([left, left + width]);
     let mut scene = Scene { periodic: Some(cell), ..scene.clone() };
@@ -15,7 +16,8 @@ pub(super) fn in_cell(scene: &Scene, [left, width]: [f64; 2], shift: f64) -> Sce
     scene
 }
 
-/// Longest distance, m, between a grain of one run and the same grain of a run that was moved by `shift`.
+/// Returns the longest distance, m, between a grain of one run and the same grain of a second run whose grains were
+/// moved by `shift`.
 fn farthest(one: &Simulation, other: &Simulation, shift: f64) -> f64 {
     let cell = one.world().periodic.or(other.world().periodic).expect("a cell");
     let [one, other] = [one, other].map(|run| run.places());
@@ -23,7 +25,8 @@ fn farthest(one: &Simulation, other: &Simulation, shift: f64) -> f64 {
     ways.map(|way| cell.shortest(way).length()).fold(0.0, f64::max)
 }
 
-/// A scene 16 d wide on discs and on a level, in which each grain has only one place to come to rest.
+/// Returns a scene of grains on fixed discs and on a floor, and the width of a periodic cell for it (20 diameters, m).
+/// Each grain can come to rest at only one position.
 pub(super) fn at_rest_on_discs() -> (Scene, f64) {
     let mut scene = at_rest_and_falling();
     scene.boundaries = vec![level()];
@@ -41,7 +44,7 @@ fn a_packing_moved_across_the_border_goes_the_same_way() {
         for bond in [0.0, 2.0] {
             scene.parameters.bond = bond;
             let mut still = start(&scene);
-            // Far from both borders the run is bitwise as without borders.
+            // If all grains are far from both borders, the run is bitwise equal to the run without borders.
             let mut inside = start(&in_cell(&scene, [-0.75 * width, 1.5 * width], 0.0));
             let shifts = [0.37, 0.5, 0.81].map(|part| part * width);
             let moved = |shift| start(&in_cell(&scene, [-0.5 * width, width], shift));
@@ -57,8 +60,8 @@ fn a_packing_moved_across_the_border_goes_the_same_way() {
                 for (shift, moved) in &mut moved {
                     take_steps(moved, 1);
                     let off = farthest(&still, moved, *shift) / scene.mean_diameter;
-                    // Under `range` a gap of 1e-4 d counts as a contact, so a grain can come to rest with this gap or
-                    // without it.
+                    // Under `range` a gap of up to 1e-4 d counts as a contact, so the gap of a grain at rest can differ
+                    // by 1e-4 d.
                     let rests = if stepper == Stepper::Range { 1.1e-4 } else { 1e-6 };
                     assert!(off < rests, "{stepper} {method} {bond}, {shift} m, {step}: {off} d");
                 }
@@ -85,10 +88,10 @@ fn numbers_of_grains_mean_nothing_across_the_border() {
     }
 }
 
-/// A pile that slides over the border of its cell, on a moving base.
+/// Returns a scene of a pile that slides across the border of its periodic cell, on a moving base.
 pub(super) fn sliding(bond: f64) -> Scene {
     let mut scene = pressed_pile(36, 0.3, 11, parameters(bond, 5e-4, 0.3, 0.5));
-    // The discs of the base touch one another, and the last touches the first across the border.
+    // The discs of the base touch one another, and the last disc touches the first across the border.
     let (left, count) = (scene.fixed_discs[0].position.x, scene.fixed_discs.len());
     let width = count as f64 * 2.0 * scene.fixed_discs[0].radius;
     scene.periodic = Some(Periodic::along_x([left, left + width]));
@@ -116,7 +119,7 @@ fn remedies_work_across_the_border() {
     }
 }
 
-/// Vector from grain 1 to the nearest image of grain 0, m.
+/// Returns the vector from grain 1 to the nearest image of grain 0, m.
 fn offset(run: &Simulation) -> DVec2 {
     let (places, cell) = (run.places(), run.world().periodic.expect("a cell"));
     cell.shortest(places[0] - places[1])
@@ -124,7 +127,8 @@ fn offset(run: &Simulation) -> DVec2 {
 
 #[test]
 fn a_bonded_pair_that_circles_does_so_wherever_it_is_in_the_cell() {
-    // `avbd` loses bonds if its iterations do not reach the pull.
+    // The stepper `avbd` is omitted. It loses bonds if its iterations do not converge to the pull that the circular
+    // motion needs.
     for stepper in Stepper::ALL.iter().filter(|&&stepper| stepper != Stepper::Avbd) {
         let mut pair = under_g(
             parameters(20.0, 2e-4, 0.5, 0.5),
@@ -187,7 +191,7 @@ fn grains_that_bounce_under_the_law_range_keep_their_momentum_across_borders() {
     assert!(run.observables().max_overlap < 0.02, "{:?}", run.observables());
 }
 
-/// A disc on a level under gravity that is inclined to the right, in a cell or without one.
+/// Returns a scene of a disc on a floor under gravity that is inclined to the right, with or without a periodic cell.
 fn on_a_slope(stepper: Stepper, tilt: f64, periodic: Option<Periodic>) -> Scene {
     let disc = moving(DVec2::new(0.05, 0.01), 0.01, DVec2::ZERO);
     let mut scene = under_g(parameters(0.0, 5e-4, 0.0, 0.1), vec![disc]);
@@ -211,7 +215,7 @@ fn a_disc_slides_down_a_slope_without_end_as_down_one_that_wraps() {
         assert!(free.positions[0].x > 4.0 * SIDE, "{stepper}: {}", free.positions[0]);
         assert!(cell.wrap(free.positions[0]).distance(wrapped.positions[0]) < 1e-10, "{stepper}");
         assert!(free.velocities[0].distance(wrapped.velocities[0]) < 1e-10, "{stepper}");
-        // It slides, because tan 40° is above 3 μ.
+        // The disc slides, because tan 40° is above 3 μ.
         let expected = 9.8 * (sin - 0.1 * cos) * 0.4;
         let tolerance = if stepper == Stepper::Avbd { 2e-2 } else { 2e-3 };
         assert_close(wrapped.velocities[0].x, expected, tolerance, stepper.name());
@@ -235,7 +239,8 @@ fn a_wall_at_the_border_that_a_grain_goes_through_across_it_is_told_of() {
     };
     let (count, x) = lost(&of(vec![wall(0.5)]));
     assert!(count == 0 && x < 0.05, "it crosses the border and nothing else: {x}");
-    // The wall is beyond the border and before it; the grain's path is checked on both sides of the border.
+    // One wall is behind the border and one before it, because Slump must check the path of the grain on both sides of
+    // the border.
     assert_eq!(lost(&of(vec![wall(0.017)])).0, 1);
     assert_eq!(lost(&of(vec![wall(0.999)])).0, 1);
 }
@@ -272,11 +277,11 @@ fn a_disc_rolls_over_a_floor_that_ends_at_the_borders_as_over_one_without_end() 
     assert!(one.x < 0.5, "it crossed: {one}");
 }
 
-/// Side of a square cell, m.
+/// Side of the square periodic cell, m.
 pub(super) const SIDE: f64 = 0.1;
 pub(super) const SQUARE: Periodic = Periodic::along_both([0.0, SIDE], [0.0, SIDE]);
 
-/// The scene turned by +90°: its left side becomes the bottom, and its bottom becomes the right side.
+/// Returns the scene turned by +90°: its left side becomes the bottom, and its bottom becomes the right side.
 fn turned(scene: &Scene) -> Scene {
     let mut turned = scene.clone();
     for grain in &mut turned.grains {
@@ -316,7 +321,7 @@ fn a_scene_turned_by_a_right_angle_does_what_it_did() {
     }
 }
 
-/// Grains that fall endlessly past a fixed disc and a disc that moves upward.
+/// Returns a scene of grains that fall endlessly past a fixed disc and a disc that moves upward.
 pub(super) fn falling(bond: f64) -> Scene {
     let mut scene = gas(0.9, true);
     scene.gravity = Gravity::Uniform { acceleration: -9.8 * DVec2::Y };

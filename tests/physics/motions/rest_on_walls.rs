@@ -1,5 +1,5 @@
-//! A disc at rest relative to a wall keeps its gap, however the wall moves: the wall has a rigid velocity that is
-//! exactly its mean over each step.
+//! Tests of discs at rest relative to moving walls: the gap must not change. For this, the solver uses for each wall
+//! the rigid velocity that is the exact mean over the step.
 
 use super::through_a_file;
 use crate::common::*;
@@ -7,10 +7,11 @@ use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 const RADIUS: f64 = 0.05;
 const DT: f64 = 1e-3;
-/// Overlap at the start, in radii: with it, bonds live.
+/// Overlap at the start, in radii. With this overlap, bonds exist from the start.
 const OVERLAP: f64 = 1e-4;
 
-/// One disc in the corner of a square drum that turns at 12 rad/s. It rests in the corner, pressed by 2.4 g.
+/// A disc rests in the corner of a square drum that turns at 12 rad/s. The centrifugal acceleration of 2.4 g presses
+/// the disc into the corner.
 #[test]
 fn a_disc_in_the_corner_of_a_drum_that_turns_stays_in_it() {
     let (radius, side, rate) = (0.01, 0.177, 12.0);
@@ -28,8 +29,9 @@ fn a_disc_in_the_corner_of_a_drum_that_turns_stays_in_it() {
         };
         let what = format!("{stepper}, {dt} s");
         let run = after(&through_a_file(&scene), (0.5 / dt) as usize);
-        // Before the walls' mean velocity had an inward part, the square sank by 0.62 d per second at 1 ms. The first
-        // step begins with the instantaneous velocity, not with the mean over a step.
+        // If the mean velocity of the walls had no inward part, the overlap would grow by 0.62 d per second at Δt = 1
+        // ms. The tolerance allows for the first step: the disc begins it with the instantaneous velocity, not with the
+        // mean over a step.
         let (allowed, far) = if is_rigid(stepper) { (1e-4, 1e-3) } else { (0.05, 0.2) };
         let overlap = run.observables().max_overlap;
         assert!(overlap < allowed, "{what}: overlaps by {overlap} d");
@@ -43,7 +45,7 @@ fn is_rigid(stepper: Stepper) -> bool {
     [Stepper::Moreau, Stepper::Range].contains(&stepper)
 }
 
-/// The parts of a valley.
+/// Fixed bodies that form a valley of 90°.
 struct Valley {
     name: &'static str,
     boundaries: Vec<Boundary>,
@@ -52,12 +54,12 @@ struct Valley {
 
 const BOTTOM: DVec2 = DVec2::new(0.3, 0.1);
 
-/// Centre of a disc in a valley of 90°.
+/// Returns the centre of a disc that lies in a valley of 90°, m.
 fn place_in_valley() -> DVec2 {
     BOTTOM + SQRT_2 * RADIUS * (1.0 - OVERLAP) * DVec2::Y
 }
 
-/// Valleys of all shapes.
+/// Returns one valley for each kind of fixed shape.
 fn valleys() -> Vec<Valley> {
     let at = |x: f64, y: f64| BOTTOM + 0.2 * DVec2::new(x, y);
     let [left, bottom, right] = [at(-1.0, 1.0), BOTTOM, at(1.0, 1.0)];
@@ -92,8 +94,9 @@ fn valleys() -> Vec<Valley> {
     ]
 }
 
-/// Every kind of course, with its initial velocity and spin. After each half second, all are back at their initial
-/// place or move evenly.
+/// Returns every kind of course with its name, and the initial velocity (m/s) and angular velocity (rad/s) of a disc
+/// that moves with it. After each half second, a body on any of these courses is back at its initial position or moves
+/// at constant velocity.
 fn courses() -> Vec<(&'static str, MotionCourse, DVec2, f64)> {
     let (pivot, c) = (DVec2::new(0.02, -0.05), place_in_valley());
     let about = |rate: f64| (rate * (c - pivot).perp(), rate);
@@ -128,7 +131,7 @@ fn courses() -> Vec<(&'static str, MotionCourse, DVec2, f64)> {
     ]
 }
 
-/// Largest change of a contact's gap from 0.5 s to 1 s, in diameters per second.
+/// Returns the largest change of a contact's gap between 0.5 s and 1 s, in diameters per second.
 fn drift(scene: &Scene, contacts: usize) -> f64 {
     let half = (0.5 / scene.parameters.time_step_secs).round() as usize;
     let mut run = start(scene);
@@ -143,7 +146,7 @@ fn drift(scene: &Scene, contacts: usize) -> f64 {
     changes.fold(0.0, f64::max) / 0.5 / scene.mean_diameter
 }
 
-/// Checks that the drift of a scene is of second order in Δt, or rounding.
+/// Checks that the change of the gaps is of second order in Δt, or as small as rounding errors.
 #[track_caller]
 fn assert_of_second_order(scene: &Scene, contacts: usize, what: &str) {
     let [coarse, fine] = [1.0, 0.5].map(|part| {
@@ -151,15 +154,15 @@ fn assert_of_second_order(scene: &Scene, contacts: usize, what: &str) {
         scene.parameters.time_step_secs *= part;
         drift(&scene, contacts)
     });
-    // Springs settle slowly, and carry the loads of the motion by overlap.
+    // Springs settle slowly and carry the loads of the motion by additional overlap.
     assert!(coarse.max(fine) < 1e-2, "{what}: {coarse:e}, then {fine:e} d per second");
     if is_rigid(scene.stepper) {
-        // An overlap of 1e-4 r displaces the contact point by as much.
+        // An overlap of 1e-4 r displaces the contact point by 1e-4 r, so the gap may change by 1e-6 d per second.
         assert!(fine < coarse / 3.5 + 1e-6, "{what}: {coarse:e}, then {fine:e} d per second");
     }
 }
 
-/// Bonds hold the disc in the valley.
+/// Checks discs that bonds hold in a moving valley, for every stepper, course and shape.
 #[test]
 fn a_disc_that_goes_with_its_walls_keeps_its_gaps_under_every_stepper_motion_and_shape() {
     for ((valley, course), &stepper) in pairs(0..valleys().len(), courses())
@@ -195,7 +198,7 @@ fn a_disc_that_goes_with_its_walls_keeps_its_gaps_under_every_stepper_motion_and
     }
 }
 
-/// A bonded disc moves round with the surface of a disc, which turns or has a belt.
+/// A bonded disc moves round with the surface of a fixed disc. The fixed disc turns, or its surface moves like a belt.
 #[test]
 fn a_disc_that_goes_round_with_a_surface_keeps_its_gap() {
     let (large, rate) = (0.2, 4.0);
@@ -216,10 +219,10 @@ fn a_disc_that_goes_round_with_a_surface_keeps_its_gap() {
     }
 }
 
-/// Rollers that turn on the spot under a frictionless disc act like walls at rest.
+/// Rollers that turn on the spot under a frictionless disc have the same effect as walls at rest.
 #[test]
 fn rollers_that_do_not_rub_leave_what_lies_on_them_in_peace() {
-    // Under `range`, shocks treat a turning disc like one that moves sideways.
+    // Under `range`, shocks do not distinguish a disc that turns from one that moves sideways.
     for &stepper in Stepper::ALL.iter().filter(|&&stepper| stepper != Stepper::Range) {
         let grain = Grain::at_rest(RADIUS * SQRT_2 * (1.0 - OVERLAP) * DVec2::Y, RADIUS);
         let discs = [-1.0, 1.0].map(|side| fixed(side * RADIUS * SQRT_2 * DVec2::X, RADIUS));
@@ -240,7 +243,7 @@ fn rollers_that_do_not_rub_leave_what_lies_on_them_in_peace() {
     }
 }
 
-/// A smooth disc slides down a plane that turns under it.
+/// A frictionless disc slides down a plane that turns.
 #[test]
 fn a_disc_that_slides_along_a_wall_that_turns_keeps_its_gap_to_the_second_order() {
     let turning = MotionCourse::Rotation { pivot: DVec2::new(-1.0, 0.0), rate: -0.5, travel: None };
@@ -256,7 +259,7 @@ fn a_disc_that_slides_along_a_wall_that_turns_keeps_its_gap_to_the_second_order(
     }
 }
 
-/// The same with restitution: a floor that accelerates does not strike a disc that lies on it.
+/// With restitution, too, a floor that accelerates does not strike a disc that lies on it.
 #[test]
 fn a_disc_on_a_floor_that_is_shaken_does_not_bounce_while_it_is_pressed() {
     let course = MotionCourse::Sine {
@@ -279,7 +282,7 @@ fn a_disc_on_a_floor_that_is_shaken_does_not_bounce_while_it_is_pressed() {
     }
 }
 
-/// Above 9 rad/s the drum presses its grains against the wall.
+/// At 12 rad/s the centrifugal force presses all grains against the wall of the drum; this happens above 9 rad/s.
 #[test]
 fn a_fast_drum_loses_no_grain() {
     let mut scene = built_in("drum").expect("a scene of that name");

@@ -1,15 +1,16 @@
-//! Borders that shear: they mark no place, momentum and energy are accounted for, and flows take their profile.
+//! Tests of periodic cells whose lower and upper borders slide along each other (shear): results do not depend on the
+//! position of the borders, momentum and energy are balanced, and flows take the velocity profile of the shear.
 
 use crate::common::*;
 
-/// Width and height of the cell, m: neither is a multiple of the other.
+/// Width and height of the periodic cell, m. Neither is a multiple of the other.
 pub(super) const SIZE: DVec2 = DVec2::new(0.11, 0.1);
 
 pub(super) fn cell(shear_rate: f64) -> Periodic {
     Periodic { shear_rate, ..Periodic::along_both([0.0, SIZE.x], [0.0, SIZE.y]) }
 }
 
-/// Every stepper, with every method that accepts sliding images.
+/// Returns every stepper with every method that supports sheared cells.
 pub(super) fn ways() -> impl Iterator<Item = (Stepper, Method)> {
     let takes = |method: Method| method.info().takes_shear;
     every_way()
@@ -17,7 +18,8 @@ pub(super) fn ways() -> impl Iterator<Item = (Stepper, Method)> {
         .filter(move |(stepper, method)| !stepper.uses_method() || takes(*method))
 }
 
-/// 80 discs with the velocities of the shear plus random ones. Their momentum is that of the shear alone.
+/// Returns a scene of 80 discs with the velocities of uniform shear plus random velocities. The sum of the random
+/// momenta is zero.
 pub(super) fn gas(shear_rate: f64, restitution: f64, friction: f64) -> Scene {
     let mut random = random(7);
     let mut grains: Vec<_> = (0..80)
@@ -38,8 +40,9 @@ pub(super) fn gas(shear_rate: f64, restitution: f64, friction: f64) -> Scene {
 
 #[test]
 fn two_discs_that_rub_across_the_border_rub_by_the_speed_of_the_image() {
-    // The discs meet across the border and have no velocity along it. They rub only because the border slides, until
-    // the friction impulse μP or m_t U is reached.
+    // Two discs meet across the border and have no velocity along it. They rub only because the border slides at the
+    // speed U. The friction impulse is the smaller of μP (P: normal impulse) and m_t U (m_t: tangential effective
+    // mass).
     let discs = [DVec2::new(0.055, 0.0099), DVec2::new(0.055, SIZE.y - 0.0099)];
     let mut scene = without_g(
         parameters(0.0, 1e-4, 0.0, 0.2),
@@ -51,14 +54,15 @@ fn two_discs_that_rub_across_the_border_rub_by_the_speed_of_the_image() {
         (scene.stepper, scene.solver.method) = (stepper, method);
         let run = after(&scene, 1);
         let velocities = run.velocities();
-        // Both stop along y with P = 0.1 m each, so μP = 0.02 m. The image of the first passes with 2 m/s.
+        // P = 0.1 m stops each disc along y (m: mass), so μP = 0.02 m. The image of the first disc passes at 2 m/s.
         let expected = [DVec2::new(-0.02, 0.0), DVec2::new(0.02, 0.0)];
         for (found, expected) in velocities.iter().zip(expected) {
             assert!(found.distance(expected) < 1e-12, "{method}: {found} {expected}");
         }
         let now = run.observables();
         let mass = run.grains().masses[0];
-        // P_t times the speed of the image; friction takes the rest of it.
+        // The work of the border is the friction impulse P_t times the speed of the image. Friction dissipates the part
+        // that does not accelerate the discs.
         assert_close(
             now.border_work.expect("it shears"),
             0.02 * mass * 2.0,
@@ -98,7 +102,8 @@ fn nothing_hangs_on_where_the_borders_are() {
             for k in 1..80 {
                 let [here, there] =
                     [&one, &other].map(|run| cell.shortest(at(run, k) - at(run, 0)));
-                // At longer distances another image is the nearest one.
+                // Only close pairs are compared. At longer distances the nearest image can be a different image in the
+                // two runs.
                 if here.length() < 0.03 {
                     farthest = farthest.max(here.distance(there));
                 }
@@ -159,8 +164,8 @@ fn momentum_less_that_of_the_shear_stays() {
         }
         assert!(crossings > 10, "{stepper}: {crossings}");
         let scale: f64 = run.grains().masses.iter().sum::<f64>() * rate * SIZE.y;
-        // Other schemes move grains by velocities that differ from those at the end of a substep, or correct only
-        // positions.
+        // In all other schemes momentum is conserved less exactly: they move grains by velocities that differ from the
+        // velocities at the end of a substep, or they correct only positions.
         let exact = [Stepper::Moreau, Stepper::Dem].contains(stepper);
         let allowed = if exact { 1e-12 } else { 2e-3 };
         let off = momentum(&run).distance(before) / scale;
@@ -209,7 +214,7 @@ fn remedies_know_of_images_that_slide() {
     let cut = with(&|remedies| remedies.max_travel = 0.02);
     assert!(cut < 0.05, "{cut}");
     let ahead = with(&|remedies| remedies.speculative = true);
-    // The detection ahead does not see deflections by other grains within the step.
+    // Contacts detected ahead do not include deflections by other grains within the step, so some overlap remains.
     assert!(ahead < none, "{ahead}");
     let pushed = with(&|remedies| remedies.push_out = true);
     assert!(pushed < 2.0 * none, "{pushed}");
@@ -236,7 +241,8 @@ fn a_dense_flow_takes_the_profile_of_the_borders_from_rest() {
     let rate = 20.0;
     let mut scene = gas(rate, 0.1, 0.5);
     for grain in &mut scene.grains {
-        // The grains nearly fill the cell, and none moves with the borders.
+        // The grains nearly fill the cell. The velocity of the shear is removed, so at the start no grain moves with
+        // the borders.
         (grain.radius, grain.velocity) =
             (0.0058, grain.velocity - rate * grain.position.y * DVec2::X);
     }
@@ -286,7 +292,7 @@ fn a_flow_twice_as_fast_takes_the_same_way_and_bears_four_times_as_much() {
 
 #[test]
 fn an_image_that_slides_towards_discs_at_rest_is_found() {
-    // Both discs are at rest, so only the border's movement shows that the list of near pairs is out of date.
+    // Both discs are at rest, so only the movement of the border can show that the list of near pairs is out of date.
     for &stepper in Stepper::ALL {
         let at = |x: f64, y: f64| moving(DVec2::new(x, y), 0.01, DVec2::ZERO);
         let grains = vec![at(0.03, 0.005), at(0.08, SIZE.y - 0.005)];

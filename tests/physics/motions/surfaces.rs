@@ -1,6 +1,8 @@
-//! A disc that is laid on a sliding surface. Coulomb friction accelerates it with μg until it moves with the surface.
-//! Let V be the speed of the surface. A disc without rotation then has v = V. A disc with rotation has v = μgt and rω
-//! = 2μgt while it slips, until v + rω = V; then it rolls with v = V/3.
+//! Tests of moving surfaces: drums, shaken floors, and a disc that is laid on a sliding surface.
+//!
+//! The disc has the radius r, its velocity is v, and the surface moves at the speed V. Coulomb friction accelerates the
+//! disc with μg until it moves with the surface. A disc that cannot rotate then has v = V. A disc that rotates has v =
+//! μgt and rω = 2μgt at the time t while it slips (ω: angular velocity), until v + rω = V. Then it rolls with v = V/3.
 
 use super::through_a_file;
 use crate::common::*;
@@ -10,14 +12,15 @@ const MU: f64 = 0.25;
 const DT: f64 = 1e-3;
 const SPEED: f64 = 0.6;
 
-/// A level whose surface moves to the right with [`SPEED`], by every shape and motion that can express it.
+/// Returns floors whose surface moves to the right at [`SPEED`]: one for each shape and kind of motion that can express
+/// this, with its name.
 fn belts() -> Vec<(&'static str, Boundary, Motion)> {
     let at = |x: f64| DVec2::new(x, 0.0);
     let low = |x: f64| DVec2::new(x, -1.0);
     let segment = || Boundary::Segment { from: at(-1.0), to: at(3.0) };
     let polygon = Boundary::ConvexPolygon { points: vec![low(-1.0), low(3.0), at(3.0), at(-1.0)] };
     let along = || goes(&[0], straight(DVec2::new(SPEED, 0.0)));
-    // The normal turned by +90° points to the left.
+    // A positive surface speed is along the normal turned by +90°, which points to the left.
     let round = || belt(&[0], -SPEED);
     vec![
         ("half-space", level(), along()),
@@ -52,7 +55,7 @@ fn a_disc_on_a_belt_is_pulled_along_by_friction_until_it_goes_with_it() {
             take_steps(&mut run, slipping);
             let speed = run.velocity(0).x;
             let expected = MU * G * DT * slipping as f64;
-            // The springs of `dem` have not settled yet.
+            // Under `dem` the springs have not settled yet.
             let tolerance = if stepper == Stepper::Dem { 0.1 } else { 1e-9 };
             assert_close(speed, expected, tolerance, &what);
             let mut of_walls = 0.0;
@@ -64,7 +67,7 @@ fn a_disc_on_a_belt_is_pulled_along_by_friction_until_it_goes_with_it() {
             assert_close(grains.velocities[0].x, end, 1e-9, &what);
             let spin = RADIUS * grains.angular_velocities[0];
             assert!((spin - (SPEED - end)).abs() < 1e-9, "{what}: rω {spin}");
-            // The belt transmits all its work by friction, with the impulse mv at the speed of the belt.
+            // The belt does its work only by friction: the impulse mv on the disc times the speed of the belt.
             let expected = grains.masses[0] * end * SPEED;
             assert_close(of_walls, expected, 1e-9, &what);
         }
@@ -110,13 +113,14 @@ fn a_belt_goes_round_a_segment_and_a_disc_that_turns_is_a_belt() {
         disc(Motion { fixed_discs: vec![0], surface_speed: SPEED, ..Motion::default() });
     let [one, other] = [&turns, &goes_round].map(|run| run.place(0));
     assert!(one.x < -0.01, "it was pulled along: {one}");
-    // The belt has its speed at the disc, but a turning body has it at the grain, across the gap.
+    // The velocity of a belt is defined at the surface of the fixed disc, but the velocity of a turning body is taken
+    // at the surface of the grain, across the gap.
     assert!(one.distance(other) < 1e-8, "{one} and {other}");
 }
 
 const MU_OF_DRUM: f64 = 0.5;
 
-/// A drum with this many sides about the origin.
+/// Returns a regular polygon about the origin, as the wall of a drum (radius in m).
 fn drum(radius: f64, sides: usize) -> Boundary {
     let corner = |k: usize| {
         let angle = std::f64::consts::TAU * ((k % sides) as f64 + 0.5) / sides as f64;
@@ -125,9 +129,9 @@ fn drum(radius: f64, sides: usize) -> Boundary {
     Boundary::Polyline { points: (0..=sides).map(corner).collect() }
 }
 
-/// A disc without rotation sticks to the wall and moves with the point that it touches, with ΩR/(R − r) about the
-/// axis, until tan φ = μ. From there on it slides and swings like a pendulum about that angle, because friction does
-/// not change with the slip.
+/// Checks a disc of radius r without rotation in a drum of radius R that turns at Ω. The disc sticks to the wall and
+/// moves about the axis at ΩR/(R − r) until tan φ = μ, where φ is its angle from the lowest point. From then on it
+/// slides and swings like a pendulum about this angle, because friction does not depend on the sliding speed.
 #[test]
 fn a_disc_in_a_drum_goes_with_the_wall_until_friction_holds_it_no_more() {
     let (outer, radius, rate) = (1.0, 0.1, 0.2);
@@ -153,7 +157,7 @@ fn a_disc_in_a_drum_goes_with_the_wall_until_friction_holds_it_no_more() {
         let first = angle(&run);
         take_steps(&mut run, 1000);
         let gone = angle(&run) - first;
-        // At each corner of the drum the normal turns by 2π/2000, which a step detects late.
+        // At each corner of the drum the normal turns by 2π/2000. A step notices this late.
         assert_close(gone, rate * outer / (outer - radius), 1e-2, stepper.name());
         take_steps(&mut run, 1500);
         let (mut least, mut most) = (f64::INFINITY, 0f64);
@@ -162,14 +166,15 @@ fn a_disc_in_a_drum_goes_with_the_wall_until_friction_holds_it_no_more() {
             (least, most) = (least.min(angle(&run)), most.max(angle(&run)));
         }
         assert_close(0.5 * (least + most), MU_OF_DRUM.atan(), 1e-2, stepper.name());
-        // It is never faster than the wall, and swings at √(g/(R − r)·√(1 + μ²)).
+        // The disc is never faster than the wall, and swings at the angular frequency √(g/(R − r)·√(1 + μ²)). This
+        // limits its amplitude.
         let swing =
             rate * outer / (outer - radius) / (G * MU_OF_DRUM.hypot(1.0) / (outer - radius)).sqrt();
         assert!(most - least < 2.1 * swing, "{stepper}: {least} to {most}");
     }
 }
 
-/// Grains in a drum for one turn: none escapes, and the drum shows its orientation.
+/// Runs grains in a drum for one turn. A closed drum loses no grain, and its boundary has turned by the right angle.
 #[test]
 fn a_drum_keeps_its_grains_and_one_that_is_cut_open_loses_them() {
     let mut random = random(4);
@@ -205,12 +210,13 @@ fn a_drum_keeps_its_grains_and_one_that_is_cut_open_loses_them() {
     }
 }
 
-/// No grain is lost if a wall rises under it; a grain is lost if a wall jumps over it.
+/// A grain on a rising wall is not lost. A grain is lost if a wall jumps past the grain within one step.
 #[test]
 fn a_grain_is_lost_where_a_wall_passes_it_and_not_where_it_rides_on_it() {
     let floor = Boundary::Segment { from: DVec2::new(-1.0, 0.0), to: DVec2::new(1.0, 0.0) };
     for (speed, lost) in [(0.5, 0), (-0.5, 0), (200.0, 1)] {
-        // The gap exceeds a contact's: a wall carries every grain that touches it, at any speed.
+        // The initial gap is larger than the touch tolerance, because a wall carries every grain that touches it, at
+        // any speed.
         let grain = Grain::at_rest(DVec2::new(0.1, 0.05001), 0.05);
         let mut scene = Scene {
             boundaries: vec![floor.clone()],
@@ -223,7 +229,7 @@ fn a_grain_is_lost_where_a_wall_passes_it_and_not_where_it_rides_on_it() {
     }
 }
 
-/// Fixed discs from far outside any list of near pairs reach a grain and push it ahead of them.
+/// Moving fixed discs start so far away that no list of near pairs contains them. They reach a grain and push it.
 #[test]
 fn discs_that_move_are_found_wherever_they_come_to() {
     for &stepper in Stepper::ALL {
@@ -247,7 +253,7 @@ fn discs_that_move_are_found_wherever_they_come_to() {
     }
 }
 
-/// A pile on a base that shakes in both directions, beside a wall that moves along itself and into it, and a belt.
+/// Returns a scene of a pile on a base that shakes in both directions, next to a belt and a wall that moves obliquely.
 fn shaken() -> Scene {
     let mut scene = pressed_pile(40, 0.3, 5, parameters(2.0, 1e-3, 0.3, 0.5));
     let amplitude = DVec2::new(1e-3, 1e-3);
@@ -284,8 +290,8 @@ fn the_budget_of_energy_is_closed_where_walls_move_and_where_gravity_turns() {
             for _ in 0..100 {
                 let (now, off, _) = balance(&mut run);
                 scale += (now.normal_work + now.tangential_work + now.gravity_work).abs();
-                // An unconverged method leaves large impulses on wedged grains. They cancel, but their rounding
-                // errors do not.
+                // A method that has not converged leaves large impulses on wedged grains. These impulses cancel each
+                // other, but their rounding errors do not.
                 let impulses = run.contacts().impulses().iter();
                 let rounding: f64 = impulses.map(|it| it.normal.abs() + it.tangential.abs()).sum();
                 assert!(off < allowed * scale + 1e-13 * rounding, "{name}, {way}: {off} J");
@@ -325,7 +331,8 @@ fn momentum_comes_from_gravity_and_from_what_is_no_grain_alone() {
     }
 }
 
-/// At constant speed a wall's work is m g h to lift a grain, ½mv² to accelerate it, and ½mv² that the shock takes.
+/// At constant speed v, a wall's work is m g h to lift a grain by h, ½mv² to accelerate it, and ½mv² that the shock
+/// dissipates.
 #[test]
 fn the_work_of_a_wall_is_what_it_lifts() {
     for (stepper, method) in every_way() {
@@ -350,7 +357,7 @@ fn the_work_of_a_wall_is_what_it_lifts() {
     }
 }
 
-/// Without restitution the energy that contacts dissipate is never negative, even if walls do work.
+/// Without restitution, the energy that contacts dissipate is never negative, even if walls do work on the grains.
 #[test]
 fn contacts_take_what_walls_give_beyond_the_grains_own() {
     let mut scene = shaken();

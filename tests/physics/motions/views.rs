@@ -1,10 +1,11 @@
-//! Nothing depends on the frame of reference, on calling a wall a piston, or on left and right.
+//! Tests of invariance: a run is the same in a moving frame of reference, with a piston instead of an equally moving
+//! wall, and in a mirror image.
 
 use crate::common::*;
 
 const VELOCITY: DVec2 = DVec2::new(0.25, 0.15);
 
-/// Grains that rest, fall, overlap and are bonded, on one kind of floor.
+/// Returns a scene of grains that rest, fall, overlap and are bonded, on one of five kinds of floor.
 fn on_a_floor(shape: usize) -> Scene {
     let mut scene = at_rest_and_falling();
     scene.grains[3].velocity = 0.02 * DVec2::X;
@@ -21,14 +22,15 @@ fn on_a_floor(shape: usize) -> Scene {
         _ => vec![piston(DVec2::ZERO, DVec2::Y, 0.0, f64::from(u32::MAX))],
     };
     if shape == 3 {
-        // Each grain is on a disc of its own.
+        // Each grain lies on its own fixed disc.
         let below = |grain: &Grain| fixed(at(grain.position.x, -0.02), 0.02);
         scene.fixed_discs = scene.grains.iter().map(below).collect::<Vec<Disc>>();
     }
     scene
 }
 
-/// Longest distance between a grain in the two frames of reference over all steps, in d.
+/// Runs a scene at rest and in a moving frame of reference. Returns the longest distance between the two positions of a
+/// grain over all steps, in diameters.
 fn difference_of_views(scene: &Scene) -> f64 {
     let (mut seen, mut velocity) = (scene.clone(), VELOCITY);
     if let Some(Boundary::Piston { speed, .. }) = seen.boundaries.first_mut() {
@@ -70,8 +72,8 @@ fn nothing_depends_on_whether_all_that_is_fixed_goes_past_or_the_onlooker() {
                 }
                 scene.remedies = Remedies { push_out, ..Remedies::default() };
                 let off = difference_of_views(&scene);
-                // Forgetting the surface speed in one step would give 0.02 d. Under `range` a gap of 1e-4 d counts as
-                // a contact, so a grain can come to rest with this gap or without it.
+                // If the surface speed were missing in a single step, the distance would be 0.02 d. Under `range` a gap
+                // of up to 1e-4 d counts as a contact, so the gap of a grain at rest can differ by 1e-4 d.
                 let rests = if stepper == Stepper::Range && shape == 3 { 1.1e-4 } else { 1e-5 };
                 if off > rests {
                     differences.push((shape, stepper, method, push_out, off));
@@ -82,7 +84,8 @@ fn nothing_depends_on_whether_all_that_is_fixed_goes_past_or_the_onlooker() {
     assert!(differences.is_empty(), "{differences:?}");
 }
 
-/// Two walls of a box that approach with grains between them, then stop.
+/// Returns a scene in which two walls of a box approach with grains between them and then stop. The walls are pistons
+/// or half-spaces with a prescribed course.
 fn pressed(normal: DVec2, as_pistons: bool) -> Scene {
     let (speed, travel) = (0.1, 2e-3);
     let mut scene = pressed_pile(30, 0.3, 11, parameters(5.0, 1e-3, 0.3, 0.5));
@@ -124,7 +127,8 @@ fn mirrored(vector: DVec2) -> DVec2 {
     DVec2::new(-vector.x, vector.y)
 }
 
-/// Grains on a shaken floor between a turning wall, a belt and a disc that oscillates.
+/// Returns a scene of grains on a shaken floor between a turning wall, a belt and a disc that oscillates, or its mirror
+/// image.
 fn of_all_kinds(mirror: bool) -> Scene {
     let side = |vector: DVec2| if mirror { mirrored(vector) } else { vector };
     let turn = if mirror { -1.0 } else { 1.0 };
@@ -176,7 +180,7 @@ fn a_mirrored_scene_goes_on_mirrored() {
     }
 }
 
-/// A wall that hits a resting disc gives it (1 + ρ) times the speed of the contact point.
+/// A wall that hits a resting disc gives it (1 + ρ) times the speed of the contact point, where ρ is the restitution.
 #[test]
 fn a_paddle_strikes_a_disc_with_the_speed_of_the_point_that_touches() {
     let (radius, arm, rate) = (0.05, 1.0, 2.0);
@@ -205,7 +209,8 @@ fn a_paddle_strikes_a_disc_with_the_speed_of_the_point_that_touches() {
         for stepper in [Stepper::Moreau, Stepper::Range] {
             scene.stepper = stepper;
             let mut run = start(&scene);
-            // The paddle strikes after (1 − the disc's angle seen from the pivot)/rate; then the disc flies off.
+            // The paddle starts at −1 rad and strikes when it touches the disc, which is asin(radius/arm) before 0 rad.
+            // Then the disc flies off.
             let mut steps = 0;
             while run.velocity(0) == DVec2::ZERO {
                 run.step().expect("a finite state");

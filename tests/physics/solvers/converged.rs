@@ -1,21 +1,23 @@
-//! The accuracy of steps that are reported as solved, computed from world data and independent of all methods.
+//! Checks steps that are reported as solved. Their error is computed from positions, velocities and impulses,
+//! independently of all methods.
 
 use crate::common::natural_map::{judge, natural_map};
 use crate::common::*;
 
-/// Largest ratio of ‖e‖ to the ‖ΔP‖ that a stop by changes allows.
+/// Allowed ratio of the natural map's norm ‖e‖ to the change ‖ΔP‖ of the impulses per sweep, for stop tests by changes.
 const LEFT: f64 = 8.0;
 
-/// Rounding errors relative to contact impulses.
+/// Allowed rounding error, relative to the norm of all contact impulses.
 const ROUNDING: f64 = 1e-12;
 
-/// A disc that falls on a floor: methods have reported its steps as solved without doing anything.
+/// Returns a scene of a disc that falls on a floor. In an earlier version, some methods reported steps of this scene as
+/// solved without doing anything.
 fn falling_disc() -> Scene {
     let disc = moving(0.006 * DVec2::Y, 5e-3, DVec2::ZERO);
     Scene { boundaries: vec![level()], ..under_g(parameters(0.0, 1e-3, 0.1, 0.5), vec![disc]) }
 }
 
-/// A disc on a belt, and a disc that a wall pushes along the floor.
+/// Returns two scenes: a disc on a belt, and a disc that a wall pushes along the floor.
 fn moved_discs() -> [Scene; 2] {
     let disc = moving(0.005 * DVec2::Y, 5e-3, DVec2::ZERO);
     let still =
@@ -31,7 +33,8 @@ fn moved_discs() -> [Scene; 2] {
     ]
 }
 
-/// The built-in scenes whose steps world data can judge: all, or only the paper's and those made to break methods.
+/// Returns the built-in scenes for which [`natural_map`] can check a step. With `all`, these come from all scenes,
+/// otherwise only from the paper's scenes and the stability tests.
 fn scenes(all: bool) -> Vec<Scene> {
     let small = [SceneGroup::Paper, SceneGroup::Stability];
     let is_small = |info: &&SceneInfo| info.name != "pile" && small.contains(&info.group);
@@ -52,7 +55,7 @@ fn scenes(all: bool) -> Vec<Scene> {
     [falling_disc()].into_iter().chain(moved_discs()).chain(scenes).filter(is_judged).collect()
 }
 
-/// Every method with every stop test, and with every friction model that it accepts.
+/// Returns every method with every stop test, and with every friction model that it accepts.
 fn solvers() -> Vec<SolverSettings> {
     let mut solvers = Vec::new();
     for ((method, model), (stop, tolerance)) in pairs(
@@ -76,7 +79,8 @@ fn solvers() -> Vec<SolverSettings> {
     solvers
 }
 
-/// The velocity error under Coulomb's law, computed from world data, and the scale that it is compared with, m/s.
+/// Returns the velocity error under Coulomb friction and the velocity that scales its tolerance, m/s. Both are computed
+/// from positions, velocities and impulses.
 fn velocity_error(run: &Simulation, before: &Grains) -> (f64, f64) {
     let friction = if run.physics().friction { run.parameters().friction } else { 0.0 };
     let world = run.world();
@@ -107,7 +111,8 @@ fn velocity_error(run: &Simulation, before: &Grains) -> (f64, f64) {
     ((gap.max(0.0) / mass).sqrt(), (fall + undone / mass).sqrt())
 }
 
-/// Takes a step. Returns an error if the step is reported as solved and is not.
+/// Takes a step. Returns true if the step is reported as solved and meets its tolerance, false if it is not reported as
+/// solved, and an error if the report is wrong.
 fn step_is_what_it_says(run: &mut Simulation, solver: &SolverSettings) -> Result<bool, String> {
     let before = run.grains().clone();
     let Ok(&row) = run.step() else { return Ok(false) };
@@ -115,7 +120,7 @@ fn step_is_what_it_says(run: &mut Simulation, solver: &SolverSettings) -> Result
         return Ok(false);
     }
     let (error, scale, _) = natural_map(run, &before);
-    // The residual of the friction model has the same scale.
+    // The residual of the friction model has the same scale as the residual under Coulomb friction.
     let error = row.model_residual.map_or(error, |left| left * scale);
     let carried = |shift: f64| -> f64 {
         let judged = judge(run, &before);
@@ -143,8 +148,8 @@ fn step_is_what_it_says(run: &mut Simulation, solver: &SolverSettings) -> Result
     Err(format!("solved with {left:e} left of at most {allowed:e}; residual {:e}", row.residual))
 }
 
-/// Runs every `nth` pair of scene and solver for `steps` steps. Returns the number of steps reported as solved, and
-/// the false reports.
+/// Runs every `nth` combination of scene and solver for `steps` steps. Returns the number of steps that are reported as
+/// solved, and a description of each wrong report.
 fn look(scenes: Vec<Scene>, nth: usize, steps: usize) -> (usize, Vec<String>) {
     let (mut solved, mut wrong) = (0, Vec::new());
     for (scene, solver) in pairs(scenes, solvers()).into_iter().step_by(nth) {
@@ -168,8 +173,9 @@ fn no_step_is_called_solved_that_is_not() {
     assert!(solved > 1000, "{solved} steps were called solved");
 }
 
-/// The steps of `range` consist of pieces with problems of their own, which world data of whole steps cannot judge.
-/// The reported residual is the largest of all pieces, by Coulomb's law or by the model that was solved.
+/// A step of `range` consists of substeps with contact problems of their own, which the state at the end of the whole
+/// step cannot check. The reported residual is the largest of all substeps, under Coulomb friction or the friction
+/// model that was solved.
 #[test]
 fn no_step_of_range_is_called_solved_whose_pieces_are_not() {
     let is_by_residual = |solver: &SolverSettings| solver.stop == StopTest::Residual;
@@ -177,7 +183,7 @@ fn no_step_of_range_is_called_solved_whose_pieces_are_not() {
     let (mut solved, mut unsolved) = (0, 0);
     for (scene, solver) in pairs(scenes(false), solvers.collect::<Vec<_>>()) {
         let name = format!("{}, {solver:?}", scene.name);
-        // Few sweeps, so that some pieces are unsolved.
+        // With this few sweeps, some substeps are unsolved.
         let solver = SolverSettings { max_sweeps: 20, ..solver };
         let Ok(mut run) = Scene { solver, stepper: Stepper::Range, ..scene }.simulation() else {
             continue;

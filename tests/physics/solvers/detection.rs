@@ -1,10 +1,11 @@
-//! The candidate search against a test of every pair, and coloured sweeps on many threads against one thread.
+//! Compares the search for near pairs with a test of every pair, and coloured sweeps on several threads with one
+//! thread.
 
 use rand_pcg::Pcg64;
 
 use crate::common::*;
 
-/// All touching pairs, found by testing every pair. Boundaries must be half-spaces.
+/// Returns all touching pairs, found by testing every pair. Boundaries must be half-spaces.
 fn every_pair(world: &World, gap_tolerance: f64) -> Vec<(u32, u32)> {
     let grains = &world.grains;
     let count = grains.len();
@@ -35,8 +36,8 @@ fn found(contacts: &ContactList) -> Vec<(u32, u32)> {
     contacts.contacts().iter().map(|contact| (contact.grain, contact.other)).collect()
 }
 
-/// Checks that contacts that existed before still have their impulses and that others have none; then gives each its
-/// own.
+/// Checks that contacts that existed before still have their impulses and that new contacts have zero impulses. Then
+/// gives each contact an impulse that identifies the contact.
 fn check_impulses(contacts: &mut ContactList, before: &[(u32, u32)]) {
     for (pair, impulse) in found(contacts).into_iter().zip(contacts.impulses_mut()) {
         let own = Impulse { normal: 1.0 + f64::from(pair.0), tangential: f64::from(pair.1) };
@@ -46,17 +47,18 @@ fn check_impulses(contacts: &mut ContactList, before: &[(u32, u32)]) {
     }
 }
 
-/// Radii, m, from one of three distributions with ratios of 1, 2 and 20.
+/// Returns a random radius, m. `kind` selects one of three distributions, whose ratio of largest to smallest radius is
+/// 1, 2 and 20.
 fn radius(kind: usize, random: &mut Pcg64) -> f64 {
     match kind {
         0 => 0.5,
         1 => random.random_range(0.4..0.8),
-        // Each order of magnitude has the same number of radii.
+        // Uniform in the logarithm of the radius.
         _ => 0.1 * 20f64.powf(random.random_range(0.0..1.0)),
     }
 }
 
-/// A dense random set about `origin`, with small and large fixed discs and a floor.
+/// Returns a dense random set of grains about `origin`, with small and large fixed discs and a floor.
 fn random_world(kind: usize, origin: DVec2, random: &mut Pcg64) -> World {
     let mut place = || origin + 8.0 * DVec2::new(random.random(), random.random());
     let places: Vec<DVec2> = (0..160).map(|_| place()).collect();
@@ -65,7 +67,7 @@ fn random_world(kind: usize, origin: DVec2, random: &mut Pcg64) -> World {
         places.into_iter().map(|place| Grain::at_rest(place, radius(kind, random))).collect();
     let mut fixed_discs: Vec<Disc> =
         discs.into_iter().map(|place| fixed(place, radius(kind, random))).collect();
-    // Very large discs: one below, and one whose centre is in the middle of the grains.
+    // Two very large discs: one below all grains, and one whose centre is among the grains.
     fixed_discs.push(fixed(origin + DVec2::new(3.0, -100.0), 101.0));
     fixed_discs.insert(3, fixed(origin + DVec2::new(12.0, 4.0), 9.0));
     World {
@@ -99,7 +101,7 @@ fn no_contact_is_missed_or_invented_while_discs_move() {
         let mut contacts = ContactList::default();
         let (mut builds, mut changes) = (0, 0);
         for step in 0..60 {
-            // From slow motion to jumps over several diameters.
+            // Displacements range from slow motion to jumps over several diameters.
             let largest = skin * 10f64.powf(random.random_range(-2.0..1.5));
             let only = (step % 3 == 0).then(|| random.random_range(0..160));
             for (k, position) in world.grains.positions.iter_mut().enumerate() {
@@ -177,7 +179,7 @@ fn a_running_simulation_sees_every_contact_of_fast_grains() {
     assert!(contacts > 1000, "{contacts} contacts");
 }
 
-/// Sweeps, impulses and grains after three steps on this many threads.
+/// Takes three steps on this many threads. Returns the sweeps of each step, the impulses, and the grains.
 fn three_steps(scene: &Scene, threads: usize) -> ([u32; 3], Vec<Impulse>, Grains) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("threads").install(|| {
@@ -187,7 +189,7 @@ fn three_steps(scene: &Scene, threads: usize) -> ([u32; 3], Vec<Impulse>, Grains
     })
 }
 
-/// Coloured sweeps on two threads give the same result as `nsgs` in the order of the colours.
+/// Checks that coloured sweeps on two threads give the same result as the method `nsgs` in the order of the colours.
 fn assert_a_sweep_like_any_other(mut scene: Scene) {
     (scene.solver.method, scene.solver.stop) = (Method::NsgsParallel, StopTest::Residual);
     let parallel = three_steps(&scene, 2);

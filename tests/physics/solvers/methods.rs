@@ -1,8 +1,8 @@
-//! The methods against each other: one problem has one solution.
+//! Compares the solver methods with each other: if a contact problem has one solution, all methods must find it.
 
 use crate::common::*;
 
-/// A small pile that has begun to fall.
+/// Returns a scene of a small pile that begins to fall.
 fn falling_pile(seed: u64) -> Scene {
     let rain = NewPile { grains: 50, box_width_in_diameters: 9.0, seed, ..NewPile::default() };
     let grains = settle(&rain, |_| true).expect("a pile at rest");
@@ -18,7 +18,7 @@ fn with(scene: &Scene, method: Method, tolerance: f64) -> Simulation {
     Scene { solver, ..scene.clone() }.simulation().expect("a proper scene")
 }
 
-/// Without friction the velocities of a step are unique, so all tight solves agree.
+/// Without friction the velocities of a step are unique, so all methods agree if they solve to a small tolerance.
 #[test]
 fn all_methods_and_orders_agree_on_the_velocities_of_a_frictionless_pile() {
     for (seed, rotation) in [(1, true), (2, false)] {
@@ -30,7 +30,7 @@ fn all_methods_and_orders_agree_on_the_velocities_of_a_frictionless_pile() {
         }
         let mut fastest = 0f64;
         for _ in 0..12 {
-            // All methods start from one state, because differences grow in a pile.
+            // All methods start from the same state, because differences between runs grow in a pile.
             let mut by_sweeps = with(&scene, Method::Nsgs, 1e-10);
             assert!(by_sweeps.step().expect("a finite state").converged);
             let orders = Ordering::ALL.iter().map(|order| (Method::Nsgs, *order));
@@ -55,7 +55,7 @@ fn all_methods_and_orders_agree_on_the_velocities_of_a_frictionless_pile() {
     }
 }
 
-/// The scene after a few steps.
+/// Returns the scene as it is after five steps.
 fn advanced(scene: &Scene) -> Scene {
     let mut run = with(scene, Method::Nsgs, 1e-8);
     take_steps(&mut run, 5);
@@ -85,7 +85,7 @@ fn newton_solves_nearly_all_steps_of_a_moving_pile_in_less_than_half_the_sweeps(
     }
 }
 
-/// Solves a problem. Returns its report and residual.
+/// A visitor that solves a contact problem. It returns the solver's report and the residual.
 struct Solve(SolverSettings);
 
 impl ProblemVisitor for Solve {
@@ -97,7 +97,8 @@ impl ProblemVisitor for Solve {
     }
 }
 
-/// Solves a problem with the first settings and then, from that solution, with the second.
+/// A visitor that solves a contact problem with the first settings and then, from this solution, with the second
+/// settings.
 pub struct SolveTwice(pub SolverSettings, pub SolverSettings);
 
 impl ProblemVisitor for SolveTwice {
@@ -109,7 +110,7 @@ impl ProblemVisitor for SolveTwice {
     }
 }
 
-/// Piles of every kind of physics that have begun to fall; the last has no cohesion.
+/// Returns piles that begin to fall, with both cones, with and without rotation. The last pile has no cohesion.
 fn moving_piles() -> [(FrictionCone, bool, Scene); 4] {
     let (shifted, compressive) = (FrictionCone::Shifted, FrictionCone::Compressive);
     let kinds = [
@@ -126,12 +127,12 @@ fn moving_piles() -> [(FrictionCone, bool, Scene); 4] {
     })
 }
 
-/// Moments made by sweeps. Piles are chaotic: if the method that makes the moments changes, so do the problems of all
-/// methods.
+/// Returns states of falling piles, computed by sweeps. Piles are chaotic: if the method that computes the states
+/// changes, so do the contact problems of all tests.
 fn moments() -> Vec<Simulation> {
     let mut moments = Vec::new();
     for (_, _, mut scene) in moving_piles() {
-        // A closing gap makes a warm start of admm worse than a cold one.
+        // If the touch tolerance closes gaps, a warm start of the method `admm` is worse than a cold start.
         scene.parameters.touch_tolerance = 0.0;
         let mut run = with(&scene, Method::Nsgs, 1e-8);
         for _ in 0..6 {
@@ -142,14 +143,14 @@ fn moments() -> Vec<Simulation> {
     moments
 }
 
-/// The next problem of a moment, solved with these settings.
+/// Solves the next contact problem of a state with these settings. Returns the solver's report and the residual.
 fn next_with(moment: &Simulation, solver: SolverSettings) -> (SolveReport, f64) {
     let mut run = moment.clone();
     run.set_solver(solver).expect("proper settings");
     run.next_problem(Solve(solver))
 }
 
-/// Residual required of a method here. Jacobi's method converges slowly.
+/// Returns the residual that a method must reach in these tests. Jacobi's method converges slowly.
 fn tight_for(method: Method) -> f64 {
     if method == Method::Jacobi { 1e-5 } else { 1e-8 }
 }

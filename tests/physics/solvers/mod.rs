@@ -1,4 +1,4 @@
-//! Who touches, and methods that solve for the impulses.
+//! Tests of contact detection and of the methods that solve for the impulses.
 
 mod converged;
 mod detection;

@@ -1,5 +1,5 @@
-//! Properties of every solved step of random piles: the solver's reports are checked against positions, velocities
-//! and impulses only.
+//! Tests properties of every solved step of random piles: the reports of the solver are checked only against positions,
+//! velocities and impulses.
 
 use std::cell::Cell;
 
@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use crate::common::natural_map::{judge, natural_map};
 use crate::common::*;
 
-/// Checks a property for `cases` scenes, which are the same each time.
+/// Checks a property for `cases` random piles. The seed is fixed, so the piles are the same in each run of the tests.
 fn for_random_piles(cases: u32, property: impl Fn(Scene) -> Result<(), TestCaseError>) {
     let bond = prop_oneof![1 => Just(0.0), 4 => 0.0..100.0];
     let friction = prop_oneof![1 => Just(0.0), 4 => 0.0..=1.0];
@@ -18,7 +18,8 @@ fn for_random_piles(cases: u32, property: impl Fn(Scene) -> Result<(), TestCaseE
     for_random(cases, (numbers, kinds), run);
 }
 
-/// A pile from (Bond, μ, ρ, Δt, speed) and (grains, seed, shifted cone, warm start, turning).
+/// Returns a pile from the numbers (Bond, μ, ρ, Δt, speed) and the choices (number of grains, seed, shifted cone, warm
+/// start, rotation).
 fn pile(
     (bond, friction, restitution, dt, speed): (f64, f64, f64, f64, f64),
     (count, seed, shifted, warm_start, turning): (usize, u64, bool, bool, bool),
@@ -40,7 +41,7 @@ fn pile(
     scene
 }
 
-/// Takes a step. Returns the grains before it.
+/// Takes a step. Returns the grains as they were before the step.
 fn step(run: &mut Simulation) -> Grains {
     let before = run.grains().clone();
     run.step().expect("a finite state");
@@ -190,9 +191,9 @@ fn physics_without_cohesion_is_bond_zero_bitwise() {
 
 #[test]
 fn overlap_grows_by_no_more_than_one_steps_travel() {
-    // Let R = r_i + r_j, x the offset of the centres and n the normal before the step. Then ‖x + Δt v‖ ≥ n·(x + Δt
-    // v): a new contact overlaps by at most Δt times the closing speed along n. An old contact ends its step with v_n
-    // ≥ −ρ v_n^{n−1} except for the residual: |e_n| = m_n |v_n + ρ v_n^{n−1}|.
+    // Let x be the offset of the centres and n the normal before the step. Then ‖x + Δt v‖ ≥ n·(x + Δt v), so a new
+    // contact overlaps by at most Δt times the closing speed along n. An old contact ends its step with v_n ≥ −ρ
+    // v_n^{n−1}, except for the residual: |e_n| = m_n |v_n + ρ v_n^{n−1}|.
     let (old, new) = (Cell::new(0), Cell::new(0));
     for_random_piles(32, |scene| {
         let mut run = start(&scene);
@@ -230,7 +231,8 @@ fn overlap_grows_by_no_more_than_one_steps_travel() {
     assert!(old.get() > 1000 && new.get() > 100, "{} old, {} new contacts", old.get(), new.get());
 }
 
-/// A problem of every model, with the least number of its contacts.
+/// Returns a scene for every kind of physics, with the least number of contacts that its first contact problem must
+/// have.
 fn scenes() -> Vec<(Scene, usize)> {
     let mut scenes = Vec::new();
     for (physics, cone) in pairs(
@@ -248,12 +250,13 @@ fn scenes() -> Vec<(Scene, usize)> {
     scenes
 }
 
-/// Rows per contact.
+/// Returns the number of unknowns per contact.
 fn entries<M: Model>() -> usize {
     if M::FRICTION { 2 } else { 1 }
 }
 
-/// The operator of a system, column by column, from its responses to unit impulses.
+/// Returns the Delassus operator as a matrix, column by column, from the velocity changes by unit impulses. `origin`
+/// has the velocities without impulses.
 fn matrix<M: Model>(system: &mut BodySystem<'_, M>, origin: &[[f64; 2]]) -> Vec<Vec<f64>> {
     let entries = entries::<M>();
     let size = entries * origin.len();
@@ -272,7 +275,7 @@ fn matrix<M: Model>(system: &mut BodySystem<'_, M>, origin: &[[f64; 2]]) -> Vec<
     matrix
 }
 
-/// The largest eigenvalue of a matrix whose rows and columns are scaled, by power iteration.
+/// Returns the largest eigenvalue of a matrix whose rows and columns are scaled, by power iteration.
 fn largest_eigenvalue(matrix: &[Vec<f64>], scale: impl Fn(usize) -> f64) -> f64 {
     let size = matrix.len();
     let mut vector: Vec<f64> = (0..size).map(|index| 1.0 + (index % 7) as f64).collect();
@@ -318,12 +321,14 @@ impl ProblemVisitor for Check {
                 assert!((number - mirrored).abs() < 1e-11, "{number} and {mirrored}");
             }
         }
-        // A ⪯ D⁻¹: the largest eigenvalue of D^½ A D^½ is at most 1.
+        // The splitting bounds the operator A by a diagonal matrix: A ⪯ D⁻¹. So the largest eigenvalue of D^½ A D^½ is
+        // at most 1.
         let scale = |index: usize| (weights[index / entries] / diagonal(index)).sqrt();
         let largest = largest_eigenvalue(&matrix, scale);
         assert!(largest < 1.0 + 1e-9, "{largest}");
         assert!(largest > 0.5, "the bound is not idle: {largest}");
-        // Impulses of a sweep are read back as they were written, and the residual is the natural map's.
+        // The impulses after some sweeps are the same after reading and writing them, and the residual is that of the
+        // natural map.
         for _ in 0..3 {
             system.sweep();
         }
@@ -350,7 +355,7 @@ impl ProblemVisitor for Check {
     }
 }
 
-/// ‖(m_n v_n^free, m_t v_t^free)‖, N·s.
+/// Returns the scale of the residual, ‖(m_n v_n^free, m_t v_t^free)‖, N·s.
 fn scale_of_residual<M: Model>(problem: &StepProblem<M>) -> f64 {
     let rows = problem.rows.fixed.iter().map(|row| (&row.row, true));
     let rows = rows.chain(problem.rows.pairs.iter().map(|row| (&row.row, false)));

@@ -1,11 +1,11 @@
-//! Alarms are true under every stepper, and their advice helps: a scene that raises an alarm no longer does after the
-//! change that the alarm recommends.
+//! Tests that alarms are right under every stepper and that their advice helps: after the recommended change, the scene
+//! no longer raises the alarm.
 
 use slump::scene::stability::{column, mass_ratio, overlapped, squeeze};
 
 use crate::common::*;
 
-/// The alarms of a run of `steps` steps, or of the steps until the state is no longer finite.
+/// Runs `steps` steps, or less if the state becomes infinite. Returns the alarms of the run.
 fn raised(scene: &Scene, steps: usize) -> Vec<Alarm> {
     let mut run = start(scene);
     for _ in 0..steps {
@@ -20,7 +20,7 @@ fn kinds(scene: &Scene, steps: usize) -> Vec<AlarmKind> {
     raised(scene, steps).iter().map(|alarm| alarm.kind).collect()
 }
 
-/// The alarm of a kind, with its message.
+/// Runs a scene and checks that it raises an alarm of this kind. Returns the alarm and its message.
 #[track_caller]
 fn alarm_of(kind: AlarmKind, scene: &Scene, steps: usize) -> (Alarm, String) {
     let alarms = raised(scene, steps);
@@ -65,7 +65,7 @@ fn overlap_that_grains_were_placed_with_is_no_matter_of_the_time_step() {
         }
         assert_eq!(kinds(&apart, 100), [], "{stepper}: placed apart");
     }
-    // The same holds if grains are placed during the run.
+    // The alarm is the same if grains are placed in overlap during the run.
     let mut run = start(&under(Stepper::Moreau, overlapped(0.0)));
     take_steps(&mut run, 3);
     let diameter = run.world().mean_diameter;
@@ -127,7 +127,7 @@ fn a_grain_that_was_placed_in_a_wall_has_not_gone_through_it() {
     }
 }
 
-/// A disc that falls on a floor.
+/// Returns a scene of a disc that falls on a floor.
 fn falling() -> Scene {
     let grains = vec![moving(at(0.0, 0.1), RADIUS, at(0.0, -3.0))];
     let parameters = parameters(0.0, 1e-4, 0.5, 0.5);
@@ -148,7 +148,7 @@ fn springs_that_give_way_ask_for_stiffness_and_not_for_a_smaller_time_step() {
     stiffer.parameters.stiffness = 1e4 * stiffness;
     assert_eq!(kinds(&stiffer, 1000), []);
 
-    // A grain passes through the springs.
+    // A fast grain passes through a wall because the springs are too soft.
     let mut wall = under(Stepper::Dem, through_a_wall(1e-4, 100.0));
     wall.parameters.restitution = 1.0;
     let (alarm, _) = alarm_of(AlarmKind::GrainLost, &wall, 60);
@@ -156,7 +156,7 @@ fn springs_that_give_way_ask_for_stiffness_and_not_for_a_smaller_time_step() {
     wall.parameters.stiffness = 1e6 * alarm.stiffness.expect("the springs in force");
     assert_eq!(kinds(&wall, 60), []);
 
-    // Fewer substeps than a stable run of the springs needs.
+    // The springs are unstable with this few substeps.
     let mut coarse = under(Stepper::Dem, squeeze(1e-2));
     (coarse.parameters.substeps, coarse.parameters.time_step_secs) = (1, 0.02);
     for kind in [AlarmKind::GrainLost, AlarmKind::Overlap, AlarmKind::NotFinite] {
@@ -167,7 +167,7 @@ fn springs_that_give_way_ask_for_stiffness_and_not_for_a_smaller_time_step() {
     assert_eq!(kinds(&coarse, 100), []);
 }
 
-/// A disc that flies at a thin wall with this speed, m/s.
+/// Returns a scene of a disc that flies at a thin wall with this speed, m/s.
 fn through_a_wall(time_step_secs: f64, speed: f64) -> Scene {
     let grains = vec![moving(at(-0.3, 0.0), RADIUS, at(speed, 0.0))];
     let wall = Boundary::Segment { from: at(0.0, -1.0), to: at(0.0, 1.0) };
@@ -178,14 +178,14 @@ fn through_a_wall(time_step_secs: f64, speed: f64) -> Scene {
 #[test]
 fn a_wall_that_a_step_jumps_asks_for_a_smaller_time_step() {
     for &stepper in Stepper::ALL.iter().filter(|&&stepper| stepper != Stepper::Dem) {
-        // A hundred diameters per step.
+        // The disc moves a hundred diameters per step.
         let scene = under(stepper, through_a_wall(1e-2, 1000.0));
         let (alarm, words) = alarm_of(AlarmKind::GrainLost, &scene, 3);
         assert!(words.contains("gone through a wall") && words.contains("below 0.01 s"), "{words}");
         assert_eq!(alarm.advice, Advice::TimeStep);
         let slower = under(stepper, through_a_wall(1e-6, 1000.0));
         assert_eq!(kinds(&slower, 1000), [], "{stepper}");
-        // A quarter of a diameter inside the wall.
+        // The first step ends with the disc about a fifth of its diameter inside the wall.
         let scene = under(stepper, through_a_wall(1e-2, 27.0));
         if let Some(alarm) = raised(&scene, 3).first() {
             assert_eq!(alarm.advice, Advice::TimeStep, "{stepper}: {alarm:?}");
@@ -223,7 +223,7 @@ fn grains_that_leave_an_open_hopper_have_not_gone_through_a_wall() {
 
 #[test]
 fn a_grain_that_jumps_over_fixed_discs_asks_for_a_smaller_time_step() {
-    // The disc is 0.02 m above a row of fixed discs after three steps, and 0.02 m below it after four.
+    // The disc is 0.02 m above a row of fixed discs after three steps, and 0.02 m below the row after four steps.
     let fall = |x: f64, dt: f64| {
         let grains = vec![Grain::at_rest(at(x, 0.5), 0.05)];
         let row = (-5..=5).map(|k| fixed(at(0.1 * f64::from(k), 0.0), 0.05));
@@ -240,7 +240,7 @@ fn a_grain_that_jumps_over_fixed_discs_asks_for_a_smaller_time_step() {
     let mut run = fall(0.05, 0.5 * longest);
     take_steps(&mut run, 200);
     assert!(run.alarms().iter().all(|alarm| alarm.kind != AlarmKind::GrainLeft));
-    // Beside the row no time step can stop it.
+    // Next to the row, no time step can stop the disc.
     let mut run = fall(0.7, 0.08);
     take_steps(&mut run, 15);
     let alarm = run.alarms().iter().find(|alarm| alarm.kind == AlarmKind::GrainLeft);
@@ -249,7 +249,8 @@ fn a_grain_that_jumps_over_fixed_discs_asks_for_a_smaller_time_step() {
 
 #[test]
 fn a_small_grain_is_as_deep_as_its_own_size_says() {
-    // The small disc falls 3.3 of its radii into the floor, which is 0.02 of the large disc's diameter.
+    // The centre of the small disc sinks 3.3 of its radii below the floor. Compared with the large disc this is little:
+    // about 0.03 of its diameter.
     let parameters = parameters(0.0, 0.02, 0.0, 0.5);
     let small = Grain::at_rest(at(2.0, 0.5), 0.01);
     let grains = vec![Grain::at_rest(at(0.0, 0.5), 0.5), small];
@@ -263,7 +264,8 @@ fn a_small_grain_is_as_deep_as_its_own_size_says() {
     assert_eq!(run.observables().lost_grains, 1);
     scene.parameters.time_step_secs = 1e-4;
     assert_eq!(kinds(&scene, 10_000), []);
-    // It falls by half of its diameter in a step: an overlap of a quarter is a contact that was found late.
+    // The small disc falls by half of its diameter in a step. An overlap of a quarter of its diameter then only means
+    // that the contact was detected late.
     scene.parameters.time_step_secs = 1e-2;
     scene.grains[1].velocity = at(0.0, -1.0);
     scene.grains[1].position.y = 0.0149;
@@ -329,7 +331,8 @@ fn unsolved_steps_are_told_what_solves_them() {
     solved(&squeezed, "bounded friction");
 }
 
-/// A disc wedged between two fixed ones so that friction prevents it from leaving and from sliding.
+/// Returns a scene of a disc that is wedged between two fixed discs, so that friction prevents it from leaving and from
+/// sliding.
 fn wedged() -> Scene {
     let angle = 75f64.to_radians();
     let touching = 2.0 * RADIUS * (1.0 - 1e-9);
@@ -352,7 +355,7 @@ fn a_disc_that_unsolved_steps_let_sink_asks_for_what_solves_them() {
 #[test]
 fn schemes_have_no_tolerance_that_they_could_miss() {
     for stepper in [Stepper::Dem, Stepper::TgsSoft, Stepper::Avbd] {
-        // Touching discs at rest: any impulse is an error, and the residual is infinite.
+        // The discs touch at rest, so every impulse is an error, and the residual is infinite.
         let grains =
             vec![Grain::at_rest(at(0.0, 0.0), RADIUS), Grain::at_rest(at(0.0998, 0.0), RADIUS)];
         let mut scene = under(stepper, without_g(parameters(0.0, 1e-3, 0.5, 0.5), grains));
@@ -388,7 +391,7 @@ fn a_bond_number_that_makes_no_cohesion_is_told() {
     }
 }
 
-/// Six discs in two rows that fall on a floor together.
+/// Returns a scene of six discs in two rows that fall on a floor together.
 fn six_discs() -> Scene {
     let place = |k: u32| at(0.505 * f64::from(k), 3.5 + 0.75f64.sqrt() * f64::from(k % 2));
     let grains = (0..6).map(|k| Grain::at_rest(place(k), 0.5)).collect();

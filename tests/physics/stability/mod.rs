@@ -1,8 +1,8 @@
-//! Limits of the methods: the verdicts of a quick pass equal those of the committed table, and measured limits agree
-//! with theory.
+//! Tests of the limits of all methods. A quick run of the stability tests must give the verdicts of the committed
+//! table, and measured limits must agree with theory.
 //!
-//! After a change that improves a verdict, or worsens it for a good reason, renew the table: `cargo run --release --
-//! stability --quick --table tests/physics/stability/table.csv --overwrite`.
+//! After a change that improves a verdict, or worsens it for a good reason, write the table again: `cargo run --release
+//! -- stability --quick --table tests/physics/stability/table.csv --overwrite`.
 
 mod advice;
 mod theory;
@@ -19,7 +19,7 @@ use crate::common::*;
 
 const RENEW: &str = "cargo run --release -- stability --quick --table tests/physics/stability/table.csv --overwrite";
 
-/// Challenges that no variant fails.
+/// Stability tests that every method passes at every level.
 const UNBROKEN: [&str; 1] = ["rest"];
 
 fn quick() -> &'static StabilityTable {
@@ -85,7 +85,7 @@ fn every_scene_breaks_a_method_at_its_last_level_and_none_at_its_first() {
     }
 }
 
-/// Remaining speed after a few solved steps, in √(g d).
+/// Largest speed of a grain that counts as rest after a few solved steps, in √(g d).
 const STILL: f64 = 1e-7;
 
 fn solved(mut scene: Scene) -> Simulation {
@@ -96,7 +96,7 @@ fn solved(mut scene: Scene) -> Simulation {
     start(&scene)
 }
 
-/// Steps to rest; each step must be solved, and no contact may be lost.
+/// Takes some steps. Each step must be solved, no contact may be lost, and all grains must come to rest.
 fn stays(mut run: Simulation, what: &str) {
     let contacts = {
         assert!(error_against_model(&run) < 1e-4, "{what}");
@@ -122,7 +122,8 @@ fn the_lattice_is_hyperstatic_and_at_rest_however_little_its_normals_are_off() {
         let mut first = start(&scene);
         let contacts = first.step().expect("a finite state").contacts;
         assert_eq!(scene.grains.len(), 1314);
-        // Pairs in long and short rows; 72 in each of the 35 gaps between rows; the floor; and two walls.
+        // Contacts: pairs side by side in long and short rows, 72 in each of the 35 gaps between rows, the floor, and
+        // two walls.
         let beside = 18 * 36 + 18 * 35;
         assert_eq!(contacts, beside + 35 * 72 + 37 + 2 * 18, "{perturbation}");
         stays(solved(scene), &format!("displaced by {perturbation} d"));
@@ -139,7 +140,7 @@ fn heaps_of_any_size_are_at_rest() {
     assert_eq!(heap_of(10_000).grains.len(), 9870);
 }
 
-/// Overlap that remains after pushing out, in d.
+/// Overlap that the remedy `push_out` leaves, in diameters.
 const LEFT: f64 = 2e-4;
 
 #[test]
@@ -192,7 +193,7 @@ fn a_step_in_pieces_is_one_step_that_keeps_the_balance_of_energy() {
     scene.parameters.time_step_secs = 0.02;
     scene.remedies.max_travel = 0.1;
     let mut run = start(&scene);
-    // The weight times the height of fall: all its energy.
+    // The potential energy at the start is the total energy: weight times height of fall.
     let scale = run.observables().potential_energy;
     let (mut energy, mut touched) = (0.0, false);
     for step in 1..=30 {
@@ -217,7 +218,7 @@ fn a_step_is_cut_into_no_more_than_a_hundred_pieces() {
         let travel = scene.gravity.magnitude() * 0.1 * 0.1 / scene.mean_diameter;
         let mut sweeps_in = |pieces: f64| {
             scene.remedies.max_travel = travel / (pieces - 0.5);
-            // Solves are short for every method.
+            // With one sweep per solve, the number of sweeps is proportional to the number of substeps.
             scene.solver = SolverSettings { max_sweeps: 1, ..solved_by(Method::Nsgs, 1e-9) };
             start(&scene).step().expect("a finite state").sweeps
         };
@@ -227,7 +228,8 @@ fn a_step_is_cut_into_no_more_than_a_hundred_pieces() {
     }
 }
 
-/// Failures that no remedy mends: so far from the origin that places are 2·10⁻³ d apart, numbers lack digits.
+/// Failures that no remedy prevents (scene, level). At this distance from the origin, neighbouring floating-point
+/// numbers are 2·10⁻³ d apart, so positions are too coarse.
 const UNMENDED: [(&str, f64); 1] = [("far", 1e13)];
 
 #[test]
@@ -239,7 +241,7 @@ fn the_robust_preset_holds_everywhere_but_where_nothing_could() {
     }
 }
 
-/// The alarms of a run: kinds and messages.
+/// Runs a scene. Returns the alarms of the run: kinds and messages.
 fn alarms(scene: &Scene, steps: u32) -> Vec<(AlarmKind, String)> {
     let mut run = start(scene);
     for _ in 0..steps {
@@ -270,7 +272,7 @@ fn a_hundred_steps_at_the_sweep_limit_are_told_of_and_ninety_nine_are_not() {
     let mut scene = mass_ratio(1e3);
     scene.solver.max_sweeps = 2;
     scene.solver.tolerance = 1e-15;
-    // Newton's method solves Coulomb's law, which the default here does not.
+    // Both methods must recommend more sweeps.
     for (method, advice) in
         [(Method::Auto, "more than 2 sweeps"), (Method::Nsgs, "more than 2 sweeps")]
     {
@@ -298,7 +300,7 @@ fn a_state_that_is_not_finite_is_told_of_with_what_helps() {
     assert!(words.contains("try 0 substeps"), "{words}");
 }
 
-/// A scene whose bonds break fast under `range`.
+/// Returns the scene with the stepper `range` and parameters with which bonds break within a short time.
 fn brittle(mut scene: Scene, bond: f64, time_step_secs: f64) -> Scene {
     scene.stepper = Stepper::Range;
     scene.solver.method = Method::Newton;
@@ -313,7 +315,7 @@ fn brittle(mut scene: Scene, bond: f64, time_step_secs: f64) -> Scene {
 
 #[test]
 fn a_break_that_a_step_is_too_long_to_see_is_told_of_with_the_step_that_is_not() {
-    // Runs until bonds have broken, or for 0.1 s. Returns the alarms about breaks, and true if bonds broke.
+    // Runs until bonds have broken, or for 0.1 s. Returns the alarms about breaking bonds, and true if bonds broke.
     let run = |scene: &Scene| {
         let mut simulation = start(scene);
         let mut broken = 0.0;
@@ -329,13 +331,15 @@ fn a_break_that_a_step_is_too_long_to_see_is_told_of_with_the_step_that_is_not()
     let long = brittle(pile.clone(), 20.0, 5e-3);
     let (said, broke) = run(&long);
     assert!(broke && said.len() == 1, "{said:?}");
-    // Sixteen substeps of 0.4 √(2 δc d / (Bond g)), 7.14e-5 s, are 4.57e-4 s.
+    // The breaking time √(2 δ_c d/(Bond g)) is 7.14e-5 s here. A substep may take 0.4 of this time, so the longest
+    // resolved step has sixteen substeps and takes 4.57e-4 s.
     let bond_time = (2.0 * 1e-4 * pile.mean_diameter / (20.0 * 9.8f64)).sqrt();
     let longest = said[0].longest_time_step_secs.expect("the step that can");
     assert!((longest - 6.4 * bond_time).abs() < 1e-12, "{longest}");
     let words = said[0].message(&long.settings());
     assert!(words.contains("time step of at most 4.5e-4 s"), "{words}");
-    // At that step breaks are resolved. Without bonds, or if none is about to break, nothing needs to be resolved.
+    // With this time step, breaking bonds are resolved. Without bonds, or if no bond is about to break, longer steps
+    // raise no alarm either.
     assert_eq!(run(&brittle(pile.clone(), 20.0, 4.5e-4)), (Vec::new(), true));
     assert_eq!(run(&brittle(pile, 0.0, 5e-3)), (Vec::new(), false));
     assert_eq!(run(&brittle(heap(5), 20.0, 5e-3)), (Vec::new(), false));
@@ -343,7 +347,7 @@ fn a_break_that_a_step_is_too_long_to_see_is_told_of_with_the_step_that_is_not()
 
 #[test]
 fn a_grain_that_falls_out_of_the_world_is_told_of() {
-    // Grains fall off the end of a finite base.
+    // Grains fall off the end of the base.
     let mut scene = heap(3);
     scene.grains[0].position.x += 100.0 * scene.mean_diameter;
     scene.fixed_discs.truncate(3);

@@ -1,4 +1,5 @@
-//! Theoretical limits, and the effect of friction models on sliding bodies, against measurements.
+//! Compares measurements with theoretical limits of the methods, and with the theoretical effect of friction models on
+//! sliding bodies.
 
 use slump::scene::stability::{
     FRICTION_OF_ARCH, WALL_DISTANCE, arch, balls, blow, breaking_bond_of_cantilever, cantilever,
@@ -9,7 +10,8 @@ use slump::study::stability::contraction_of_column;
 
 use crate::common::*;
 
-/// Number of steps until a column sinks steadily: each step reduces the rest to a tenth or less.
+/// Number of steps until a column sinks at a steady speed: each step reduces the deviation from this speed to a tenth
+/// or less.
 const STEADY: usize = 40;
 
 fn cold(sweeps: u32) -> SolverSettings {
@@ -21,7 +23,7 @@ fn cold(sweeps: u32) -> SolverSettings {
     }
 }
 
-/// Steady speed of the last grain, in g Δt, with this many sweeps from zero impulses per step.
+/// Returns the steady speed of the last grain, in g Δt, if each step makes this many sweeps from zero impulses.
 fn sinking_speed(mut scene: Scene, sweeps: u32) -> f64 {
     scene.solver = cold(sweeps);
     let run = after(&scene, STEADY);
@@ -44,7 +46,7 @@ fn a_column_sinks_less_with_more_sweeps_as_theory_says() {
             let ratio = found / expected;
             assert!((0.9..1.1).contains(&ratio), "{count} discs, {sweeps} sweeps: {ratio}");
         }
-        // The rate itself, independent of the mode's amplitude.
+        // The rate of convergence itself, which does not depend on the amplitude of the slowest mode.
         let sweeps = 2 * (count * count) as u32;
         let speeds =
             [sweeps, sweeps + 50].map(|sweeps| sinking_speed(column_on_line(count), sweeps));
@@ -82,9 +84,10 @@ fn a_disc_goes_through_a_wall_in_the_share_of_phases_that_geometry_gives() {
     }
 }
 
-/// At ρ = 1 the struck contact requires v₂ − v₁ = v, all others require no relative motion. If the balls behind it
-/// move with u, momentum gives u − v + (n − 1) u = v: they leave with 2v/n, and the first one bounces back. Momentum
-/// and energy are conserved, and yet no real cradle behaves so.
+/// With restitution 1 the struck contact requires v₂ − v₁ = v, where v is the speed of the first of n balls. All other
+/// contacts require zero relative velocity. If all balls except the first move at u, conservation of momentum gives u −
+/// v + (n − 1) u = v. So they leave with u = 2v/n, and the first ball bounces back. Momentum and energy are conserved,
+/// but no real Newton's cradle behaves in this way.
 #[test]
 fn balls_in_a_row_keep_momentum_and_energy_and_leave_together() {
     for count in [2, 3, 5, 20] {
@@ -103,7 +106,8 @@ fn balls_in_a_row_keep_momentum_and_energy_and_leave_together() {
     }
 }
 
-/// A column of springs with one substep per step, of `part` times the critical length.
+/// Returns a run of a column of springs with one substep per step. The time step is `part` times the critical time
+/// step.
 fn springs(part: f64) -> Simulation {
     let mut scene = column_on_line(12);
     scene.parameters.restitution = 0.5;
@@ -179,14 +183,15 @@ fn sliding(time_step_secs: f64, solver: SolverSettings) -> Simulation {
     start(&scene)
 }
 
-/// v₀, μ, g and d of the scene.
+/// Returns the initial speed v₀ (m/s), the friction coefficient μ, gravity g (m/s²) and the diameter d (m) of the scene
+/// `dilatancy`.
 fn numbers() -> [f64; 4] {
     let scene = dilatancy();
     let speed = scene.grains[0].velocity.x;
     [speed, scene.parameters.friction, scene.gravity.magnitude(), scene.mean_diameter]
 }
 
-/// Distance from the start to the place at which the disc stays.
+/// Runs until the disc has stopped. Returns its displacement from the start, m.
 fn way(run: &mut Simulation) -> glam::DVec2 {
     let [speed, friction, gravity, _] = numbers();
     let start = run.place(0);
@@ -197,7 +202,7 @@ fn way(run: &mut Simulation) -> glam::DVec2 {
     run.place(0) - start
 }
 
-/// Long steps and short ones; at some of them the disc stops within a step, not at its end.
+/// Short and long time steps, s. At some of them the disc stops within a step, at others at the end of a step.
 const TIME_STEPS_SECS: [f64; 4] = [2e-4, 1e-3, 5e-3, 1.7e-2];
 
 #[test]
@@ -261,13 +266,14 @@ fn desaxce_sinks_what_slides_by_the_way_of_a_step_times_friction() {
         let right = friction * speed * time_step_secs;
         let once = sunk(1);
         assert!((once / right - 1.0).abs() < 1e-6, "{time_step_secs} s: {once} for {right}");
-        // Each solve leaves μ²/(1 + μ²), a fifth, of the previous error.
+        // Each solve reduces the error to μ²/(1 + μ²), which is a fifth.
         let fourth = sunk(4);
         assert!((0.0..0.02 * right).contains(&fourth), "{time_step_secs} s: {fourth} of {right}");
     }
 }
 
-/// Speed of both discs along the floor, the sum of their distances along it, and true after the blow.
+/// Returns the speed of the two discs along the floor (mean by mass, m/s), their mean position along it (m), and true
+/// if the upper disc has already hit the lower disc.
 fn along_the_floor(run: &Simulation) -> (f64, f64, bool) {
     let grains = run.grains();
     let mass: f64 = grains.masses.iter().sum();
@@ -288,7 +294,8 @@ fn a_blow_on_what_slides_takes_speed_by_impulse_balance() {
     assert!(taken > 0.1 * before && taken < 0.9 * before, "it is seen, and they go on sliding");
     let ways = [
         (Method::Newton, FrictionModel::Coulomb, 1e-8),
-        // Fifty sweeps estimate the pressing force this well. The previous step could not know about it.
+        // With bounded friction, fifty sweeps estimate the pressing force, so the final speed is wrong by up to 1 % of
+        // the lost speed. Forces of the previous step would not help, because they do not include the blow.
         (Method::InteriorPoint, FrictionModel::Tresca, 0.01 * taken),
         (Method::Nsgs, FrictionModel::Tresca, 0.01 * taken),
     ];

@@ -1,4 +1,5 @@
-//! The steppers other than the paper's (`range`, `tgs-soft`, `avbd`, `dem`), and properties of all steppers.
+//! Tests of the steppers other than the paper's (`range`, `tgs-soft`, `avbd`, `dem`), and of properties of all
+//! steppers.
 
 mod own_laws;
 mod range;

@@ -1,4 +1,5 @@
-//! A user's own law (`Stage::prepare_within`): cohesion of finite range as a function of the gap.
+//! Tests of a contact law that a user adds by `Stage::prepare_within`: cohesion of finite range as a function of the
+//! gap.
 
 use crate::common::*;
 use slump::sim::{Advance, Stage, StepResult};
@@ -20,16 +21,17 @@ impl Advance for Wet {
     }
 }
 
-/// The body next to a grain.
+/// The kind of fixed body next to a grain.
 #[derive(Clone, Copy, Debug)]
 enum Near {
     Disc,
     Wall,
-    /// A disc across a border of a periodic cell.
+    /// A fixed disc across a border of a periodic cell.
     Image,
 }
 
-/// Velocity away from the body next to a grain after one step, m/s, from an initial gap and speed.
+/// Takes one step with a grain next to a fixed body, from an initial gap (m) and speed (m/s). Returns the velocity of
+/// the grain away from the body, m/s.
 fn after_a_step(near: Near, gap: f64, speed: f64, time_step_secs: f64, physics: Physics) -> f64 {
     const CELL: f64 = 20.0 * RADIUS;
     let (place, away, disc, boundaries, periodic) = match near {
@@ -46,7 +48,7 @@ fn after_a_step(near: Near, gap: f64, speed: f64, time_step_secs: f64, physics: 
         }
     };
     let grain = moving(place * DVec2::X, RADIUS, away * speed * DVec2::X);
-    // Gravity, which the grain does not feel, defines the meaning of Bond.
+    // The Bond number refers to gravity, so gravity exists although the grain does not feel it.
     let grains = vec![Grain { feels_gravity: false, ..grain }];
     let mut run = start(&Scene {
         fixed_discs: disc.then(|| fixed(DVec2::ZERO, RADIUS)).into_iter().collect(),

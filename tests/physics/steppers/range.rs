@@ -1,18 +1,20 @@
-//! The law `range` (`contact::range`): a single bond against its exact motion.
+//! Tests of the contact law of the stepper `range` (`contact::range`), mostly of a single bond against its exact
+//! motion.
 
 use crate::common::*;
 
 const RADIUS: f64 = 2.5e-3;
 const BOND: f64 = 20.0;
-/// Two decades around the time in which a bond breaks, which is 0.7 ms at Bond 20.
+/// Time steps from a tenth to ten times the time in which a bond breaks, s. This time is 0.7 ms at Bond 20.
 const TIME_STEPS: [f64; 7] = [5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 
-/// A grain that leaves a fixed disc with a speed (m/s) under a load (m/s²) that pulls it away. C₀ is that of Bond
-/// [`BOND`] under g, for every load.
+/// Returns a run of a grain that leaves a fixed disc with a speed (m/s) while a load (an acceleration, m/s²) pulls it
+/// away. For every load the cohesion force C₀ is the same as for Bond [`BOND`] under g.
 fn pair(time_step_secs: f64, speed: f64, load: f64, physics: Physics) -> Simulation {
     let direction = DVec2::X;
     let grain = moving(2.0 * RADIUS * direction, RADIUS, speed * direction);
-    // C₀ depends on the norm of gravity; this Bond makes it BOND·G under every load.
+    // C₀ is proportional to the norm of gravity, and gravity is the load here. This Bond number makes C₀ = BOND·G per
+    // mass.
     let (gravity, bond) = if load == 0.0 { (G, BOND) } else { (load, BOND * G / load.abs()) };
     let feels_gravity = load != 0.0;
     start(&Scene {
@@ -28,7 +30,7 @@ fn pair(time_step_secs: f64, speed: f64, load: f64, physics: Physics) -> Simulat
     })
 }
 
-/// Speed of a grain at a distance of three bond lengths, or `None` if it stays at the disc.
+/// Returns the speed of the grain at a distance of three bond lengths (m/s), or `None` if it stays at the disc.
 fn speed_far_away(mut run: Simulation) -> Option<f64> {
     let far = 2.0 * RADIUS * (1.0 + 3.0 * DISTANCE_IN_DIAMETERS);
     let steps = (0.1 / run.parameters().time_step_secs) as usize;
@@ -41,7 +43,7 @@ fn speed_far_away(mut run: Simulation) -> Option<f64> {
     None
 }
 
-/// C₀δ_c/m_ij, m²/s².
+/// Returns the work C₀δ_c that breaks a bond, divided by the effective mass m_ij, m²/s².
 fn work() -> f64 {
     BOND * G * DISTANCE_IN_DIAMETERS * 2.0 * RADIUS
 }
@@ -76,16 +78,17 @@ fn the_static_pull_off_force_is_the_cohesion_at_every_time_step() {
 
 #[test]
 fn a_bond_that_holds_a_load_at_rest_asks_for_no_substeps_and_breaks_where_its_strength_ends() {
-    // Longer than the time of a break, 0.7 ms: such a step is cut into four.
+    // Longer than the time in which a bond breaks, 0.7 ms. If a bond opens, Slump divides such a step into four.
     let time_step_secs = 1e-3;
-    // More than half of the strength, so that only standing still distinguishes it from a bond that is about to break.
+    // The load is more than half of the bond's strength, so a bond at rest differs from one that is about to break only
+    // by its speed.
     let load = 0.75 * BOND * G;
     let mut run = pair(time_step_secs, 0.3 * (2.0 * work()).sqrt(), load, LINE);
     take_steps(&mut run, 1);
     assert!(run.observables().sweeps > 4, "one in which a bond so loaded opens is cut");
     take_steps(&mut run, 20);
     assert!(run.observables().sweeps < 4, "one that stands is not");
-    // C₀ in units of the grain's weight, which is its load.
+    // The Bond number is C₀ divided by the weight of the grain, and the weight is the load.
     let mut parameters = *run.parameters();
     while parameters.bond > 0.5 && run.velocity(0).x < 1e-3 {
         parameters.bond *= 0.999;
@@ -103,7 +106,7 @@ fn a_load_that_breaks_a_bond_gives_it_just_its_work() {
         while run.place(0).x < 3.0 * RADIUS {
             take_steps(&mut run, 1);
         }
-        // The bond pulls with C₀ until the pair has opened by δ_c.
+        // The bond pulls with the force C₀ until the pair has opened by the debonding distance δ_c.
         let opened = DISTANCE_IN_DIAMETERS * 2.0 * RADIUS;
         let time = (2.0 * opened / ((factor - 1.0) * BOND * G)).sqrt();
         let at = run.time_secs();
@@ -176,7 +179,7 @@ fn a_bond_gives_back_what_it_took_or_keeps_all_of_it() {
         let kept = if factor > 1.0 { mass * work() } else { 0.0 };
         assert_close(broken, kept, 1e-9, "kept by the bond");
         assert_eq!(run.observables().bond_energy, Some(0.0));
-        // Short steps resolve the opening.
+        // Only short steps resolve the opening of the bond.
         let bond_time = (2.0 * DISTANCE_IN_DIAMETERS * 2.0 * RADIUS / (BOND * G)).sqrt();
         if factor < 1.0 && time_step_secs < 0.2 * bond_time {
             assert!(most > 0.8 * begun, "stored {most} of {begun} J");
@@ -184,14 +187,18 @@ fn a_bond_gives_back_what_it_took_or_keeps_all_of_it() {
     }
 }
 
-/// Fraction of ω_c = √(C₀/(m_ij L)), the spin at which the bond holds the circle, above which a pair that turns as
-/// one body tears the bond. The pull is C₀ up to δ_c, and L²ω is conserved: the pair opens to L(1 + δ) if ½ω²L²(1 −
-/// (1 + δ)⁻²) = (C₀/m_ij)Lδ.
+/// Returns the ratio ω/ω_c above which a bonded pair that turns as one body at the angular velocity ω breaks its bond.
+/// L is the distance of the centres, and ω_c = √(C₀/(m_ij L)) is the angular velocity at which the cohesion force C₀ is
+/// the centripetal force (m_ij: effective mass).
+///
+/// The bond pulls with C₀ up to the debonding distance δ_c, and L²ω is conserved. So the pair opens to L(1 + δ) if
+/// ½ω²L²(1 − (1 + δ)⁻²) = (C₀/m_ij)Lδ.
 fn tearing_part(delta: f64) -> f64 {
     (2.0 * delta / (1.0 - (1.0 + delta).powi(-2))).sqrt()
 }
 
-/// True if two bonded grains of these radii that turn as one body at `part` of ω_c are still together after two turns.
+/// Returns true if two bonded grains (ratio of radii `size`) that turn as one body at `part` of ω_c are still together
+/// after two turns.
 fn circling_pair_holds(
     part: f64,
     [bond, time_step_secs, size]: [f64; 3],
@@ -224,7 +231,8 @@ fn a_pair_that_circles_holds_up_to_the_speed_at_which_its_bond_tears() {
             for size in [1.0, 0.4] {
                 for time_step_secs in TIME_STEPS {
                     let numbers = [bond, time_step_secs, size];
-                    // Above 6.4 break times sixteen substeps do not resolve the break, and the step reports it.
+                    // If Δt is longer than 6.4 times the breaking time, sixteen substeps do not resolve the break, and
+                    // Slump reports this step.
                     let bond_time = (4.0 * DISTANCE_IN_DIAMETERS * RADIUS / (bond * G)).sqrt();
                     let below = if time_step_secs < 6.4 * bond_time { 0.99 } else { 0.98 };
                     assert!(circling_pair_holds(below, numbers, physics), "{numbers:?} at {below}");
@@ -241,7 +249,8 @@ fn a_pair_that_circles_holds_up_to_the_speed_at_which_its_bond_tears() {
 
 #[test]
 fn a_grain_that_rides_on_a_moving_disc_does_not_circle_it() {
-    // True if the grain, which moves at 1 m/s along a disc with this speed, is treated as circling.
+    // Returns true if Slump treats a grain that moves at 1 m/s along a disc with this speed (m/s) as circling about the
+    // disc.
     let circles = |disc_speed: f64| {
         let direction = DVec2::Y;
         let course = MotionCourse::Straight { direction, speed: disc_speed, travel: None };
@@ -268,7 +277,7 @@ fn a_grain_that_rides_on_a_moving_disc_does_not_circle_it() {
     assert!(!circles(1.0));
 }
 
-/// A pile that falls together and forms bonds.
+/// Returns a scene of a pile that collapses and forms bonds.
 fn pile(bond: f64, time_step_secs: f64, method: Method) -> Scene {
     let parameters =
         Parameters { restitution: 0.1, restitution_threshold: 2.0, ..range(bond, time_step_secs) };
@@ -336,8 +345,8 @@ fn the_paper_s_law_tells_nothing_of_bonds() {
     assert!(!serde_json::to_string(now).expect("numbers").contains("bond_"));
 }
 
-/// Number of steps of a collapsing pile that both Newton's method and another method have solved, and the number of
-/// those whose final velocities agree.
+/// Returns the number of steps of a collapsing pile that both Newton's method and another method have solved, and the
+/// number of those steps in which the final velocities agree.
 fn solved_and_alike(seed: u64, friction: f64, method: Method) -> [u32; 2] {
     let parameters =
         Parameters { restitution: 0.1, restitution_threshold: 2.0, friction, ..range(20.0, 2e-4) };
@@ -366,12 +375,12 @@ fn solved_and_alike(seed: u64, friction: f64, method: Method) -> [u32; 2] {
     counts
 }
 
-/// Number of steps compared in each pile.
+/// Number of compared steps in each pile.
 const MOMENTS: u32 = 12;
 
-/// Methods need not agree on all steps. Coulomb's law may have several solutions, and the method decides which is
-/// found. If shocks have more contacts than they need, the distribution of their impulses decides which bond breaks
-/// first. Methods that solve another law agree on next to none.
+/// Checks how often methods agree. They need not agree on all steps: Coulomb's law may have several solutions, and the
+/// method decides which solution is found. If the impulses of a shock are not unique, the method also decides which
+/// bond breaks first. Methods that solve different laws would agree on hardly any step.
 #[test]
 fn methods_agree_on_nearly_all_steps_with_bonds() {
     for (method, (friction, least_share)) in
@@ -379,14 +388,15 @@ fn methods_agree_on_nearly_all_steps_with_bonds() {
     {
         let counts = (1..=8).map(|seed| solved_and_alike(seed, friction, method));
         let [solved, alike] = counts.fold([0; 2], |sum, more| [0, 1].map(|at| sum[at] + more[at]));
-        // Steps that are unsolved within the allowed sweeps say nothing about agreement.
+        // Steps that are not solved within the allowed sweeps say nothing about agreement.
         assert!(2 * solved > 8 * MOMENTS, "{method:?}, μ = {friction}: {solved} solved");
         let share = f64::from(alike) / f64::from(solved);
         assert!(share >= least_share, "{method:?}, μ = {friction}: {alike} of {solved} alike");
     }
 }
 
-/// At Δt = 5e-3 s, half the steps of a slumping pile are unsolved under Coulomb's law.
+/// At Δt = 5e-3 s, half the steps of a slumping pile are unsolved under Coulomb friction. With bounded friction all are
+/// solved.
 #[test]
 fn under_bounds_of_friction_no_piece_of_a_step_is_left_unsolved() {
     let run = |bond: f64, time_step_secs: f64, solver: SolverSettings| {

@@ -1,4 +1,4 @@
-//! Shocks under `range` against exact motion, for every Δt and any time of impact within a step.
+//! Tests of shocks under the stepper `range` against exact motion, for every Δt and any time of impact within a step.
 
 use crate::common::*;
 
@@ -6,8 +6,9 @@ const RADIUS: f64 = 2.5e-3;
 const BOND: f64 = 20.0;
 const TIME_STEPS: [f64; 6] = [1e-4, 3e-4, 1e-3, 2e-3, 5e-3, 2e-2];
 
-/// Two discs in free flight, the second at rest. They meet after `gap` metres along x, with their centres offset
-/// along y by `aside` sums of radii.
+/// Returns a run of two discs in free flight; the second disc is at rest. They collide after the first has moved by
+/// `gap` (m) along x. Their centres are offset along y by `aside` times the sum of the radii. `size` is the ratio of
+/// the radii.
 fn two(physics: Physics, numbers: Parameters, [gap, aside, speed, size]: [f64; 4]) -> Simulation {
     let radii = RADIUS * (1.0 + size);
     let ahead = (1.0 - aside * aside).sqrt() * radii;
@@ -47,12 +48,12 @@ fn two_discs_bounce_by_rho_at_any_time_step_phase_mass_ratio_and_slant() {
     assert!(met > 3000, "{met} bounces");
 }
 
-/// Steps past the shock of [`two`] and compares the velocities with those of a shock at the exact place.
+/// Steps past the shock of [`two`] and compares the velocities with those of a shock at the exact position.
 fn check_bounce(run: &mut Simulation, restitution: f64, [gap, aside, speed, size]: [f64; 4]) {
     let (momentum_before, friction) = (momentum(run), run.parameters().friction);
     let mass = effective_mass(run);
     let physics = run.physics();
-    // From the second grain, which is at rest until the shock, to the first.
+    // Normal from the second grain, which is at rest until the shock, to the first grain.
     let normal = DVec2::new(-(1.0 - aside * aside).sqrt(), aside);
     let tangent = normal.perp();
     let spin = RADIUS * run.grains().angular_velocities[0];
@@ -74,7 +75,7 @@ fn check_bounce(run: &mut Simulation, restitution: f64, [gap, aside, speed, size
     assert!(off <= 1e-9 * speed, "{what}: {found} for {expected}");
     let lost = (momentum(run) - momentum_before).length();
     assert!(lost <= 1e-12 * mass * speed, "{what}: momentum {lost:e}");
-    // The position shows the time of the shock.
+    // The distance moved after the shock shows whether the shock had the right time.
     let way = run.time_secs() - gap / speed;
     let apart = RADIUS * (1.0 + size) * normal + way * expected;
     let places = run.places();
@@ -145,7 +146,7 @@ fn a_wall_that_comes_throws_a_grain_off_by_its_own_speed() {
 #[test]
 fn what_passes_by_or_is_deflected_before_is_not_struck() {
     for time_step_secs in TIME_STEPS {
-        // The first disc would barely miss the second; the linearised gap predicts a meeting.
+        // The first disc barely misses the second, but the linearised gap predicts a contact.
         let aside = 2.0 * RADIUS * (1.0 + 1e-6);
         let grains = vec![
             weightless(moving(DVec2::new(-1.5 * RADIUS, aside), RADIUS, DVec2::new(1.0, 0.0))),
@@ -154,7 +155,7 @@ fn what_passes_by_or_is_deflected_before_is_not_struck() {
         let numbers = parameters(0.0, time_step_secs, 1.0, 0.0);
         let run = after(&ranged(SMOOTH, DVec2::new(0.0, -G), numbers, grains), 3);
         assert_eq!(run.grains().velocities, [DVec2::X, DVec2::ZERO]);
-        // The first disc moves towards the second, but before that the third hits it from below.
+        // The first disc moves towards the second, but before they meet a third disc hits the first from below.
         let up = DVec2::new(0.0, 1.0);
         let grains = vec![
             weightless(moving(DVec2::new(-2.2 * RADIUS, 0.0), RADIUS, DVec2::new(0.2, 0.0))),
@@ -177,7 +178,8 @@ fn what_passes_by_or_is_deflected_before_is_not_struck() {
     }
 }
 
-/// Heights that a ball above a plane reaches after each bounce, as far as the steps show them.
+/// Returns the heights that a ball above a plane reaches after each bounce, m. They are the highest positions at the
+/// ends of steps.
 fn apexes(time_step_secs: f64, restitution: f64, height: f64, count: usize) -> Vec<f64> {
     let radius = 0.05;
     let grain = Grain::at_rest(DVec2::new(0.0, radius + height), radius);
@@ -215,7 +217,7 @@ fn apexes_of_a_ball_follow_the_squares_of_rho() {
             apexes(time_step_secs, restitution, height, count).into_iter().enumerate()
         {
             ideal *= restitution * restitution;
-            // Between two steps the ball may rise gΔt²/8 above the heights at their ends.
+            // Between the ends of two steps the ball may be up to gΔt²/8 higher.
             let allowed = 0.125 * G * time_step_secs.powi(2) + 1e-9 * height;
             let below = ideal - found;
             let what = format!("Δt {time_step_secs}, ρ {restitution}, bounce {bounce}");
@@ -225,7 +227,8 @@ fn apexes_of_a_ball_follow_the_squares_of_rho() {
     }
 }
 
-/// Discs at random places in a box, with random velocities.
+/// Returns a run of discs at random positions in a box, with random velocities. `fill` is the fraction of the area that
+/// they cover.
 fn gas(count: usize, fill: f64, numbers: Parameters, seed: u64) -> Simulation {
     let mut random = random(seed);
     let columns = (count as f64).sqrt().ceil() as usize;
@@ -273,7 +276,8 @@ fn a_gas_without_losses_keeps_its_energy() {
     }
 }
 
-/// Final speeds of a ball that hits a row of others and of the row.
+/// Returns the final speeds of a ball that hits a row of four balls, and of the balls of the row, m/s. Neighbours in
+/// the row have this gap (m).
 fn cradle(gap: f64, restitution: f64, time_step_secs: f64, stepper: Stepper) -> Vec<f64> {
     let mut place = -(2.0 * RADIUS + 1.234e-3);
     let grains = (0..5).map(|index| {

@@ -1,4 +1,4 @@
-//! The stepping schemes `tgs-soft`, `dem` and `avbd`: properties that each must have.
+//! Tests of the stepping schemes `tgs-soft`, `dem` and `avbd`: properties that each of them must have.
 
 use rayon::prelude::*;
 
@@ -23,7 +23,8 @@ fn soft_substeps_part_a_pair_with_the_restitution_that_is_asked_for() {
 
 #[test]
 fn a_threshold_of_restitution_holds_for_soft_substeps() {
-    // The discs meet with 1 m/s: 102 g·Δt.
+    // The discs collide at 1 m/s, which is 102 g·Δt. Restitution acts only above the threshold, which is in units of
+    // g·Δt.
     for (threshold, parts) in [(90.0, true), (110.0, false)] {
         let mut scene = by(Stepper::TgsSoft, 0, meeting(LINE, 0.5, 1e-3));
         scene.parameters.restitution_threshold = threshold;
@@ -31,7 +32,8 @@ fn a_threshold_of_restitution_holds_for_soft_substeps() {
     }
 }
 
-/// A disc that gravity pulls off the disc above it, which is fixed or free.
+/// Returns a scene in which gravity pulls a disc off another disc above it. The upper disc is fixed, or free and
+/// weightless.
 fn pulled(stepper: Stepper, bond: f64, dt: f64, free: bool) -> Scene {
     let (radius, other) = (0.15, 0.1);
     let hanging = Grain::at_rest(DVec2::new(0.0, -(radius + other) * (1.0 - 1e-9)), radius);
@@ -56,7 +58,7 @@ fn the_static_pull_off_force_does_not_depend_on_the_time_step() {
                     after(&scene, (0.5 / dt) as usize)
                 };
                 let holds = |bond: f64| run(bond).observables().contacts == 1;
-                // The pull is m_ij g and C₀ is Bond·m_ij·g.
+                // The pull is m_ij g and C₀ is Bond·m_ij·g, so the bond breaks below Bond = 1.
                 let found = border(0.5, 2.0, 9, |bond| !holds(bond));
                 assert!((found - 1.0).abs() < 2e-3, "{method:?}, Δt {dt}: C₀ of {found} weights");
 
@@ -163,7 +165,7 @@ fn settings_that_change_before_the_first_step_are_those_of_the_start() {
     }
 }
 
-/// Mean and standard error.
+/// Returns the mean of some numbers and the standard error of the mean.
 fn mean(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
@@ -173,7 +175,8 @@ fn mean(values: &[f64]) -> (f64, f64) {
 
 #[test]
 fn a_pile_without_cohesion_slumps_as_it_does_in_contact_dynamics() {
-    // Slumps by Gauss-Seidel to a relative change of 1e-6, Δt = 1e-3 s, from seeds 1 to 4 of the rain.
+    // Slumps by contact dynamics: Gauss–Seidel to a relative change of 1e-6 with Δt = 1e-3 s, for the seeds 1 to 4 of
+    // the initial state.
     let contact_dynamics = [0.454, 0.484, 0.532, 0.475];
     let states: Vec<Scene> = (1..=4)
         .into_par_iter()
@@ -199,7 +202,8 @@ fn a_pile_without_cohesion_slumps_as_it_does_in_contact_dynamics() {
     }
 }
 
-/// Discs on one another along x on a fixed disc; the top disc is `ratio` times as large as the others.
+/// Returns a scene of discs on one another along x, on a fixed disc. The radius of the top disc is `ratio` times the
+/// radius of the others.
 fn column(count: usize, ratio: f64) -> Scene {
     let radius = 0.1;
     let apart = 2.0 * radius * (1.0 - 1e-9);
@@ -244,7 +248,7 @@ fn a_pair_that_meets_stays_together_and_keeps_its_momentum_as_far_as_iterations_
     }
 }
 
-/// Change of a step's kinetic energy that the works do not explain, J.
+/// Returns the change of kinetic energy in a step that the works do not explain, J.
 fn unexplained(before: f64, after: &Observables) -> f64 {
     let works = after.gravity_work + after.normal_work + after.tangential_work;
     (after.kinetic_energy - before - works).abs()

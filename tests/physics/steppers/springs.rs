@@ -1,5 +1,5 @@
-//! The stepping scheme `dem`: springs and dashpots, the numbers that define them, and the time step at which they
-//! become unstable.
+//! Tests of the stepping scheme `dem`: its springs and dashpots, the numbers that define them, and the time step at
+//! which they become unstable.
 
 use slump::error::Error;
 
@@ -11,8 +11,8 @@ fn springs(run: &Simulation) -> SpringDashpot {
     SpringDashpot::of(run.world(), physics.axes, run.parameters())
 }
 
-/// Takes steps until two colliding discs have separated. Returns the duration of the contact, s, and the ratio of
-/// final to initial speed.
+/// Takes steps until two colliding discs have separated. Returns the duration of the contact, s, and the ratio of final
+/// to initial speed.
 fn until_parted(scene: &Scene) -> [f64; 2] {
     let mut run = start(scene);
     let (before, carried) = (relative_velocity(&run), momentum(&run));
@@ -45,7 +45,7 @@ fn springs_and_dashpots_give_the_restitution_that_is_asked_for() {
                 until_parted(&scene)[1] - expected
             });
             println!("ρ {restitution}: off by {errors:?}");
-            // First order in h: a quarter of h, about a quarter of the error.
+            // The error is of first order in the time step h: a quarter of h gives about a quarter of the error.
             assert!(errors[0].abs() < 1e-2, "ρ {restitution}: off by {errors:?}");
             errors.iter_mut().for_each(|error| *error = error.abs());
             assert!(errors[1] < 0.3 * errors[0] + 2e-4, "ρ {restitution}: off by {errors:?}");
@@ -53,7 +53,7 @@ fn springs_and_dashpots_give_the_restitution_that_is_asked_for() {
     }
 }
 
-/// True if a small push makes a pair oscillate ever more around its cohesive overlap.
+/// Returns true if a small push makes a bonded pair oscillate around its rest position with growing amplitude.
 fn shakes_up(restitution: f64, dt_over_critical: f64) -> bool {
     let probe = start(&meeting(LINE, restitution, 1e-3));
     let (mass, springs) = (effective_mass(&probe), springs(&probe));
@@ -79,7 +79,7 @@ fn a_pair_of_elements_blows_up_above_its_critical_step_and_not_below() {
         println!("ρ {restitution}: {stable} of the critical step");
         assert!((stable - 1.0).abs() < 0.02, "ρ {restitution}: {stable} of the critical step");
     }
-    // Without damping the critical step is 2/ω.
+    // Without damping the critical time step is 2/ω, where ω is the natural angular frequency of the contact.
     let probe = start(&meeting(LINE, 1.0, 1e-3));
     let (mass, springs) = (effective_mass(&probe), springs(&probe));
     let critical = springs.critical_time_step_secs(mass, 1.0);
@@ -88,7 +88,7 @@ fn a_pair_of_elements_blows_up_above_its_critical_step_and_not_below() {
 
 #[test]
 fn a_step_that_blows_up_ends_in_an_error() {
-    // Between walls the disc cannot escape with its energy.
+    // The disc is between two walls, so it cannot escape with the energy that it gains.
     let mut scene = meeting(LINE, 0.5, 1e-3);
     scene.grains.truncate(1);
     let wall = |x: f64| plane(x * DVec2::X, -x * DVec2::X);
@@ -104,7 +104,7 @@ fn a_step_that_blows_up_ends_in_an_error() {
             assert_eq!(matches!(failure, Some(Error::NonFinite { .. })), blows_up, "{failure:?}");
         }
     }
-    // A pile becomes unstable too, and ends without a panic, with finite numbers or not.
+    // A pile becomes unstable, too. The run must not panic, and its numbers may become infinite.
     let energies = |now: &Observables| [now.kinetic_energy, now.potential_energy];
     let mut pile = by(Stepper::Dem, 1, paper_pile().expect("the shipped state"));
     pile.parameters.time_step_secs = 2e-3;
@@ -119,10 +119,11 @@ fn a_step_that_blows_up_ends_in_an_error() {
 }
 
 const RADIUS: f64 = 2.5e-3;
-/// Overlap at which a bonded pair rests, in radii.
+/// Overlap of a bonded pair at rest, in radii.
 const REST: f64 = 1e-3;
 
-/// The stiffness (N/m) at which a bond of an effective mass (kg) rests at that overlap.
+/// Returns the stiffness (N/m) at which a bond between bodies of this effective mass (kg) rests at the overlap
+/// [`REST`].
 fn stiffness(bond: f64, mass: f64) -> f64 {
     bond * mass * G / (REST * RADIUS)
 }
@@ -161,7 +162,8 @@ fn what_is_left_open_is_what_it_was_and_what_is_given_sets_the_substeps() {
     assert!(critical(stiffness, 10.0).0 < 0.5 * secs, "a stronger dashpot");
 }
 
-/// Contact time of two colliding discs, s, and the ratio of final to initial speed; each found, then expected.
+/// Runs a collision of two discs. Returns four numbers: duration of the contact (s) and its exact value, ratio of final
+/// to initial speed and its exact value.
 fn collision(physics: Physics, stiffness: f64, damping_ratio: f64, parts: f64) -> [f64; 4] {
     let mut scene = by(Stepper::Dem, 1, meeting(physics, 0.1, 1e-3));
     scene.parameters.stiffness = stiffness;
@@ -209,8 +211,8 @@ fn the_contact_time_that_is_told_is_that_of_two_mean_grains() {
     }
 }
 
-/// Two equal grains at rest in their bond that are thrown apart. Returns the energy of their relative motion that
-/// they lose until they are far apart (J), or `None` if they stay together.
+/// Throws two equal grains apart that are at rest in their bond. Returns the energy of their relative motion that they
+/// lose until they are far apart (J), or `None` if they stay together.
 fn thrown(mut scene: Scene, speed: f64, until_secs: f64) -> Option<f64> {
     scene.grains[1].velocity.x = speed;
     let mut run = start(&scene);
@@ -227,7 +229,7 @@ fn thrown(mut scene: Scene, speed: f64, until_secs: f64) -> Option<f64> {
     None
 }
 
-/// The pair at rest in its bond, with time steps that are short for its springs.
+/// Returns a scene of a pair at rest in its bond, with time steps that are short for its springs.
 fn bonded(stepper: Stepper, damping_ratio: f64) -> Scene {
     let bond = 20.0;
     let at = |x| weightless(moving(DVec2::new(x, 0.0), RADIUS, DVec2::ZERO));
@@ -279,7 +281,8 @@ fn a_dashpot_lets_a_fast_pair_lose_twice_that_work_and_none_more() {
             scene.parameters.time_step_secs /= factor;
             let lost = thrown(scene, factor * escape, 0.1).expect("it parts") / work;
             assert!((1.0..2.01).contains(&lost), "ζ {damping_ratio}, {factor}: {lost}");
-            // γ v > C₀ throughout.
+            // In these cases the force γv of the dashpot (γ: damping coefficient, v: speed) exceeds C₀ during the whole
+            // separation.
             if 2.0 * damping_ratio * (factor * factor - 2.0f64).max(0.0).sqrt() > 1.0 {
                 assert_close(lost, 2.0, 4e-3, &format!("ζ {damping_ratio}, {factor}"));
             }
@@ -287,7 +290,8 @@ fn a_dashpot_lets_a_fast_pair_lose_twice_that_work_and_none_more() {
     }
 }
 
-/// Work (J) that a contact takes while a pair is pulled apart within 2000/ω₀, and C₀²/2k.
+/// Pulls a bonded pair apart within the time 2000/ω₀ (ω₀: natural angular frequency). Returns the work that the contact
+/// takes, and C₀²/2k (k: stiffness), J.
 fn pulled_apart(damping_ratio: f64) -> [f64; 2] {
     let grain = weightless(Grain::at_rest(DVec2::new((2.0 - REST) * RADIUS, 0.0), RADIUS));
     let mut scene = scene(LINE, G * DVec2::X, parameters(1.0, 1e-4, 1.0, 0.0), vec![grain]);
@@ -301,7 +305,8 @@ fn pulled_apart(damping_ratio: f64) -> [f64; 2] {
     let mut run: Simulation = start(&by(Stepper::Dem, 1, scene.clone()));
     let (from, mut done) = (run.place(0), 0.0);
     loop {
-        // Far enough for the hand to pull with C₀ at the end: a distance of a diameter pulls with forty weights.
+        // The pull is forty weights per diameter of distance to the target. At 1/40 of a diameter it is one weight,
+        // which is C₀.
         let part = run.time_secs() / (2000.0 * unit);
         let target = from + DVec2::X * part * 2.0 * RADIUS / 40.0;
         run.set_pull(Some(Pull { grain: 0, target }));

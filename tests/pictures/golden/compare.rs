@@ -1,4 +1,4 @@
-//! The difference of two pictures, as a number and as a picture.
+//! Computes the difference of two pictures, as numbers and as a picture.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use image::{DynamicImage, Rgba, RgbaImage};
 /// Largest allowed difference of a picture from its golden picture.
 #[derive(Clone, Copy)]
 pub struct Tolerance {
-    /// Largest difference in any channel, out of 255.
+    /// Largest difference in any channel, from 0 to 255.
     pub channel: u8,
     /// Largest fraction of pixels that differ.
     pub pixels: f64,
@@ -51,7 +51,7 @@ impl std::fmt::Display for Difference {
     }
 }
 
-/// The differences, amplified twenty times, on black.
+/// Returns the absolute differences of two pictures, amplified twenty times, on black.
 fn difference_image(actual: &RgbaImage, golden: &RgbaImage) -> RgbaImage {
     let width = actual.width().max(golden.width());
     let height = actual.height().max(golden.height());
@@ -66,12 +66,12 @@ fn difference_image(actual: &RgbaImage, golden: &RgbaImage) -> RgbaImage {
     })
 }
 
-/// Path of a golden picture.
+/// Returns the path of a golden picture.
 pub fn golden_path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures/golden").join(format!("{name}.png"))
 }
 
-/// Writes a PNG file as small as the format allows, because the history keeps it for ever.
+/// Writes a PNG file that is as small as possible, because the Git history keeps all its versions.
 pub fn save_small(picture: &RgbaImage, name: &str, filter: FilterType) {
     let file = std::fs::File::create(golden_path(name)).unwrap();
     let encoder = PngEncoder::new_with_quality(file, CompressionType::Best, filter);
@@ -79,8 +79,8 @@ pub fn save_small(picture: &RgbaImage, name: &str, filter: FilterType) {
     opaque.write_with_encoder(encoder).unwrap();
 }
 
-/// The complaint about a picture that `kind` has drawn, if there is one. The picture and the difference are then
-/// written to files.
+/// Compares a picture that a renderer of this kind has drawn with the golden picture. Returns a message if the
+/// difference is too large, and writes the picture and the difference to files.
 pub fn complaint(
     actual: &RgbaImage,
     name: &str,

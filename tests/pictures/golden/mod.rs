@@ -1,17 +1,16 @@
-//! Golden pictures: drawings of stored states by every renderer, against the files in this folder.
+//! Golden pictures: drawings of stored states by every renderer are compared with the picture files in this folder.
 //!
-//! A GPU may differ by 2/255 in any channel and in 1 % of the pixels at all, the processor by 3/255 anywhere. A
-//! mismatch writes
+//! On a GPU, each colour channel of a pixel may differ by 2 of 255, and 1 % of the pixels may differ at all. On the
+//! processor, the channels may differ by 3 of 255 in all pixels. If the difference is larger, the test writes the files
 //! `target/golden/NAME.BACKEND.actual.png` and `.difference.png` (amplified twenty times). After an intended change,
-//! look at those
-//! and renew the files with
+//! look at these files and write the golden pictures again with
 //!
 //! ```text
 //! SLUMP_BLESS=1 cargo test --release --test pictures -- --ignored with_driver
 //! ```
 //!
-//! which draws them on Vulkan, or else on OpenGL, never on the processor. The tests in `with_driver` need one of the
-//! two.
+//! This draws them with Vulkan or else with OpenGL, never on the processor. The tests in `with_driver` need Vulkan or
+//! OpenGL.
 
 mod compare;
 mod states;
@@ -44,7 +43,7 @@ fn grains_of_a_material_share_a_colour_that_the_legend_shows() {
         names.map(|name| Material { name, ..Material::default() }).to_vec();
     let mut counts = |snapshot: &Snapshot| {
         let picture = scene(&mut cpu, snapshot, &style, 640, 400).unwrap();
-        // Orange and sky blue, in the scene and in the strip of the legend.
+        // The colours orange and sky blue, counted in the scene and in the strip of the legend.
         [[230, 159, 0, 255], [86, 180, 233, 255]].map(|colour| {
             [0..500, 530..640].map(|columns| {
                 let is_there = |&(x, _, pixel): &(u32, u32, &image::Rgba<u8>)| {
@@ -62,7 +61,7 @@ fn grains_of_a_material_share_a_colour_that_the_legend_shows() {
     assert!(one.abs_diff(other) < grains / 10 && one + other > grains * 9 / 10, "{one}, {other}");
 }
 
-/// Draws each golden picture by some renderers, each with the name of its kind, and compares it with its file.
+/// Draws each golden picture by some renderers and compares it with its file. Each renderer has the name of its kind.
 fn assert_kept(renderers: &mut [(&'static str, &mut Renderer)], tolerance: Tolerance) {
     let mut complaints = Vec::new();
     for (name, draw) in &GOLDENS {
@@ -79,7 +78,7 @@ fn assert_kept(renderers: &mut [(&'static str, &mut Renderer)], tolerance: Toler
 mod with_driver {
     use super::*;
 
-    /// All GPUs of this machine, each with the name of its driver's kind.
+    /// Returns a renderer for each graphics driver of this machine, with the name of its kind.
     fn gpus() -> Vec<(&'static str, Renderer)> {
         let mut found = Vec::new();
         for (kind, choice) in [("vulkan", RendererChoice::Vulkan), ("gl", RendererChoice::Gl)] {
@@ -118,7 +117,7 @@ mod with_driver {
     }
 }
 
-/// Name of the file without its ending, and the function that draws it.
+/// Name of the picture file without its ending, and the function that draws the picture.
 pub type Golden = (&'static str, fn(&mut Renderer) -> Result<RgbaImage>);
 
 pub const GOLDENS: [Golden; 5] = [

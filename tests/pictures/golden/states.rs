@@ -1,5 +1,5 @@
-//! Handmade moments of a run: stored numbers and plain arithmetic without any simulation, so that they do not change
-//! with the physics.
+//! Handmade states for pictures: stored numbers and plain arithmetic without any simulation, so that the pictures do
+//! not change with the physics.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use slump::world::{Boundary, Disc};
 const D: f64 = 0.005;
 /// Radii of the pile's grains in units of d/2, used in turn.
 const RADII: [f64; 7] = [0.97, 0.88, 1.0, 0.93, 0.9, 0.99, 0.95];
-/// Greys of the pile's grains, used in turn.
+/// Grey values of the pile's grains, used in turn.
 const TONES: [u8; 5] = [205, 225, 190, 240, 175];
 
 fn grain(position: DVec2, radius: f64, tone: u8) -> GrainView {
@@ -29,7 +29,7 @@ fn grain(position: DVec2, radius: f64, tone: u8) -> GrainView {
     }
 }
 
-/// A heap of ten rows on a rough base, spreading at its flanks, with its left wall still up.
+/// Returns a heap of ten rows on a rough base. Its flanks move outwards, and its left wall still exists.
 pub fn pile() -> Snapshot {
     let base = |k: i32| Disc { position: DVec2::new(f64::from(k) * D, 0.0), radius: D / 2.0 };
     let fixed_discs: Vec<Disc> = (-12..=12).map(base).collect();
@@ -43,7 +43,7 @@ pub fn pile() -> Snapshot {
             let radius = RADII[index % RADII.len()] * D / 2.0;
             let mut grain = grain(DVec2::new(x, y), radius, TONES[index % TONES.len()]);
             grain.angle = 0.37 * index as f64;
-            // Fast at the flanks, at rest in the middle.
+            // The grains at the flanks are fast, the grains in the middle are at rest.
             let flank = x / (8.0 * D);
             grain.velocity = DVec2::new(0.3 * flank.powi(3), -0.05 * flank * flank);
             grains.push(grain);
@@ -69,8 +69,8 @@ pub fn pile() -> Snapshot {
     }
 }
 
-/// Contacts between all neighbours closer than 1.06 times the sum of their radii. Steep ones push, flat ones high up
-/// pull.
+/// Returns contacts between all neighbours closer than 1.06 times the sum of their radii. Steep contacts push; nearly
+/// horizontal contacts in the upper rows pull.
 fn pile_contacts(grains: &mut [GrainView], fixed: &[Disc]) -> Vec<ContactView> {
     let mut contacts = Vec::new();
     for i in 0..grains.len() {
@@ -109,8 +109,8 @@ fn pile_contacts(grains: &mut [GrainView], fixed: &[Disc]) -> Vec<ContactView> {
     contacts
 }
 
-/// Three discs on a line around a centre of attraction, above a hatched ground, beside a tilted
-/// half-space, a polygon and a bent wall.
+/// Returns three discs on a line around a centre of attraction, above a hatched ground, next to a tilted half-space, a
+/// polygon and a bent wall.
 pub fn cradle() -> Snapshot {
     let radius = 0.15;
     let grains = [(-0.55, 90), (0.0, 205), (0.3, 245)]

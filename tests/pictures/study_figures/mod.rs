@@ -1,15 +1,15 @@
-//! Figures of studies: every run gives the same numbers and pictures, and charts look as before.
+//! Tests of the figures of studies: every run gives the same numbers and pictures, and charts look as before.
 //!
-//! After an intended change of the charts, look at the new one and bless it: `SLUMP_BLESS=1 cargo test --release
+//! After an intended change of the charts, look at the new chart and store it: `SLUMP_BLESS=1 cargo test --release
 //! --test pictures`.
 
 use slump::study::chart::{Axis, Chart, Layer, Look, MapCell, PALETTE, Point, Sheet, png, svg};
 
 use crate::program::*;
 
-/// Figures that take at most a few seconds.
+/// Figures of the paper that take at most a few seconds.
 const FAST: [&str; 5] = ["fig2", "two-body", "fig8", "cradle-choices", "cradle-map"];
-/// Fraction of pixels that may differ because processors round differently.
+/// Fraction of pixels that may differ, because processors round differently.
 const MOST_DIFFERENT: f64 = 0.002;
 
 fn reproduce(folder: &Path) {
@@ -35,7 +35,8 @@ fn figures_are_the_same_bit_for_bit_from_every_run() {
         assert!(report.contains(&format!("## {figure}\n")), "{figure} in {report}");
     }
     assert!(!report.contains("NaN"), "{report}");
-    // Each claim of the paper states how often its test would be positive by chance, and what it depends on.
+    // The report states for each claim of the paper how often its test would be positive by chance, and on which
+    // choices it depends.
     for claim in report.split("\n* ").skip(1).filter(|claim| claim.starts_with(['§', 'F'])) {
         assert!(claim.contains("\n  By chance: ") && claim.contains("\n  Hangs on: "), "{claim}");
     }
@@ -58,7 +59,7 @@ fn stored(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures/study_figures").join(name)
 }
 
-/// The sheet in `chart.csv`: curves of each look, and a map.
+/// Returns the charts in `chart.csv`: curves in each style, and a map.
 fn sheet() -> Sheet {
     let mut chart =
         Chart::new("Every look", Axis::log("Δt (s)", 1e-4, 1e-2), Axis::linear("δ/d", -0.2, 1.2));
@@ -100,7 +101,7 @@ fn sheet() -> Sheet {
 #[test]
 fn a_chart_of_stored_points_looks_as_it_did() {
     let sheet = sheet();
-    // A sheet writes the text from which it was read.
+    // Written charts are equal to the text from which they were read.
     let written = String::from_utf8(sheet.to_csv().expect("CSV")).expect("UTF-8");
     assert_eq!(written, read(stored("chart.csv")));
     let bytes = png(&sheet, "slump reproduce").expect("a picture");
@@ -125,7 +126,7 @@ fn elasticity(folder: &Path) -> String {
     succeed(slump("validate elasticity --quick --out").arg(folder))
 }
 
-/// All rows of the table without the columns that depend on the clock.
+/// Returns all rows of the table without the columns that depend on the speed of the machine.
 fn rows(folder: &Path) -> Vec<Vec<String>> {
     let mut reader = csv::Reader::from_path(folder.join("quantities.csv")).expect("a table");
     let names = reader.headers().expect("names").clone();
@@ -152,7 +153,7 @@ fn a_validation_goes_on_where_it_was_stopped_and_comes_out_the_same() {
     }
     check_report(whole.path());
     let rows_of_whole = rows(whole.path());
-    // Half of the runs are removed, and half a line is left of the last one, as after a kill.
+    // Half of the runs are removed from the journal, and the next line is cut, as after a kill.
     let path = journal(whole.path());
     let text = read(&path);
     let lines: Vec<&str> = text.lines().collect();
@@ -163,14 +164,15 @@ fn a_validation_goes_on_where_it_was_stopped_and_comes_out_the_same() {
     assert!(said.contains(&format!("validation: {half} measurements were there")), "{said}");
     assert_eq!(rows(whole.path()), rows_of_whole);
     assert_eq!(read(&path).lines().count(), lines.len());
-    // Complete results are not computed again: not even the clock's numbers change.
+    // Complete results are not computed again: even the measured times do not change.
     let read = |name: &str| std::fs::read(whole.path().join(name)).expect(name);
     let before = read("quantities.csv");
     elasticity(whole.path());
     assert_eq!(read("quantities.csv"), before);
 }
 
-/// Checks that a row of discs has the published elasticity, and that the report names the source of each number.
+/// Checks that the computed elasticity of a row of discs equals the published one, and that the report names the source
+/// of each number.
 fn check_report(folder: &Path) {
     let rows = rows(folder);
     let of = |name: &str| {

@@ -1,5 +1,5 @@
-//! Checks the commands in the documentation: the program must accept each. Blocks that begin with ```sh have quick
-//! commands, which all run in order, in one folder per page; blocks that begin with ```sh slow are only parsed.
+//! Checks that the program accepts all commands in the documentation. Blocks that begin with ```sh contain quick
+//! commands; they all run in order, in one folder for each page. Blocks that begin with ```sh slow are only parsed.
 
 use std::time::Instant;
 
@@ -8,10 +8,10 @@ use slump::world::{GravityTurn, Material, MaterialPair, Motion, Periodic};
 use super::{blocks, book, pages, root};
 use crate::program::*;
 
-/// Longest time of all quick commands together.
+/// Time limit for all quick commands together.
 const MOST_TIME: Duration = Duration::from_secs(60);
 
-/// The arguments of a line that calls the program; `None` if it calls another program.
+/// Returns the arguments of a line that calls `slump`, or `None` if the line calls another program.
 fn command_in(line: &str) -> Option<Vec<String>> {
     let words = shlex::split(line).unwrap_or_else(|| panic!("{line}"));
     let end = words.iter().position(|word| matches!(word.as_str(), "|" | ";" | ">" | "&&"));
@@ -23,13 +23,13 @@ fn command_in(line: &str) -> Option<Vec<String>> {
     Some(words.split_off(at + 1))
 }
 
-/// The commands of a block, with lines that end in a backslash joined.
+/// Returns the commands of a block. Lines that end in a backslash are joined with the next line.
 fn lines_of(lines: &[&str]) -> Vec<String> {
     let text = lines.join("\n").replace("\\\n", " ");
     text.lines().map(str::to_owned).filter(|line| !line.trim().is_empty()).collect()
 }
 
-/// The program's error message for these arguments, if there is one.
+/// Parses the arguments. Returns the error message of the program, if there is one.
 fn refusal(words: Vec<String>) -> Option<String> {
     let words = std::iter::once("slump".to_owned()).chain(words);
     let error = slump::cli::command().try_get_matches_from(words).err()?;
@@ -55,7 +55,7 @@ fn commands_of_documents_are_taken() {
     assert!(taken > 50, "{taken} commands");
 }
 
-/// The beginning of the command of a report that an example makes.
+/// First words of the command in a report that an example program writes.
 const EXAMPLE: &str = "cargo run --release --example ";
 
 #[test]

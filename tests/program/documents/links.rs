@@ -1,11 +1,11 @@
-//! Links lead to existing targets, and checked numbers equal those of their reports.
+//! Checks that links lead to existing targets and that checked numbers equal those of their reports.
 
 use serde_json::Value;
 
 use super::{pages, root};
 use crate::program::{json, read};
 
-/// The links of a page outside code blocks: text and target.
+/// Returns the links of a page outside code blocks: text and target.
 fn links(text: &str) -> Vec<(&str, &str)> {
     let prose = text.split("```").step_by(2);
     let found = prose.flat_map(|prose| {
@@ -17,15 +17,15 @@ fn links(text: &str) -> Vec<(&str, &str)> {
     found.collect()
 }
 
-/// The anchor of a heading, as GitHub makes it.
+/// Returns the anchor that GitHub gives to a heading.
 fn anchor(heading: &str) -> String {
     let heading = heading.trim_start_matches('#').trim().to_lowercase();
     let kept = heading.chars().filter(|it| it.is_alphanumeric() || matches!(it, ' ' | '-' | '_'));
     kept.map(|it| if it == ' ' { '-' } else { it }).collect()
 }
 
-/// A number that a comment below a table or paragraph names as checked against a report:
-/// `<!-- checked: REPORT.json 0.252 /pointer, … -->`, or `<!-- checked: REPORT.md words #heading, … -->`.
+/// A number whose source is named by a comment below its table or paragraph: `<!-- checked: REPORT.json 0.252 /pointer,
+/// … -->`, or `<!-- checked: REPORT.md words #heading, … -->`. The number must agree with the report.
 struct CheckedNumber<'a> {
     /// The table or paragraph above the comment.
     block: &'a str,
@@ -50,14 +50,14 @@ fn checked_numbers(text: &str) -> Vec<CheckedNumber<'_>> {
     found
 }
 
-/// A block without its comments, as a reader sees it.
+/// Returns a block without its comments, as a reader sees it.
 pub(super) fn without_comments(block: &str) -> String {
     let mut parts = block.split("<!--");
     let first = parts.next().unwrap_or_default().to_owned();
     parts.fold(first, |text, part| text + part.split_once("-->").map_or("", |(_, after)| after))
 }
 
-/// True if a number is printed as in the report, to the digits shown: `−.25`, `+0.3`, `49`, `1.2e-3`.
+/// Returns true if a text is the number of the report, rounded to the shown digits: `−.25`, `+0.3`, `49`, `1.2e-3`.
 fn is_printed(text: &str, value: &Value) -> bool {
     let Some(number) = value.as_f64() else { return value.as_str() == Some(text) };
     let plain = text.replace('−', "-").replace('+', "");
@@ -70,7 +70,7 @@ fn is_printed(text: &str, value: &Value) -> bool {
     rounded.parse::<f64>().ok() == plain.parse().ok()
 }
 
-/// The text below a heading, up to the next heading.
+/// Returns the text below a heading, up to the next heading.
 fn section(text: &str, name: &str) -> String {
     let lines = text.lines().skip_while(|it| !(it.starts_with('#') && anchor(it) == name));
     lines.skip(1).take_while(|it| !it.starts_with('#')).collect::<Vec<_>>().join("\n")

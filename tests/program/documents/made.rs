@@ -1,5 +1,6 @@
-//! Parts of the documentation that are generated from the program's declarations, between `<!-- made: NAME -->` and
-//! `<!-- end -->`. `SLUMP_BLESS=1 cargo test --release --test program documents` regenerates them.
+//! Checks the parts of the documentation that are generated from the program's declarations, between `<!-- made: NAME
+//! -->` and `<!-- end -->`. The command `SLUMP_BLESS=1 cargo test --release --test program documents` generates these
+//! parts again.
 
 use std::fmt::Write as _;
 
@@ -11,7 +12,7 @@ use slump::sim::{AlarmKind, Settings};
 use super::{book, root};
 use crate::program::{Command, folder, json, read, run, said, sentence, slump, succeed, write};
 
-/// The name of a part, and the function that generates it.
+/// Name of a generated part, and the function that generates it.
 type Part = (&'static str, fn() -> String);
 
 const PARTS: [Part; 4] =
@@ -22,7 +23,7 @@ fn begin(name: &str) -> String {
     format!("<!-- made: {name} -->\n")
 }
 
-/// A page with its generated parts replaced.
+/// Returns a page with its generated parts replaced.
 fn with_parts(text: &str, part: impl Fn(&str, fn() -> String) -> String) -> String {
     PARTS.iter().fold(text.to_owned(), |text, (name, make)| {
         let Some((before, rest)) = text.split_once(&begin(name)) else { return text };
@@ -31,7 +32,7 @@ fn with_parts(text: &str, part: impl Fn(&str, fn() -> String) -> String) -> Stri
     })
 }
 
-/// A page without its generated parts, which nobody reads from the first line to the last.
+/// Returns a page without its generated parts, which do not count in the length of the page.
 pub(super) fn without_tables_of_declarations(text: &str) -> String {
     with_parts(text, |_, _| String::new())
 }
@@ -91,7 +92,8 @@ fn option_row(arg: &Arg) -> String {
     format!("| `{}`{aliases} | {help} |\n", cell(&name))
 }
 
-/// Tables of a command's options, by heading. The options in `known` are left out, because another table has them.
+/// Returns the tables of a command's options, one for each heading. Options in `known` are omitted, because another
+/// table has them.
 fn tables_of(command: &clap::Command, known: &[String]) -> String {
     let is_told = |arg: &&Arg| {
         let name = arg.get_id().as_str();
@@ -147,7 +149,7 @@ fn commands() -> String {
     text
 }
 
-/// The tables of a scene file that have settings, with their contents.
+/// Returns the tables of a scene file that contain settings: name and content.
 fn tables(settings: &Settings) -> [(&'static str, Value); 4] {
     let Settings { stepper, parameters, solver, remedies } = settings;
     let stepper = serde_json::json!({ "stepper": stepper });
@@ -165,7 +167,7 @@ fn tables(settings: &Settings) -> [(&'static str, Value); 4] {
     ]
 }
 
-/// The table of a scene file that has a setting, and its name there.
+/// Returns the table of a scene file that contains a setting, and the name of the setting in this table.
 fn place_in_scene_file(name: &str, kind: Kind) -> (&'static str, String) {
     use slump::setting::Value as Setting;
     let others = match kind {
@@ -201,7 +203,7 @@ fn settings() -> String {
     text
 }
 
-/// The columns of all tables, as a recording describes them.
+/// Returns a description of the columns of all tables, as a recording describes them.
 fn columns() -> String {
     let folder = folder();
     let out = folder.path().join("run");
@@ -218,7 +220,7 @@ fn columns() -> String {
     text
 }
 
-/// The solver variants in the page's table.
+/// Solver variants in the table of stability tests on the page.
 const VARIANTS: [&str; 11] = [
     "default",
     "nsgs",
@@ -289,7 +291,7 @@ fn shells_and_man_can_read_what_the_program_says_of_itself() {
     let folder = folder();
     let file = folder.path().join("slump.bash");
     write(&file, printed("completions bash"));
-    // The shell's completions of a line that ends so.
+    // Returns the words that the shell offers as completions after `line`, for a last word that begins with `last`.
     let offered = |line: &str, last: &str| {
         let script = format!(
             "source '{}'; COMP_WORDS=({line} '{last}'); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); \
@@ -306,7 +308,7 @@ fn shells_and_man_can_read_what_the_program_says_of_itself() {
     assert!(printed("completions fish").contains("checkpoint-every"));
     assert!(printed("completions zsh").starts_with("#compdef slump"));
 
-    // The page describes each option, whether its help is short or long.
+    // The manual page describes each option by its short or long help text.
     let page = printed("man run");
     for about in ["Make a new pile", "Start the pile from these discs", "a scene file", "[pile: "] {
         assert!(page.contains(about), "{about} in {page}");

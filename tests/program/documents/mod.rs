@@ -1,5 +1,5 @@
-//! The documentation: links lead to existing targets, numbers equal those of their reports, the program accepts all
-//! commands and runs the quick ones, generated parts are up to date, and pages are short.
+//! Checks the documentation: links lead to existing targets, numbers equal those of their reports, the program accepts
+//! all commands and runs the quick ones, generated parts are up to date, and pages are short.
 
 mod commands;
 mod links;
@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 
 use crate::program::read;
 
-/// Words of the longest page, and of all pages, without generated parts.
+/// Largest number of words on one page, and on all pages together, without generated parts.
 const MOST_WORDS: [usize; 2] = [2_000, 20_800];
-/// Pages that are written. `commands.md` and `columns.md` are generated, and the summary is an index.
+/// Largest number of pages that are written by hand. Two pages are generated, and the summary is an index.
 const MOST_PAGES: usize = 16;
 const NOT_WRITTEN: [&str; 3] = ["SUMMARY.md", "commands.md", "columns.md"];
 
@@ -19,7 +19,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The pages of the documentation.
+/// Returns the paths of the pages in `docs`.
 fn book() -> Vec<PathBuf> {
     let entries = std::fs::read_dir(root().join("docs")).expect("the book");
     let paths = entries.map(|entry| entry.expect("an entry").path());
@@ -29,7 +29,7 @@ fn book() -> Vec<PathBuf> {
     pages
 }
 
-/// All pages for readers.
+/// Returns the paths of all pages for readers, including the pages outside `docs`.
 fn pages() -> Vec<PathBuf> {
     let others = [
         "README.md",
@@ -43,7 +43,7 @@ fn pages() -> Vec<PathBuf> {
     others.iter().map(|name| root().join(name)).chain(book()).collect()
 }
 
-/// Blocks of a page between lines of three backticks: the text after the first three, and the lines.
+/// Returns the code blocks of a page: the text after the opening three backticks, and the lines of the block.
 fn blocks(text: &str) -> Vec<(&str, Vec<&str>)> {
     let mut blocks = Vec::new();
     let mut open: Option<(&str, Vec<&str>)> = None;

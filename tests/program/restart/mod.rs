@@ -1,4 +1,4 @@
-//! Saved and resumed runs: bitwise equal to uninterrupted ones.
+//! Tests of saved and resumed runs, which are bitwise equal to uninterrupted runs.
 
 mod program;
 mod states;
@@ -9,18 +9,18 @@ use slump::sim::{Simulation, Tally};
 
 use crate::program::*;
 
-/// All bytes of a state: equal bytes mean equal states.
+/// Returns all bytes of a saved state. Equal bytes mean equal states.
 fn bytes_of(scene: &Scene, simulation: &Simulation) -> Vec<u8> {
     let state = SavedState::new(scene.clone(), simulation.clone(), Tally::default());
     state.to_bytes().expect("bytes")
 }
 
-/// The state read from bytes.
+/// Reads a saved state from bytes.
 fn read_back(bytes: &[u8]) -> SavedState {
     SavedState::from_bytes(bytes, "state.slump").expect("a sound state")
 }
 
-/// A small state, and the offset of its content.
+/// Returns the bytes of a small saved state, and the offset of its content behind the first line.
 fn small(scene: &str, steps: u64) -> (Vec<u8>, usize) {
     let scene = built_in(scene).expect("a scene");
     let mut simulation = scene.simulation().expect("a sound scene");
@@ -30,7 +30,8 @@ fn small(scene: &str, steps: u64) -> (Vec<u8>, usize) {
     (bytes, line)
 }
 
-/// Checks that the bytes are refused in one sentence with the allowed form. Returns the sentence.
+/// Checks that the bytes are refused as a saved state, in one sentence that says which form is allowed. Returns the
+/// sentence.
 #[track_caller]
 fn refusal(bytes: &[u8]) -> String {
     let said = SavedState::from_bytes(bytes, "a.slump").expect_err("no state").to_string();
@@ -39,7 +40,7 @@ fn refusal(bytes: &[u8]) -> String {
     said
 }
 
-/// Content with a matching first line.
+/// Returns a saved state with this content and a first line that matches it.
 fn sealed(content: &[u8]) -> Vec<u8> {
     let version = env!("CARGO_PKG_VERSION");
     let line = format!("slump-state 7 {version} {} {}\n", content.len(), blake3::hash(content));
@@ -83,7 +84,7 @@ fn what_is_no_state_or_of_another_version_says_so() {
         let said = refusal(&[other.as_bytes(), &bytes[line..]].concat());
         assert!(said.contains(named) && said.contains(&format!("version {version}")), "{said}");
     }
-    // A length that no file can have is not trusted.
+    // A length that no file can have must not be trusted.
     let length = (bytes.len() - line).to_string();
     let huge = text.replacen(&length, "18446744073709551615", 1);
     assert!(refusal(&[huge.as_bytes(), &bytes[line..]].concat()).contains("has been cut"));
@@ -121,7 +122,8 @@ fn content_that_someone_made_up_is_refused_or_harmless() {
 #[test]
 fn parts_that_do_not_go_together_are_refused() {
     let (bytes, line) = small("column", 2);
-    // Numbers below 128 take one byte: the second contact's other body, after its name.
+    // The test changes the other body of the second contact. Its number is below 128, so it is the single byte after
+    // its name.
     let content = &bytes[line..];
     let name = b"\xa5other";
     let mut places = content.windows(name.len()).enumerate().filter(|(_, window)| window == name);

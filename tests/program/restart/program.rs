@@ -1,4 +1,5 @@
-//! Runs that the program saves, stops and resumes, or that are killed, and the folders that they leave.
+//! Tests of runs that the program saves, stops and resumes, or that are killed, and of the files in their output
+//! folders.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +20,7 @@ fn refusal(command: &mut Command) -> String {
     said
 }
 
-/// All files of a folder. The manifest is without its facts about the command and the interruptions.
+/// Returns all files of a folder. The entries about the command and the interruptions are removed from the manifest.
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let content = |name: String| (name.clone(), bytes(folder.join(name)));
     let mut files: BTreeMap<_, _> = names_in(folder).into_iter().map(content).collect();
@@ -36,7 +37,7 @@ fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
-/// Checks that two folders contain the same bytes.
+/// Checks that two folders have files with the same contents.
 #[track_caller]
 fn same(one: &Path, other: &Path, what: &str) {
     let (one, other) = (contents(one), contents(other));
@@ -46,7 +47,7 @@ fn same(one: &Path, other: &Path, what: &str) {
     }
 }
 
-/// A run of 0.1 s that is saved at 0.05 s.
+/// Runs 0.1 s at once, and again in two halves with a state saved at 0.05 s. Returns the three output folders.
 fn halves(more: &str) -> [TempDir; 3] {
     let folders = [folder(), folder(), folder()];
     let state = folders[1].path().join("half.slump");
@@ -69,7 +70,7 @@ fn a_saved_run_goes_on_as_if_it_had_never_ended() {
         assert_eq!([rows(&first), rows(&second)].concat(), rows(&whole), "{more:?}");
         let [whole, first, second] = [whole, first, second].map(|folder| contents(folder.path()));
         let frames = whole.keys().filter(|name| name.starts_with("frame_"));
-        // The rest of a file describes its command.
+        // Only the pixels are compared, because the files also contain the command.
         let pixels =
             |bytes: &Vec<u8>| image::load_from_memory(bytes).expect("a picture").to_rgba8();
         for name in frames.clone() {
@@ -77,7 +78,7 @@ fn a_saved_run_goes_on_as_if_it_had_never_ended() {
             assert!(pixels(half) == pixels(&whole[name]), "{more:?}: {name}");
         }
         assert_eq!(frames.count(), 11);
-        // The common moment has a picture in both halves.
+        // Both halves have a picture of the time at which the state was saved.
         let shared = [&first, &second].map(|half| pixels(&half["frame_00005.png"]));
         assert!(shared[0] == shared[1]);
         let tally = |files: &BTreeMap<String, Vec<u8>>| {
@@ -195,7 +196,7 @@ fn a_run_that_is_killed_at_any_moment_goes_on_and_leaves_what_it_would_have_left
             command.stdout(Stdio::null()).stderr(Stdio::null());
             command
         };
-        // The animation is in the folder, so it is compared too. Its path is part of the command.
+        // The animation is in the output folder, so it is compared, too. Its path is a part of the command.
         let begun = Instant::now();
         succeed(&mut arguments(whole.path()));
         let lasted = begun.elapsed();
@@ -205,8 +206,8 @@ fn a_run_that_is_killed_at_any_moment_goes_on_and_leaves_what_it_would_have_left
         let (mut kills, mut went_on) = (0, 0);
         loop {
             let mut child = arguments(stopped.path()).spawn().expect("the program starts");
-            // The first kill comes as soon as there is a checkpoint, each following kill later, so that the run ends
-            // at last.
+            // The first kill comes as soon as there is a checkpoint. Each further kill comes later after the start, so
+            // that the run ends eventually.
             if kills == 0 {
                 wait_for("a checkpoint", || stopped.path().join("checkpoint.slump").exists());
             } else {
@@ -217,12 +218,12 @@ fn a_run_that_is_killed_at_any_moment_goes_on_and_leaves_what_it_would_have_left
             let status = child.wait().expect("an end");
             assert!(!is_over || status.success(), "{name}: {status}");
             if !stopped.path().join("checkpoint.slump").exists() {
-                // The run was complete, and may have been removing the remaining files when it was killed.
+                // The run was complete, and was possibly killed while it removed its temporary files.
                 let rest = std::fs::remove_file(stopped.path().join("checkpoint.states"));
                 assert!(rest.is_err() || !status.success(), "{name}: a rest is left");
                 break;
             }
-            // The state after a kill while the animation got its final name.
+            // A temporary file as it remains after a kill while the animation gets its final name.
             write(stopped.path().join(".a.gif.Ab12Cd.part"), "half");
             went_on += 1;
             kills += 1;
@@ -248,7 +249,7 @@ fn means_of_a_recording_go_on_where_a_run_was_killed_between_two_frames() {
     wait_for("pictures", || stopped.path().join("frame_00003.png").exists());
     child.kill().expect("a child");
     child.wait().expect("an end");
-    // Missing rows are not written again, so the run is not resumed without them.
+    // Missing rows cannot be written again, so Slump must not resume this run.
     let steps = stopped.path().join("data/csv/steps.csv");
     let rows = bytes(&steps);
     write(&steps, &rows[..rows.len() / 8]);
@@ -286,7 +287,7 @@ fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {
     let (whole, stopped) = (folder(), folder());
     let line = PILE.replace("0.03", "100");
     succeed(&mut drawn(&line, whole.path()));
-    // The program may replace the state that it has saved itself.
+    // A resumed run may replace the state that it has saved before.
     let of_state = folder();
     let saved = of_state.path().join("saved.slump");
     let mut run = drawn(&line, stopped.path());
@@ -297,7 +298,7 @@ fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {
     assert_eq!(ended(&mut child), Some(143));
     let step = manifest(stopped.path())["runs"][0]["step"].as_u64().expect("a step");
     assert!(step < 300, "it was stopped on the way");
-    // Without checkpoints or with another number, it is another command.
+    // With another value of μ or without checkpoints, the command is a different one.
     let other = refusal(drawn(&line, stopped.path()).args(["--mu", "0.4"]));
     assert!(
         other.contains("checkpoint.slump is there") && other.contains("another command"),
@@ -306,7 +307,7 @@ fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {
     let without =
         refusal(&mut drawn(PILE.split(" --checkpoint").next().expect("options"), stopped.path()));
     assert!(without.contains("unless --overwrite"), "{without}");
-    // Everything that the checkpoint records must exist.
+    // All files that the checkpoint lists must exist.
     let (table, picture) =
         (stopped.path().join("observables.csv"), stopped.path().join("frame_00001.png"));
     let [rows, pixels] = [&table, &picture].map(bytes);
@@ -316,7 +317,7 @@ fn a_run_that_a_signal_ends_goes_on_from_its_last_step_and_says_so() {
     std::fs::remove_file(&picture).expect("a file");
     assert!(refusal(&mut drawn(&line, stopped.path())).contains("frame_00001.png: is missing"));
     write(&picture, &pixels);
-    // Later files, as after a kill at a later time, are removed.
+    // Files and rows that are later than the checkpoint, as after a later kill, are removed.
     write(&table, [&rows[..], b"9,9,9\n9,"].concat());
     for left in ["frame_00099.png", ".checkpoint.slump.17-3.part"] {
         write(stopped.path().join(left), &pixels);

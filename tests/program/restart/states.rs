@@ -1,4 +1,4 @@
-//! States in memory: all scenes, steppers, methods and remedies.
+//! Tests of states that are saved and read in memory, for all scenes, steppers, methods and remedies.
 
 use rayon::prelude::*;
 use slump::setting::{Group, Kind, Value};
@@ -6,10 +6,10 @@ use slump::setting::{Group, Kind, Value};
 use super::{bytes_of, read_back};
 use crate::common::*;
 
-/// Number of steps before a state is saved, and after it.
+/// Number of steps before a state is saved, and number of steps after that.
 const STEPS: usize = 4;
 
-/// Takes a step of both and checks that they are equal, even if the step ends in a state that is not finite.
+/// Takes a step of two runs and checks that they are equal, even if the state is then no longer finite.
 #[track_caller]
 fn step_both(scene: &Scene, one: &mut Simulation, other: &mut Simulation, what: &str) {
     let ends = [&mut *one, other].map(|simulation| format!("{:?}", simulation.step().err()));
@@ -53,7 +53,7 @@ fn goes_on(scene: &Scene, simulation: &Simulation, steps: usize, what: &str) -> 
     goes_on_with(scene, simulation, steps, what, |_| {})
 }
 
-/// Settings with the remedy on.
+/// Returns settings with one remedy switched on.
 fn with(remedy: &Remedy) -> Remedies {
     let mut remedies = Remedies::default();
     let about = Remedies::ABOUT.iter().find(|about| about.name == remedy.name).expect("a setting");
@@ -65,7 +65,7 @@ fn with(remedy: &Remedy) -> Remedies {
     remedies
 }
 
-/// Every stepper and method, and every remedy with the scene's own method.
+/// Returns settings with every combination of stepper and method, and with every remedy and the scene's own method.
 fn ways(scene: &Scene) -> Vec<Settings> {
     let mut base = scene.settings();
     base.solver.max_sweeps = base.solver.max_sweeps.min(40);
@@ -106,7 +106,7 @@ fn every_scene_goes_on_in_every_way_from_its_start_and_from_any_step() {
     runs.into_par_iter().for_each(|(mut scene, way)| {
         scene.set_settings(way);
         let what = format!("{}: {way:?}", scene.name);
-        // If the scene lacks something that a stepper needs, it is refused before the first step.
+        // A scene that lacks something that the stepper needs is refused before the first step.
         let Ok(simulation) = scene.simulation() else { return };
         goes_on(&scene, &goes_on(&scene, &simulation, STEPS, &what), STEPS, &what);
     });
@@ -176,8 +176,8 @@ fn a_spring_that_pulls_and_walls_that_move_go_on() {
     assert_eq!(goes_on(&scene, &simulation, 20, "pulled").pull(), simulation.pull());
 }
 
-/// A pile on a shaken base, beside a plate that turns back and forth, a wall that moves by a table, a belt, and a
-/// wall that is about to reach its end.
+/// Returns a scene of a pile on a shaken base, next to a plate that swings, a wall that moves by a table, a belt, and a
+/// wall that is about to reach the end of its path.
 fn among_motions() -> Scene {
     let mut scene = pressed_pile(40, 0.3, 5, parameters(5.0, 1e-3, 0.3, 0.5));
     let at = DVec2::new;
@@ -227,12 +227,13 @@ fn bodies_on_their_way_go_on() {
         let end = goes_on(&scene, &simulation, 20, &what);
         let worlds = [simulation.world(), end.world()];
         assert_ne!(worlds[0].fixed_discs, worlds[1].fixed_discs, "{what}: and go on moving");
-        // The file contains the remaining path, and an initial state made from it takes all of it.
+        // The file contains the remaining path of each wall, and an initial state made from the file moves the walls
+        // along the whole remaining path.
         let mut anew = start(&read_back(&bytes_of(&scene, &simulation)).as_start());
         let begin = anew.world().boundaries.clone();
         anew.take_steps(20).expect("finite states");
         assert_eq!(begin, simulation.world().boundaries, "{what}");
-        // Under `range` a new run cuts its steps differently, and moves the bodies accordingly.
+        // Under `range` a new run divides its steps differently, and so the walls move slightly differently.
         if stepper != Stepper::Range {
             assert_eq!(anew.world().boundaries, end.world().boundaries, "{what}");
             assert_eq!(anew.world().gravity, end.world().gravity, "{what}");

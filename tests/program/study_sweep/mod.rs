@@ -1,10 +1,10 @@
-//! Sweeps as a user starts them: results, resuming, parts, and messages about bad study files.
+//! Tests of the command `slump sweep`: results, resuming, shards, and error messages about bad study files.
 
 mod places;
 
 use crate::program::*;
 
-/// Twenty-four runs of the cradle, long enough to be killed halfway.
+/// A study of 24 runs of the cradle, long enough to be killed halfway.
 const CRADLES: &str = "
 name = 'cradles'
 [base]
@@ -52,7 +52,7 @@ fn a_killed_sweep_goes_on_where_it_stopped_and_comes_to_the_same() {
     let kept = lines();
     assert!((3..24).contains(&kept), "{kept} of 24 runs had ended: not killed half way");
     assert!(!out.join("runs.csv").exists(), "a table of a half study");
-    // The journal after a kill in the middle of a line.
+    // The journal as it is after a kill in the middle of a line.
     write(&journal, [&bytes(&journal)[..], b"{\"key\":\"0123"].concat());
 
     let again = succeed(&mut sweep(&study, &out, &[]));
@@ -79,7 +79,7 @@ fn parts_in_any_order_join_to_the_whole_bit_for_bit() {
     let early = failure(&mut merge(&[&one, &other]));
     assert!(early.contains("16 of 24 runs"), "{early}");
     succeed(&mut sweep(&study, &one, &["--shard", "2/3"]));
-    // Repeating a part does no harm.
+    // Computing the same shard again does no harm.
     succeed(&mut sweep(&study, &one, &["--shard", "3/3"]));
     succeed(&mut merge(&[&one, &other]));
     assert_eq!(runs(&one), in_one_go(folder.path(), &study));
@@ -109,7 +109,7 @@ fn another_study_is_refused_and_redone_only_when_asked() {
 #[test]
 fn a_redo_touches_nothing_while_another_program_writes() {
     let folder = folder();
-    // One long run that keeps the program busy, and short ones.
+    // One long run keeps the program busy; the other runs are short.
     let dt = "dt = [2e-8, 1e-4, 2e-4, 5e-4, 1e-3]";
     let long = format!("{}start = [7.5]\n{dt}\n", CRADLES.split("start").next().unwrap_or(""));
     let text = format!("{long}[series]\ninterval = 0.1\ngrains = [0]\n");
@@ -157,7 +157,7 @@ fn a_redo_removes_what_this_program_wrote_and_nothing_else() {
         assert_eq!(read(out.join(name)), "mine", "{name}");
     }
     assert_eq!(of_old(), before + 2, "nothing is left of the old study but what is mine");
-    // A file is recognised as a journal by its contents.
+    // Slump recognises a journal by its contents.
     let other = folder.path().join("other");
     std::fs::create_dir(&other).expect("a folder");
     write(other.join("runs.jsonl"), "{\"mine\": 1}\n");
@@ -191,7 +191,7 @@ grains = [0]
     let course = read(course.expect("a file").path());
     assert!(course.starts_with("step,time,time_step,") && course.contains(",x0,y0\n"), "{course}");
     assert_eq!(course.lines().count(), 1 + 6, "a row at 0, 0.01, … 0.05 s");
-    // The states are stored now: the second pass reads the states that the first one settled.
+    // The initial states are stored now: the second sweep reads the states that the first one computed.
     std::fs::remove_file(out.join("runs.jsonl")).expect("the journal");
     succeed(&mut sweep(&study, &out, &[]));
     assert_eq!(runs(&out), whole);
@@ -234,7 +234,7 @@ fn a_bad_study_file_is_refused_in_a_sentence_that_names_the_field() {
     assert!(failure(&mut sweep(Path::new("none.toml"), &out, &[])).contains("No such file"));
 }
 
-/// Three short runs, each with a series.
+/// A study of three short runs, each of which writes a time series.
 const SHORT: &str = "
 name = 'short'
 [base]
@@ -251,7 +251,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     names_in(folder).iter().map(|name| folder.join(name)).collect()
 }
 
-/// A folder, a study in it, its table, and the folder of its results.
+/// Runs a study. Returns its folder, the study file, the table of results, and the folder of results.
 fn computed(text: &str) -> (TempDir, PathBuf, String, PathBuf) {
     let folder = folder();
     let study = study(folder.path(), text);
@@ -267,7 +267,7 @@ fn a_damaged_record_is_named_and_computed_anew() {
     let sound = bytes(&journal);
     let text = String::from_utf8(sound.clone()).expect("UTF-8");
     assert_eq!(text.lines().count(), 3);
-    // A digit of a result, bits all over the file, a missing end of line, and an additional one.
+    // Damages: a digit of a result, bits all over the file, a missing line break, and an additional line break.
     let digit = text.find("\"largest_residual\":").expect("a result") + 19;
     let mut damages: Vec<(usize, u8)> =
         (0..10).map(|k| (k * text.len() / 10 + 3, 1 << (k % 8))).collect();
@@ -323,7 +323,7 @@ fn a_course_that_was_edited_is_named_and_computed_anew() {
     let (_folder, study, whole, out) = computed(SHORT);
     let courses = files(&out.join("series"));
     let before: Vec<_> = courses.iter().map(bytes).collect();
-    // A changed digit in a last row, and a missing last row.
+    // A changed digit in the last row of one series, and a missing last row of another.
     let digit = before[0].iter().rposition(u8::is_ascii_digit).expect("a number");
     let mut edited = before[0].clone();
     edited[digit] ^= 1;
@@ -349,7 +349,7 @@ fn redo_works_on_what_cannot_be_read() {
     for name in ["runs.jsonl", "study.json"] {
         let path = out.join(name);
         let mut damaged = bytes(&path);
-        // A file without a trace of this program may be anybody's, and stays as it is.
+        // A file without any sign of Slump may belong to somebody else, and remains unchanged.
         write(&path, "\u{0}mine");
         failure(&mut sweep(&study, &out, &["--redo"]));
         assert_eq!(read(&path), "\u{0}mine", "{name}");
@@ -361,7 +361,7 @@ fn redo_works_on_what_cannot_be_read() {
     failure(&mut sweep(&study, &out, &[]));
     succeed(&mut sweep(&study, &out, &["--redo"]));
     assert_eq!(runs(&out), whole);
-    // Two valid records of one run that contradict each other.
+    // Two valid records of the same run that contradict each other.
     let journal = out.join("runs.jsonl");
     let text = read(&journal);
     let line = text.lines().next().expect("a record");
@@ -395,7 +395,7 @@ fn a_redo_that_is_killed_leaves_one_study_and_never_a_mixture() {
         redo.arg(&out).arg(&new.0).stderr(Stdio::null()).stdout(Stdio::null());
         let mut child = redo.spawn().expect("it starts");
         std::thread::sleep(Duration::from_millis(round * round));
-        // It may already have ended.
+        // The program may already have ended.
         let _ = child.kill();
         child.wait().expect("it ended");
         let label = read(out.join("study.json"));
@@ -419,7 +419,7 @@ fn a_redo_takes_the_folder_over_only_once_the_old_table_is_gone() {
     let out = folder.path().join("whole");
     let label = || read(out.join("study.json"));
     let before = label();
-    // A folder that cannot be removed stops the redo at a place that a kill would rarely hit.
+    // A folder in place of the table cannot be removed. It stops `--redo` at a point that a kill would rarely hit.
     std::fs::remove_file(out.join("runs.csv")).expect("a table");
     std::fs::create_dir(out.join("runs.csv")).expect("a folder in its place");
     let new = study(folder.path(), &SHORT.replace("short", "other"));
@@ -433,8 +433,8 @@ fn a_redo_takes_the_folder_over_only_once_the_old_table_is_gone() {
 #[test]
 fn runs_that_went_wrong_say_so_in_the_table_and_are_read_back_as_they_were() {
     let folder = folder();
-    // Springs far beyond the range of one substep: the first run's residual and energy overflow, and the second run's
-    // state does.
+    // Time steps far too long for the springs: in the first run the residual and the energy overflow, in the second run
+    // the state does.
     let text = "
 name = 'wrong'
 [base]
@@ -483,7 +483,7 @@ fn a_command_a_run_is_listed_and_together_they_come_to_the_same() {
         let program = slump("").get_program().to_str().expect("UTF-8").to_owned();
         let command = line.replacen("slump", &program, 1);
         succeed(Command::new("sh").args(["-c", &command]));
-        // A queue repeats the command so.
+        // A batch queue may run a command a second time.
         succeed(Command::new("sh").args(["-c", &command]));
     }
     succeed(slump("sweep").arg("merge").arg(&study).arg(&out));

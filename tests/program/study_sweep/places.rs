@@ -1,4 +1,4 @@
-//! Files that a study names, and drafts that killed programs leave.
+//! Tests of files that a study names, and of temporary files that killed programs leave.
 
 use super::{runs, study, sweep};
 use crate::program::*;
@@ -42,7 +42,7 @@ fn what_a_kill_left_of_files_goes_once_a_study_is_complete() {
     let left =
         [out.join(format!("series/.{first}.Ab12Cd.part")), out.join(".runs.csv.Ef34Gh.part")];
     left.iter().for_each(|path| write(path, "half"));
-    // A name from another program.
+    // A file whose name is not one that Slump gives to temporary files.
     let other = out.join("series/.notes.part");
     write(&other, "mine");
     succeed(&mut sweep(&study, &out, &[]));

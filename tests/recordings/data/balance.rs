@@ -1,4 +1,4 @@
-//! Forces in the tables add up to the changes of the grains and the work of the borders.
+//! Checks that the recorded forces explain the change of the grains' momentum and the work of the borders.
 
 use glam::DVec2;
 use slump::data::{Frame, Table, Values};
@@ -25,16 +25,16 @@ fn vectors(table: &Table, names: [&str; 2]) -> Vec<DVec2> {
     x.into_iter().zip(y).map(DVec2::from).collect()
 }
 
-/// Contents of a frame: grains, and contacts of the last step or since the frame before.
+/// Data of a frame: grains, and contacts of the last step or of all steps since the previous frame.
 struct FrameTables {
     places: Vec<DVec2>,
-    /// Distance by which borders have moved grains back so far, m.
+    /// Total distance along y by which the periodic borders have moved each grain back, m.
     brought_back: Vec<f64>,
     velocities: Vec<DVec2>,
     spins: Vec<f64>,
     radii: Vec<f64>,
     masses: Vec<f64>,
-    /// Grains i and j of each contact; j is `None` for other bodies.
+    /// Indices of the grains i and j of each contact; j is `None` if the other body is not a grain.
     pairs: Vec<(usize, Option<usize>)>,
     forces: Vec<DVec2>,
     tangential: Vec<f64>,
@@ -62,18 +62,19 @@ impl FrameTables {
     }
 }
 
-/// Errors of a run's frames: of momentum and spin relative to the largest impulse and torque of a step, of border
-/// work and stress relative to the largest border work.
+/// Largest errors in the frames of a run. Errors of momentum and angular momentum are relative to the largest impulse
+/// and torque in a step. Errors of the work of the sheared borders and of the stress are relative to the largest border
+/// work.
 #[derive(Debug, Default)]
 struct Off {
     momentum: f64,
     spin: f64,
     border_work: f64,
     stress: f64,
-    /// Contacts that transmitted a force.
+    /// Number of contacts that transmitted a force.
     contacts: usize,
     crossing: usize,
-    /// Contacts that existed between two frames and no longer exist.
+    /// Number of contacts that existed between two frames but ended before the second frame.
     parted: usize,
 }
 
@@ -81,7 +82,8 @@ const STRESSES: [&str; 4] = ["stress_xx", "stress_xy", "stress_yx", "stress_yy"]
 const MEAN_STRESSES: [&str; 4] =
     ["mean_stress_xx", "mean_stress_xy", "mean_stress_yx", "mean_stress_yy"];
 
-/// Largest difference between a frame's mean stresses and the sums over steps, J·s, and the largest of these sums.
+/// Returns the largest difference between the mean stresses of a frame and the sums over its steps, J·s, and the
+/// largest of these sums, J·s.
 fn off_of_means(frame: &Frame, summed: [f64; 4]) -> [f64; 2] {
     let number = |name: &str| numbers(&frame.measures, name)[0];
     let areas = numbers(&frame.grains, "cell_area");
@@ -104,7 +106,7 @@ fn off_of_means(frame: &Frame, summed: [f64; 4]) -> [f64; 2] {
     [off, largest]
 }
 
-/// Errors of this many frames, with `every` steps between two frames.
+/// Runs this many frames, with `every` steps per frame. Returns the largest errors.
 fn off_by(run: &mut Simulation, frames: usize, every: usize) -> Off {
     let mut off = Off::default();
     let mut sums = ForceSums::default();
@@ -166,7 +168,8 @@ fn off_by(run: &mut Simulation, frames: usize, every: usize) -> Off {
         let mut crossing_work = 0.0;
         let mut change_of_moment = 0.0;
         for grain in 0..impulses.len() {
-            // A grain that crosses the upper border comes back slower by the speed of the cell above.
+            // A grain that leaves through the upper border of a sheared cell comes back slower: the speed of the upper
+            // image is subtracted.
             let crossed = heights(before.brought_back[grain] - after.brought_back[grain]);
             let slid = crossed * cell.border_speed() * DVec2::X;
             let unslid = after.velocities[grain] - slid;
@@ -192,8 +195,8 @@ fn off_by(run: &mut Simulation, frames: usize, every: usize) -> Off {
             }
             let measures = &frame.measures;
             let [area, stress] = ["area", "stress_xy"].map(|name| numbers(measures, name)[0]);
-            // Σ y F_x over the grains is Σ f_x ℓ_y over the contacts, plus a height for each contact across the
-            // border.
+            // Σ y F_x over the grains (height times horizontal force) is Σ f_x ℓ_y over the contacts (force times
+            // height of the branch vector), plus one cell height for each contact across the border.
             let by_stress = secs * cell.shear_rate * (change_of_moment - area * stress);
             largest_work = largest_work.max(through_contacts.abs());
             let found = through_contacts + crossing_work;
@@ -209,13 +212,13 @@ fn off_by(run: &mut Simulation, frames: usize, every: usize) -> Off {
     off
 }
 
-/// Rounding, relative to the sums of a step.
+/// Allowed rounding error, relative to the sums of a step.
 const EXACT: f64 = 1e-10;
 
-/// Scenes: name, Bond, Δt, steps until the motion of interest, and steps to compare.
+/// Cases: scene, Bond number, time step (s), number of steps before the comparison, and number of compared steps.
 const CASES: [(&str, f64, f64, u64, usize); 10] = [
     ("pile", 0.0, 1e-3, 20, 30),
-    // These steps are cut.
+    // These steps are divided into substeps.
     ("pile", 50.0, 5e-3, 5, 20),
     ("pile", 20.0, 1e-3, 20, 30),
     ("collapse", 0.0, 5e-4, 60, 20),
@@ -252,12 +255,14 @@ fn forces_between_two_frames_are_the_grains_change_and_the_borders_work() {
             assert!(off.crossing > 100 || name != "shear-periodic", "{what}");
             assert!(off.border_work < EXACT, "{what}");
             if stepper == Stepper::Avbd {
-                // `avbd` does not conserve momentum: bodies see forces before their partners have reacted.
+                // The stepper `avbd` does not conserve momentum: a body feels a force before the other body of the
+                // contact has reacted.
                 assert!(off.momentum > EXACT, "{what}");
                 continue;
             }
             assert!(off.momentum < EXACT && off.spin < EXACT, "{what}");
-            // A stress uses one branch per contact, but under `dem` the branch changes from substep to substep.
+            // The stress uses one branch vector per contact and step, but under `dem` the branch vector changes from
+            // substep to substep.
             let of_stress = if stepper == Stepper::Dem { 0.01 } else { EXACT };
             assert!(off.stress < of_stress, "{what}");
         }
@@ -327,7 +332,7 @@ fn kinetic_energy_changes_by_four_works_whatever_moves() {
             }
             worst = worst.max(missing / largest);
         }
-        // `avbd` sets positions and derives velocities from them.
+        // The stepper `avbd` sets positions and derives the velocities from them, so its energy balance has an error.
         let allowed = if stepper == Stepper::Avbd { 0.01..0.1 } else { 0.0..EXACT };
         assert!(allowed.contains(&worst), "{stepper}: {worst}");
     }
@@ -366,7 +371,8 @@ fn fixed_discs_that_move_are_recorded_as_they_go() {
             let cell = run.world().periodic.unwrap_or_default();
             let way = cell.shortest(to - from);
             let velocity = vectors(&after, ["vx", "vy"])[disc];
-            // On a circle the path bends, by Δt/2 ω times the speed.
+            // On a circle the mean velocity of a step differs from the velocity at its end by about ½ωΔt times the
+            // speed (ω: angular velocity).
             let spin = numbers(&after, "omega")[disc];
             let bend = (0.51 * secs * spin.abs() + 1e-9) * velocity.length();
             assert!((way / secs).distance(velocity) <= bend + 1e-12, "{name} {disc}: {velocity}");
@@ -382,7 +388,7 @@ fn fixed_discs_that_move_are_recorded_as_they_go() {
 
 #[test]
 fn walls_tell_of_strain_force_and_work() {
-    // Forces and works at the floor, sides and lid of a biaxial test.
+    // Forces and works at the floor, the sides and the lid of a biaxial test.
     let mut run = scene("biaxial").simulation().expect("a scene");
     let before = Table::of_walls(&run.moment());
     run.take_steps(600).expect("finite states");
@@ -399,8 +405,9 @@ fn walls_tell_of_strain_force_and_work() {
     assert!(left.1.x < 0.0 && right.1.x > 0.0 && lid.1.y > 0.0 && floor.1.y < 0.0);
     assert!(lid.2 > 0.0 && floor.2 == 0.0, "{lid:?}");
 
-    // A drum's torque times its spin is its work, and nearly the work that steps report: a step also counts the
-    // inward part ½ω²Δt·R of the wall's mean velocity, which is of first order in Δt.
+    // The torque of a drum times its angular velocity ω is its work in the table. Steps report nearly the same work:
+    // they also count the inward component ½ω²Δt·R of the wall's mean velocity (R: radius of the drum), which is of
+    // first order in Δt.
     let off = |time_step_secs: f64| {
         let mut drum = scene("drum");
         drum.parameters.time_step_secs = time_step_secs;
@@ -418,9 +425,9 @@ fn walls_tell_of_strain_force_and_work() {
 
 #[test]
 fn walls_have_the_work_and_torque_of_all_steps_between_two_frames() {
-    // The works equal those of the steps, except for walls driven by a force (biaxial), which have two speeds in a
-    // step. For a turning wall the table uses the slip at the end of each step, and the step uses that at its
-    // beginning.
+    // The works in the table equal the works of the steps, with two exceptions. Walls driven by a force (scene
+    // `biaxial`) have two speeds in a step. For a turning wall, the table uses the sliding velocity at the end of each
+    // step, and the step uses the sliding velocity at its beginning.
     for (name, bond, time_step_secs, off_by, off_torque) in [
         ("vibrated", 0.0, 1e-3, 1e-10, 0.0),
         ("biaxial", 0.0, 1e-3, 5e-3, 0.0),

@@ -1,4 +1,4 @@
-//! Contents of columns: every number of the moments, bitwise.
+//! Tests of the contents of columns: every number of the recorded states, bitwise.
 
 use slump::granular::{GrainMeasures, measure};
 use slump::scene::SCENES;
@@ -21,7 +21,7 @@ fn assert_same(found: &Columns, expected: &Columns, what: &str) {
     }
 }
 
-/// Records a scene and checks that the files contain everything in its moments. Returns the moments.
+/// Records a scene and checks that the files contain all data of the recorded states. Returns the states.
 fn check(scene: &Scene, frames: usize, every: u64) -> Vec<Moment> {
     let folder = folder();
     let formats = [FormatName::Parquet, FormatName::Csv];
@@ -100,7 +100,7 @@ fn rows_of_text_have_a_field_for_each_name_where_a_wall_has_several_parts() {
 
 #[test]
 fn lost_grains_say_so_and_stay() {
-    // Too fast for a wall to be detected at this time step.
+    // The grain is too fast for the wall to be detected at this time step, so it is lost.
     let mut thin = scene("thin-wall");
     thin.grains[0].velocity *= 100.0;
     let moments = check(&thin, 60, 1);
@@ -161,8 +161,8 @@ fn parts_end_with_a_frame_and_do_not_hang_on_how_fast_the_disk_was() {
     assert!(grains["time"].iter().map(number).is_sorted());
 }
 
-/// OVITO recognises a file only if its first frame begins early enough: after a head of 16 lines it does, after 17 it
-/// does not (OVITO 3.17.2).
+/// OVITO recognises a file only if its first frame begins early enough: after a head of 16 lines it recognises the
+/// file, after 17 lines it does not (OVITO 3.17.2).
 #[test]
 fn the_first_frame_of_a_dump_begins_where_ovito_looks_for_it() {
     for entry in SCENES {
@@ -181,7 +181,7 @@ fn the_first_frame_of_a_dump_begins_where_ovito_looks_for_it() {
 
 type Row = Vec<(&'static str, Cell)>;
 
-/// Collects rows into columns.
+/// Returns the columns of a table from its rows.
 fn columns(rows: impl IntoIterator<Item = Row>) -> Columns {
     let mut columns = Columns::new();
     for (name, cell) in rows.into_iter().flatten() {

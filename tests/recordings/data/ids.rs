@@ -1,4 +1,5 @@
-//! Ids of bodies: each belongs to one body for the whole recording, despite changes by hand.
+//! Tests of the ids of bodies: an id belongs to the same body in the whole recording, even if the user adds and removes
+//! grains.
 
 use std::collections::BTreeMap;
 
@@ -9,8 +10,8 @@ use slump::world::Disc;
 use super::tables::{Cell, Columns, number, parquet, whole};
 use super::*;
 
-/// The radius (bits) of each body by its id. Discs of a pile have different radii, so a second radius would be
-/// another body.
+/// Returns the radius (bit pattern) of each body by its id. The discs of a pile have different radii, so an id with two
+/// radii would belong to two bodies.
 fn radii(rows: impl Iterator<Item = (u64, f64)>) -> BTreeMap<u64, u64> {
     let mut radii = BTreeMap::new();
     for (id, radius) in rows {
@@ -20,7 +21,7 @@ fn radii(rows: impl Iterator<Item = (u64, f64)>) -> BTreeMap<u64, u64> {
     radii
 }
 
-/// The columns `id` and `radius` of all frames of a dump.
+/// Returns the columns `id` and `radius` of all frames of a LAMMPS dump.
 fn of_dump(path: &Path) -> Vec<(u64, f64)> {
     let (mut rows, mut places) = (Vec::new(), [0; 2]);
     for line in read(path).lines() {
@@ -36,7 +37,7 @@ fn of_dump(path: &Path) -> Vec<(u64, f64)> {
     rows
 }
 
-/// The arrays `id` and `radius` of a VTK file.
+/// Returns the arrays `id` and `radius` of a VTK file.
 fn of_vtk(path: &Path) -> Vec<(u64, f64)> {
     const DATA: &[u8] = b"<AppendedData encoding=\"raw\">\n   _";
     let bytes = bytes(path);
@@ -70,7 +71,7 @@ fn an_id_belongs_to_one_body_for_the_whole_recording_in_every_format() {
     let new = |radius: f64, x: f64| Disc { position: glam::DVec2::new(x, 0.2), radius };
     simulation.add_grain(new(0.0031, 0.1), glam::DVec2::ZERO).expect("there is room");
     record(&mut recording, &mut simulation, 2, 2);
-    // The id of an added and removed grain is not used again, even after the run is saved.
+    // The id of a removed grain is not used again, even after the run is saved and read.
     let last = simulation.world().grains.len() - 1;
     simulation.remove_grain(last).expect("it is there");
     let saved = SavedState::new(pile.clone(), simulation, Tally::default());
@@ -97,7 +98,7 @@ fn an_id_belongs_to_one_body_for_the_whole_recording_in_every_format() {
     let frames = (0..13).map(|frame| folder.path().join(format!("vtk/grains_{frame:06}.vtp")));
     assert_eq!(radii(frames.flat_map(|path| of_vtk(&path))), expected);
 
-    // Contacts and pairs have the ids in their frame's table of grains.
+    // The ids in the tables of contacts and pairs occur in the table of grains of the same frame.
     let in_frame: Vec<(u64, u64)> =
         table["step"].iter().map(whole).zip(table["id"].iter().map(whole)).collect();
     for name in ["contacts", "pairs"] {

@@ -1,4 +1,4 @@
-//! Initial states from recordings.
+//! Tests of initial states that are read from recordings.
 
 use slump::config::{Config, SceneSource};
 use slump::data::{RecordedGrains, read_grains};
@@ -8,7 +8,7 @@ use slump::world::{Disc, Grain};
 use super::tables::{csv, parquet};
 use super::*;
 
-/// Bits of all grain data of an initial state.
+/// Returns the bit patterns of all numbers of an initial state.
 fn bits(grains: &RecordedGrains) -> Vec<u64> {
     let of = |grain: &Grain| {
         let (place, velocity) = (grain.position, grain.velocity);
@@ -31,7 +31,7 @@ fn with_fixed(moving: impl Iterator<Item = f64>, fixed: &[Disc]) -> Vec<u64> {
     moving.chain(fixed).map(f64::to_bits).collect()
 }
 
-/// A recording of the pile, and its moments at steps 10, 20, …, 60.
+/// Records the pile. Returns its states at the steps 10, 20, …, 60.
 fn recorded_pile(folder: &Path) -> Vec<Moment> {
     let pile = scene("pile");
     let mut recording = start(folder, FormatName::ALL, &pile);
@@ -45,7 +45,7 @@ fn recorded_pile(folder: &Path) -> Vec<Moment> {
     moments
 }
 
-/// Files and folders of a recording that `--initial` accepts.
+/// Returns the files and folders of a recording that `--initial` accepts.
 fn sources(folder: &Path) -> Vec<PathBuf> {
     [".", "grains", "grains/part-00000.parquet", "csv/grains.csv"]
         .iter()
@@ -75,7 +75,7 @@ fn every_format_gives_back_what_was_recorded_bit_for_bit() {
         }
         for (moment, step) in moments.iter().zip([10, 20, 30, 40, 50, 60]) {
             let Ok(found) = read_grains(&source, Some(step)) else {
-                // The first part does not contain all moments.
+                // The first part file does not contain all frames.
                 assert!(source.ends_with("part-00000.parquet"), "{}", source.display());
                 continue;
             };
@@ -108,7 +108,7 @@ fn the_base_of_a_recorded_pile_stays_as_wide_as_it_was() {
     recorded_pile(folder.path());
     let scene = config(folder.path(), None).scene(|_| true).expect("a scene");
     assert_eq!(scene.fixed_discs, super::scene("pile").fixed_discs);
-    // Simple tables have no fixed discs, and get the base that belongs to the box.
+    // Simple tables have no fixed discs. They get the rough base for the width of the box.
     let simple = concat!(env!("CARGO_MANIFEST_DIR"), "/crates/core/assets/pile_138.csv");
     let scene = config(simple.as_ref(), None).scene(|_| true).expect("a scene");
     assert_eq!(scene.grains, super::scene("pile").grains);
@@ -190,7 +190,7 @@ fn rows_in_any_order_are_put_in_that_of_their_ids() {
 fn a_frame_that_is_not_in_every_format_is_none() {
     let folder = folder();
     let moments = recorded_pile(folder.path());
-    // The index after a kill in the middle of the last frame.
+    // The list of frames and a table as they are after a kill in the middle of the last frame.
     let index = folder.path().join("frames.csv");
     let rows = read(&index);
     write(&index, rows.trim_end().rsplit_once('\n').expect("rows").0);

@@ -1,4 +1,4 @@
-//! Recordings: the contents of their files, the parts that survive any end of a run, and reading them.
+//! Tests of recordings: the contents of their files, the parts that survive any end of a run, and reading them.
 
 mod balance;
 mod columns;
@@ -17,7 +17,7 @@ use slump::sim::{Moment, Simulation};
 
 use crate::program::*;
 
-/// Runs the program without a window. It must refuse in one sentence, which is returned.
+/// Runs the program without a window and checks that it refuses in one sentence. Returns the sentence.
 fn refusal(arguments: &[&str]) -> String {
     let said = sentence(slump("--headless").args(arguments));
     said.strip_prefix("slump: ").unwrap_or_else(|| panic!("{said}")).to_owned()
@@ -32,7 +32,7 @@ fn start(folder: &Path, formats: &[FormatName], scene: &Scene) -> Recording {
     Recording::start(folder, formats, &about, false).expect("a recording")
 }
 
-/// Takes steps, records each of them, and records a frame after each `every` steps.
+/// Takes steps, records each step, and records a frame after every `every` steps.
 fn record(recording: &mut Recording, simulation: &mut Simulation, steps: u64, every: u64) {
     recording.follow(simulation);
     for _ in 0..steps {
@@ -45,7 +45,7 @@ fn record(recording: &mut Recording, simulation: &mut Simulation, steps: u64, ev
     }
 }
 
-/// Records `steps` steps of a scene with a frame after each `every`, and finishes the recording.
+/// Records `steps` steps of a scene with a frame after every `every` steps, and finishes the recording.
 fn recorded(folder: &Path, formats: &[FormatName], scene: &Scene, steps: u64, every: u64) {
     let mut recording = start(folder, formats, scene);
     record(&mut recording, &mut scene.simulation().expect("a scene"), steps, every);

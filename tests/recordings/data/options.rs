@@ -1,9 +1,9 @@
-//! Options of recordings, and recordings of a study's runs.
+//! Tests of the options of recordings, and of recordings of a study's runs.
 
 use super::tables::{metadata, number, parquet, parts, steps};
 use super::*;
 
-/// The cradle for a tenth of a second, 100 steps.
+/// Arguments of a run of the cradle for 0.1 s, which takes 100 steps.
 const BRIEF: [&str; 6] = ["--scene", "cradle", "--dt", "1e-3", "--duration", "0.1"];
 
 fn frames(folder: &Path) -> Vec<u64> {
@@ -43,7 +43,7 @@ fn frames_are_at_the_times_of_the_pictures_or_at_their_own() {
 fn data_alone_needs_no_renderer_and_pictures_may_be_in_the_same_folder() {
     let folder = folder();
     let out = text(folder.path());
-    // The program does not look for a renderer, which this machine may lack.
+    // The program must not look for a renderer, because a machine may not have one.
     let mut alone = slump("--headless --renderer gl --data");
     let alone = run(alone.arg(out).args(BRIEF).env("LIBGL_DRIVERS_PATH", "/nowhere"));
     assert!(alone.status.success(), "{}", said(&alone));
@@ -56,7 +56,7 @@ fn data_alone_needs_no_renderer_and_pictures_may_be_in_the_same_folder() {
     for file in ["frame_00002.png", "observables.csv", "manifest.json", "data.json", "frames.csv"] {
         assert!(folder.path().join(file).exists(), "{file}");
     }
-    // The pictures are taken at the times of the frames.
+    // Pictures are drawn at the times of the frames.
     let manifest = manifest(folder.path());
     let pictures = manifest["pictures"].as_array().expect("pictures");
     let step = |it: &Value| it["shows"][0]["observables"]["step"].as_u64().expect("step");
@@ -76,7 +76,7 @@ fn a_run_is_the_same_with_a_recording_and_without() {
         succeed(slump(line).arg(scene).args(more).arg("--data").arg(&data));
         let table = |folder: &Path| bytes(folder.join("observables.csv"));
         assert_eq!(table(&plain), table(&recorded), "{scene}");
-        // The recording's own table has equal numbers.
+        // The table of steps in the recording has the same numbers.
         let mut rows = csv::Reader::from_path(plain.join("observables.csv")).expect("a table");
         let names = rows.headers().expect("names").clone();
         let energy = names.iter().position(|name| name == "kinetic_energy").expect("a column");
@@ -113,7 +113,7 @@ fn scene_files_ask_for_recordings() {
     let said = sentence(&mut again(&[]));
     assert!(said.contains("unless --overwrite is given"), "{said}");
     succeed(&mut again(&["--overwrite"]));
-    // The command line overrides the scene.
+    // An option on the command line overrides the value in the scene file.
     let other = folder.path().join("other");
     let line = "--headless --dt 1e-3 --data-every 0.05 --data-format parquet --scene";
     succeed(slump(line).arg(&scene).arg("--data").arg(&other));
@@ -181,7 +181,7 @@ fn written(folder: &Path, study: &str) -> PathBuf {
     path
 }
 
-/// Key and Bond number of each run.
+/// Returns the key and the Bond number of each run of a study.
 fn runs(out: &Path) -> Vec<(String, String)> {
     let mut table = csv::Reader::from_path(out.join("runs.csv")).expect("a table");
     let names = table.headers().expect("names").clone();
@@ -211,7 +211,7 @@ fn every_run_has_its_recording_by_its_key_whichever_part_it_ran_in() {
         let said: f64 = about["parameters.bond"].parse().expect("a number");
         assert_eq!(said, bond.parse::<f64>().expect("a number"));
     }
-    // A missing recording is made again, and so is one that a kill has left incomplete.
+    // A missing recording is computed again. A recording that is incomplete after a kill is computed again, too.
     std::fs::remove_dir_all(out.join("data").join(&runs[1].0)).expect("gone");
     let output = said(&run(&mut sweep(&study, &out, &[])));
     assert!(output.contains("5 of 6 runs were there"), "{output}");
@@ -229,7 +229,7 @@ fn results_are_the_same_with_recordings_and_without() {
     let rows = |out: &str| {
         let table = folder.path().join(out).join("runs.csv");
         let table = read(table);
-        // The second cell is the run's key, which depends on the recording.
+        // The second cell of a row is omitted: it is the key of the run, which depends on the options of the recording.
         let row = |line: &str| line.splitn(3, ',').nth(2).map(str::to_owned);
         table.lines().map(row).collect::<Vec<_>>()
     };

@@ -1,4 +1,5 @@
-//! Files that are not initial states are refused in one sentence with file, place, value and the allowed values.
+//! Tests of files that are not valid initial states: Slump refuses them in one sentence with the file, the position,
+//! the value and the allowed values.
 
 use std::sync::Arc;
 
@@ -66,7 +67,7 @@ fn parquet_of_others_is_read() {
     assert_eq!(found.grains[2].radius, 0.0025);
     assert_eq!(found.grains[2].position, glam::DVec2::new(0.02, 0.006));
     assert_eq!(found.grains[2].velocity, glam::DVec2::ZERO);
-    // Whole numbers are accepted, and ids determine the order of the discs.
+    // Columns of whole numbers are accepted, and the ids determine the order of the discs.
     let ids = Column::Whole("id", &[7, 3, 5]);
     write_columns(&path, &[Column::Whole("x", &[1, 2, 3]), YS, RADII, ids]);
     let found = read_grains(&path, None).expect("discs");
@@ -217,7 +218,8 @@ fn masses_densities_and_materials_of_a_file_are_used_in_every_format() {
     assert_eq!(masses_in(&columns), (vec![1e-5, 1e-2, 1e-2], vec![1, 0, 0], vec![true; 3]));
 }
 
-/// Tables as pandas, numpy and spreadsheets write them by default.
+/// Checks tables in the default formats of pandas, numpy and spreadsheets. Slump refuses these tables and says how to
+/// correct them.
 #[test]
 fn a_table_of_another_program_is_refused_with_the_way_to_mend_it() {
     let folder = folder();
@@ -268,7 +270,7 @@ fn damaged_parquet_is_refused_or_read_and_nothing_else() {
     let mut refused = 0;
     for round in 0..600 {
         let mut bytes = whole.clone();
-        // Most possible errors are in the footer.
+        // Most of the possible errors are in the footer of a Parquet file.
         let from = if round % 2 == 0 { 0 } else { bytes.len().saturating_sub(9000) };
         for _ in 0..random.random_range(1..4) {
             let place = random.random_range(from.max(4)..bytes.len());
@@ -287,7 +289,8 @@ fn damaged_parquet_is_refused_or_read_and_nothing_else() {
     assert!(refused > 90, "many were damaged where it shows: {refused}");
 }
 
-/// A scene takes about sixty times its text in memory.
+/// A scene needs about sixty times the length of its text in memory. So a file that is too long is refused before it is
+/// parsed.
 #[test]
 fn a_text_that_nobody_means_is_refused_before_it_is_parsed() {
     let folder = folder();
@@ -298,8 +301,8 @@ fn a_text_that_nobody_means_is_refused_before_it_is_parsed() {
     assert!(said.contains("has more than 33554432 bytes, but must have no more"), "{said}");
 }
 
-/// If the decoder reads other numbers than the check before it, it may allocate any amount: one such bit asked for 24
-/// GiB.
+/// If the decoder reads other numbers than the check before the decoding, it may allocate any amount of memory: one
+/// flipped bit caused an allocation of 24 GiB.
 #[test]
 fn parquet_with_any_bit_turned_is_read_or_refused() {
     let folder = folder();
@@ -318,7 +321,8 @@ fn parquet_with_any_bit_turned_is_read_or_refused() {
     assert!(refused > 2_000, "{refused}");
 }
 
-/// Each of these has ended the program before: by memory, by its stack, or by a panic of the decoder.
+/// Checks small Parquet files with wrong numbers. In earlier versions each of these files has ended the program
+/// abruptly: by lack of memory, by a stack overflow, or by a panic of the decoder.
 #[test]
 fn small_parquet_that_lies_is_refused_in_a_sentence() {
     let folder = folder();

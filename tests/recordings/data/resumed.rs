@@ -1,4 +1,4 @@
-//! Resumed recordings, and several recordings for one folder.
+//! Tests of resumed recordings, and of several recordings for the same folder.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use slump::sim::ForceSums;
 
 use super::*;
 
-/// All files of a recording except the manifest.
+/// Returns all files of a recording except the manifest: relative path and content.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut all = BTreeMap::new();
     for name in names_in(folder) {
@@ -41,7 +41,7 @@ fn what_goes_on_is_what_was_never_stopped() {
     let folder = folder();
     let expected = folder.path().join("whole");
     recorded(&expected, &formats, &pile, 120, 2);
-    // Before the first frame, within the first part, at a frame, between two frames, and at the end.
+    // Stops before the first frame, within the first part file, at a frame, between two frames, and at the end.
     for stopped_at in [0, 1, 9, 40, 77, 120] {
         let path = folder.path().join(format!("from-{stopped_at}"));
         let mut simulation = pile.simulation().expect("a scene");
@@ -49,7 +49,7 @@ fn what_goes_on_is_what_was_never_stopped() {
         record(&mut recording, &mut simulation, stopped_at, 2);
         let (saved, sums) = (simulation.clone(), recording.sums().clone());
         let mark = recording.flush().expect("written");
-        // The run continues for a while and is stopped after its checkpoint.
+        // The run continues for a while after its checkpoint and is then stopped.
         record(&mut recording, &mut simulation, 120 - stopped_at, 2);
         drop(recording);
         let mut simulation = saved;
@@ -77,7 +77,7 @@ fn what_a_kill_tore_is_mended_when_it_goes_on() {
     let mark = recording.flush().expect("written");
     record(&mut recording, &mut simulation, 5, 2);
     recording.finish().expect("a recording");
-    // Half rows, and a frame that the index does not know.
+    // Makes incomplete last rows, and a frame that is missing in the list of frames.
     let cut = |file: &str, by: u64| {
         let file = std::fs::OpenOptions::new().write(true).open(torn.join(file)).expect("a file");
         file.set_len(file.metadata().expect("a length").len() - by).expect("cut");
@@ -117,7 +117,8 @@ fn a_recording_that_lacks_frames_of_its_run_is_refused_and_keeps_what_it_has() {
     assert_eq!(bytes(&grains), before);
 }
 
-/// A power cut may lose written rows, and people delete files.
+/// A power failure may lose written rows, and users may delete files. Slump must refuse to resume such a recording, and
+/// must not change it.
 #[test]
 fn a_recording_that_lost_rows_is_refused_and_keeps_what_it_has_in_every_format() {
     let pile = scene("pile");
@@ -128,7 +129,7 @@ fn a_recording_that_lost_rows_is_refused_and_keeps_what_it_has_in_every_format()
         let mut simulation = pile.simulation().expect("a scene");
         record(&mut recording, &mut simulation, 12, 3);
         let mark = recording.flush().expect("written");
-        // The run continues after the mark.
+        // The run continues after the mark at which it will be resumed.
         record(&mut recording, &mut simulation, 6, 3);
         recording.finish().expect("a recording");
         let before = files(folder.path());
@@ -143,7 +144,8 @@ fn a_recording_that_lost_rows_is_refused_and_keeps_what_it_has_in_every_format()
             for part in [0, 1, 2, 3] {
                 match part {
                     0 => std::fs::remove_file(&path).expect("a file"),
-                    // Two of six frames may be missing.
+                    // The file keeps a part of its length. Two of the six frames may be missing, because they are later
+                    // than the mark.
                     part => write(&path, &whole[..whole.len() * part / 6]),
                 }
                 let damaged = files(folder.path());
@@ -181,7 +183,7 @@ fn frames_that_are_there_are_not_made_again() {
     let recording =
         Recording::go_on(folder.path(), &formats, &about, 7, &mark).expect("it goes on");
     let mut recording = recording.at(Times::Every(0.002), &simulation);
-    // A resumed run asks this before its first step.
+    // A resumed run calls this function before its first step. It must not add the same frame again.
     recording.add_if_due(&simulation).expect("a frame");
     assert_eq!(recording.frames(), 4);
     simulation.step().expect("a finite state");
@@ -226,7 +228,7 @@ fn an_earlier_recording_is_refused_or_removed_and_nothing_else_is() {
     let said = again.err().expect("a refusal").to_string();
     assert!(said.starts_with("data is ") && said.contains("--overwrite"), "{said}");
     assert_eq!(files(folder.path()), before);
-    // Without its manifest it is still recognised as a recording.
+    // Slump recognises a folder as a recording even if the manifest is missing.
     std::fs::remove_file(folder.path().join("data.json")).expect("gone");
     std::fs::remove_file(folder.path().join("frames.csv")).expect("gone");
     assert!(Recording::start(folder.path(), &[FormatName::Csv], &about, false).is_err());

@@ -1,4 +1,4 @@
-//! Files of recordings as tables of cells, read without Slump's own readers.
+//! Reads the files of recordings as tables of cells, without Slump's own readers.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 
-/// A cell of a table.
+/// A cell of a table, in a form that can be compared bitwise.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
-    /// Bits of a number.
+    /// Bit pattern of a floating-point number.
     Number(u64),
     Whole(u64),
     Flag(bool),
@@ -26,7 +26,8 @@ impl From<f64> for Cell {
 
 pub type Columns = BTreeMap<String, Vec<Cell>>;
 
-/// The parts of a table without hidden files, which killed programs leave and readers of folders ignore.
+/// Returns the part files of a table. Hidden files are omitted: killed programs leave them, and readers of whole
+/// folders ignore them.
 pub fn parts(folder: &Path, table: &str) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(folder.join(table)) else { return Vec::new() };
     let mut parts: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
@@ -35,7 +36,7 @@ pub fn parts(folder: &Path, table: &str) -> Vec<PathBuf> {
     parts
 }
 
-/// A table in Parquet, from all its parts.
+/// Reads a table in Parquet from all its part files.
 pub fn parquet(folder: &Path, table: &str) -> Columns {
     let mut columns = Columns::new();
     for part in parts(folder, table) {
@@ -58,14 +59,14 @@ pub fn parquet(folder: &Path, table: &str) -> Columns {
     columns
 }
 
-/// The metadata of a part.
+/// Returns the metadata of a part file.
 pub fn metadata(part: &Path) -> BTreeMap<String, String> {
     let reader = SerializedFileReader::new(File::open(part).expect("a part")).expect("a part");
     let pairs = reader.metadata().file_metadata().key_value_metadata().expect("metadata");
     pairs.iter().map(|pair| (pair.key.clone(), pair.value.clone().unwrap_or_default())).collect()
 }
 
-/// A table in text. The types of its columns are those of the table `like`.
+/// Reads a table in CSV. The types of its columns are the types in the table `like`.
 pub fn csv(path: &Path, like: &Columns) -> Columns {
     let mut reader =
         csv::ReaderBuilder::new().comment(Some(b'#')).from_path(path).expect("a table");
@@ -87,7 +88,7 @@ pub fn csv(path: &Path, like: &Columns) -> Columns {
     columns
 }
 
-/// The steps of a table's rows, without repetition.
+/// Returns the steps of a table's rows, each once.
 pub fn steps(columns: &Columns) -> Vec<u64> {
     let mut steps: Vec<u64> = columns.get("step").into_iter().flatten().map(whole).collect();
     assert!(steps.is_sorted(), "rows rise by their steps");

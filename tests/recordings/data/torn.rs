@@ -1,4 +1,4 @@
-//! Runs that are killed or stopped, or that fill the disk: their recordings are complete up to the last frame.
+//! Tests of runs that are killed or stopped, or that fill the disk: their recordings are complete up to the last frame.
 
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -7,7 +7,7 @@ use rand_pcg::rand_core::SeedableRng;
 use super::tables::{csv, parquet, parts, steps};
 use super::*;
 
-/// A run of several minutes with a frame every second step.
+/// Arguments of a run of several minutes that records a frame every second step.
 const LONG: &str = "--headless --duration 1000 --data-every 0.002 --data-format parquet,csv --max-sweeps 20 --data";
 
 fn start(out: &Path) -> Child {
@@ -16,7 +16,7 @@ fn start(out: &Path) -> Child {
     command.spawn().expect("the program starts")
 }
 
-/// The steps of the frames in whole rows of the index.
+/// Returns the steps of the frames in the list of frames. An incomplete last row is omitted.
 fn indexed(folder: &Path) -> Vec<u64> {
     let index = std::fs::read_to_string(folder.join("frames.csv")).unwrap_or_default();
     let whole = index.rfind('\n').map_or("", |end| &index[..end]);
@@ -24,7 +24,7 @@ fn indexed(folder: &Path) -> Vec<u64> {
     rows.map(|row| row.split(',').next().expect("a step").parse().expect("a number")).collect()
 }
 
-/// Checks that all frames of the index are in every table of every format. Returns their number.
+/// Checks that every table in every format contains all frames of the list of frames. Returns the number of frames.
 fn check(folder: &Path) -> usize {
     let frames = indexed(folder);
     assert!(frames.iter().copied().eq((0..frames.len() as u64).map(|frame| 2 * frame)));
@@ -37,7 +37,7 @@ fn check(folder: &Path) -> usize {
             _ => frames.clone(),
         };
         assert!(there.starts_with(&expected), "{table} in Parquet up to {last}: {there:?}");
-        // A kill may cut the last row of a text file.
+        // A kill may leave an incomplete last row in a text file.
         let path = folder.join(format!("csv/{table}.csv"));
         let text = read(&path);
         let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
@@ -53,7 +53,7 @@ fn check(folder: &Path) -> usize {
     frames.len()
 }
 
-/// Hidden files in a folder and its subfolders, except locks.
+/// Returns the names of hidden files in a folder and its subfolders, except lock files.
 fn hidden(folder: &Path) -> Vec<String> {
     let mut found = Vec::new();
     for name in names_in(folder) {
@@ -90,7 +90,7 @@ fn what_a_kill_leaves_of_a_file_that_was_whole_is_no_rows_and_goes_with_the_next
         assert_eq!(hidden(folder.path()).len(), 2);
     };
     plant();
-    // The program reads the whole folder.
+    // The program reads the whole folder and ignores the hidden files.
     let beside = crate::program::folder();
     let read = "--headless --duration 0.002 --initial";
     succeed(slump(read).arg(out).arg("--data").arg(beside.path()));
@@ -122,10 +122,10 @@ fn a_run_that_is_killed_at_any_moment_leaves_every_frame_that_it_told_of() {
         most = most.max(check(folder.path()));
         let is_whole = |part: &PathBuf| part.extension().is_some_and(|it| it == "parquet");
         assert!(parts(folder.path(), "grains").iter().all(is_whole));
-        // While a file replaces another, it briefly has a second name.
+        // While a file replaces another file, it briefly has a second name.
         let left = hidden(folder.path());
         assert!(left.len() <= 1, "{left:?}");
-        // Nothing prevents the next run.
+        // The remaining files must not prevent the next run.
         let again = "--headless --overwrite --duration 0.01 --data";
         succeed(slump(again).arg(folder.path()));
         assert_eq!(hidden(folder.path()), Vec::<String>::new());
@@ -160,7 +160,7 @@ fn a_signal_ends_a_recording_whole() {
         let frames = check(folder.path()) as u64;
         let grains = steps(&parquet(folder.path(), "grains"));
         assert_eq!(grains.len() as u64, frames, "no frame that the index does not tell of");
-        // Each step has its row, also after the last frame.
+        // Each step has its row in the table of steps, also after the last frame.
         let taken = *steps(&parquet(folder.path(), "steps")).last().expect("rows");
         assert!((2 * (frames - 1)..2 * frames).contains(&taken), "{taken} steps, {frames} frames");
     }
@@ -169,7 +169,7 @@ fn a_signal_ends_a_recording_whole() {
 #[test]
 fn a_full_disk_ends_the_run_with_a_sentence_and_leaves_whole_frames() {
     let folder = folder();
-    // This limits the length of files, as on a full disk. Text files reach the limit first.
+    // The limit on the length of files has the effect of a full disk. Text files reach the limit first.
     let script = "trap '' XFSZ; ulimit -f 1024; exec \"$@\"";
     let mut small = Command::new("sh");
     small.args(["-c", script, "sh"]).arg(slump("").get_program()).args(LONG.split(' '));
@@ -179,7 +179,7 @@ fn a_full_disk_ends_the_run_with_a_sentence_and_leaves_whole_frames() {
     assert!(frames > 3, "{frames}");
 }
 
-/// Resident memory of a program, kB.
+/// Returns the resident memory of a process, kB.
 #[cfg(target_os = "linux")]
 fn memory(child: &Child) -> u64 {
     let status = read(format!("/proc/{}/status", child.id()));

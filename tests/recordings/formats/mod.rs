@@ -1,5 +1,5 @@
-//! Recordings for ParaView and OVITO: their contents, and that they stay complete. `tests/clients/` reads them with
-//! these programs.
+//! Tests of recordings for ParaView and OVITO: their contents, and that they are complete at every time. The scripts in
+//! `tests/clients/` read such recordings with ParaView and OVITO.
 
 mod vtp;
 mod whole;
@@ -14,7 +14,7 @@ use slump::sim::{
 };
 use slump::world::{Boundary, Disc};
 
-/// A number whose shortest decimal form needs all digits.
+/// A number whose shortest exact decimal form has all digits.
 const THIRD: f64 = 1.0 / 3.0;
 
 fn about() -> RunFacts {
@@ -23,7 +23,7 @@ fn about() -> RunFacts {
     }
 }
 
-/// Three grains, one of them lost, on a fixed disc and a floor.
+/// Returns the state of three grains, of which one is lost, on a fixed disc and a floor.
 fn moment(step: u64) -> Moment {
     let grain = |id: u32, x: f64, y: f64, radius: f64| GrainState {
         id,
@@ -77,8 +77,8 @@ fn moment(step: u64) -> Moment {
     }
 }
 
-/// The rest of a text after the lines of a pattern. A line `…` matches any lines, and `…` at the end of a line any
-/// rest.
+/// Checks that a text begins with the lines of a pattern. Returns the rest of the text. In the pattern, a line `…`
+/// matches any number of lines, and `…` at the end of a line matches the rest of that line.
 fn after<'a>(mut text: &'a str, pattern: &str) -> &'a str {
     let mut skips = false;
     for wanted in pattern.lines() {
@@ -109,7 +109,7 @@ fn start(folder: &Path) -> Recording {
     Recording::start(folder, FORMATS, &about(), false).expect("a recording")
 }
 
-/// Resumes at a step, with the frames up to it that every format has.
+/// Resumes a recording at a step, with the frames up to this step that every format has.
 fn go_on(folder: &Path, step: u64) -> Recording {
     let index = std::fs::read_to_string(folder.join("frames.csv")).unwrap_or_default();
     let whole = index.rfind('\n').map_or("", |end| &index[..end]);
@@ -119,7 +119,7 @@ fn go_on(folder: &Path, step: u64) -> Recording {
     Recording::go_on(folder, FORMATS, &about(), step, &mark).expect("a recording to go on with")
 }
 
-/// Writes frames with these numbers; frame n is of step 10 n.
+/// Writes frames with these numbers. Frame n shows step 10 n.
 fn write_frames(recording: &mut Recording, numbers: std::ops::Range<u64>) {
     for number in numbers {
         recording.add(moment(10 * number)).expect("a frame");

@@ -1,4 +1,4 @@
-//! `.vtp` files: the contents of the XML, and bitwise equal numbers.
+//! Tests of `.vtp` files: the XML, and bitwise equality of all numbers.
 
 use glam::DVec2;
 use slump::world::Boundary;
@@ -52,7 +52,7 @@ const GRAINS: &str = r#"<?xml version="1.0"?>
   <AppendedData encoding="raw">
    _"#;
 
-/// A file, parsed by its text only.
+/// A `.vtp` file: its XML, and the binary data behind the XML.
 struct File {
     xml: String,
     data: Vec<u8>,
@@ -100,7 +100,7 @@ fn second_frame(kind: &str) -> (tempfile::TempDir, PathBuf) {
     (folder, path)
 }
 
-/// Compares bits, so that −0 differs from 0.
+/// Compares the bit patterns of numbers, so that −0 differs from 0.
 fn assert_same(found: &[f64], expected: &[f64], name: &str) {
     let bits = |numbers: &[f64]| numbers.iter().map(|number| number.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(found), bits(expected), "{name}: {found:?} of {expected:?}");
@@ -170,7 +170,8 @@ ITEM: ATOMS id type element x y z radius vx vy vz omegaz coordination_number ang
 2 3 Li -1000000.0 0.0 0.0 0.5 0.3333333333333333 -2e-9 0.0 1e22 0.0 -0.0 0.125 …
 3 2 He 0.0 -1.0 0.0 0.75 0.0 0.0 0.0 0.0 NaN 0.0 NaN …
 ";
-/// MDAnalysis reads a frame by the number of its lines: eight, one with the names of the columns, and one per disc.
+/// Start of the second frame of grains. A frame has eight head lines, a line with the names of the columns, and one
+/// line per disc: MDAnalysis finds frames by this number of lines.
 const SECOND_HEAD: &str = "ITEM: TIMESTEP\n10\nITEM: NUMBER OF ATOMS\n4\n";
 
 const DUMPED_CONTACTS: &str = "\
@@ -238,7 +239,7 @@ fn what_is_written_for_other_programs_is_refused_as_an_initial_state() {
     assert_refused(folder.path(), "has grains for other programs alone");
 }
 
-/// Two numbers of a frame of fields.
+/// Returns two numbers of a frame of fields, by their names.
 fn of_fields(folder: &Path, number: usize, names: [&str; 2]) -> [f64; 2] {
     let file = bytes(folder.join(format!("fields/fields_{number:06}.vti")));
     let text = String::from_utf8_lossy(&file);
@@ -264,14 +265,14 @@ fn all_frames_have_one_smoothing_width_and_leave_out_what_flies_off() {
     let length =
         |number| bytes(straight.path().join(format!("fields/fields_00000{number}.vti"))).len();
     assert!(length(1) < 9 * length(0), "as far as the room reaches, and no farther: {}", length(1));
-    // A resumed recording uses the width of its first frame.
+    // A resumed recording smooths its fields over the width that its first frame used.
     write_frames(&mut start(resumed.path()), 0..1);
     let mut recording = go_on(resumed.path(), 0);
     recording.add(far.clone()).expect("a frame");
     recording.finish().expect("files");
     let last = "fields/fields_000001.vti";
     assert!(bytes(resumed.path().join(last)) == bytes(straight.path().join(last)));
-    // If grains are far apart in the first frame, the fields contain all of them, smoothed over a larger width.
+    // If grains are far apart in the first frame, the fields contain all of them and are smoothed over a larger width.
     let mut recording = start(far_at_first.path());
     recording.add(far).expect("a frame");
     recording.add(moment(20)).expect("a frame");
@@ -286,7 +287,7 @@ fn all_frames_have_one_smoothing_width_and_leave_out_what_flies_off() {
 fn grains_that_leave_the_fields_are_told_of_once() {
     let folder = folder();
     let mut scene = slump::scene::built_in("collision").expect("a scene");
-    // Behind an infinite wall no grain is lost, at any distance.
+    // If the only wall is infinite, no grain is lost at any distance.
     scene.fixed_discs.clear();
     scene.boundaries = vec![Boundary::HalfSpace { point: DVec2::new(-1.0, 0.0), normal: DVec2::X }];
     let away = 1e4 * scene.mean_diameter / scene.parameters.time_step_secs;

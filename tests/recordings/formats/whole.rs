@@ -1,4 +1,4 @@
-//! Files are complete at every moment: while they grow, and after a kill.
+//! Tests that the files of a recording are complete at every time: while they grow, and after a kill.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -9,12 +9,13 @@ use slump::data::Recording;
 use super::{FORMATS, about, go_on, moment, start, write_frames};
 use crate::program::*;
 
-/// The variable that gives the process to be killed its output folder.
+/// Environment variable that gives the output folder to the child process that the test kills.
 const FOLDER: &str = "SLUMP_TEST_FORMATS_FOLDER";
 const KILLS: usize = 12;
 const MOST_FRAMES: u64 = 100_000;
 
-/// The contents of a file at one moment. Reading takes several calls, between which the file may change.
+/// Returns the content of a file at one time. Reading takes several calls, between which the file may change, so the
+/// file is read until two results are equal.
 fn snapshot_of(path: &Path) -> String {
     let (mut text, mut again) = (read(path), read(path));
     while text != again {
@@ -23,7 +24,7 @@ fn snapshot_of(path: &Path) -> String {
     text
 }
 
-/// The times of a series. The series and its files must be complete.
+/// Returns the times of a VTK series (`.pvd`). Checks that the series and the files that it lists are complete.
 pub fn frames_of_series(path: &Path) -> Vec<f64> {
     let text = snapshot_of(path);
     let body = text.strip_prefix("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\"");
@@ -42,7 +43,8 @@ pub fn frames_of_series(path: &Path) -> Vec<f64> {
     times.collect()
 }
 
-/// The steps of a dump. It must consist of complete frames and at most one draft.
+/// Returns the steps of a LAMMPS dump. Checks that the dump consists of complete frames and at most one incomplete
+/// frame at the end.
 pub fn frames_of_dump(path: &Path) -> Vec<u64> {
     let text = snapshot_of(path);
     let mut lines = text.lines().peekable();
@@ -54,7 +56,7 @@ pub fn frames_of_dump(path: &Path) -> Vec<u64> {
                 while lines.next_if(|line| !line.starts_with("ITEM:")).is_some() {}
             }
             draft if draft.starts_with("ITEM: D") => break,
-            // Grains have no time, because readers expect a fixed number of lines per frame.
+            // Dumps of grains have no item `TIME`, because readers expect a fixed number of lines per frame.
             item @ ("ITEM: TIME" | "ITEM: TIMESTEP") => {
                 let step = read_frame(&mut lines, item == "ITEM: TIME");
                 let left: Vec<&str> = lines.clone().take(8).collect();
@@ -68,7 +70,7 @@ pub fn frames_of_dump(path: &Path) -> Vec<u64> {
     steps
 }
 
-/// The step of a frame; `None` if it is incomplete.
+/// Returns the step of a frame of a dump, or `None` if the frame is incomplete.
 fn read_frame<'a>(lines: &mut impl Iterator<Item = &'a str>, has_time: bool) -> Option<u64> {
     if has_time {
         lines.next()?.parse::<f64>().ok()?;
@@ -135,7 +137,7 @@ fn files_are_whole_after_a_kill() {
         kill(&mut child);
         let frames = check(folder.path());
         most = most.max(frames);
-        // The recording can be resumed. The last frames may be in only one format.
+        // The recording can be resumed after the kill. The last frames may exist in only one of the formats.
         let mut later = go_on(folder.path(), 10 * frames as u64);
         let kept = later.frames();
         write_frames(&mut later, kept..kept + 2);
@@ -174,7 +176,7 @@ fn rolled_back_frames_are_as_if_they_had_never_been() {
     for (written, kept) in [(5, 3), (5, 5), (40, 1), (40, 39)] {
         let [rolled, straight] = [(); 2].map(|()| folder());
         write_frames(&mut start(rolled.path()), 0..written);
-        // A step without a frame, after the last frame that is kept.
+        // The run resumes at a step that has no frame, after the last frame that is kept.
         let mut later = go_on(rolled.path(), 10 * kept - 1);
         assert_eq!(names(rolled.path()).len() as u64, 6 + 3 * kept, "{written}, {kept}");
         write_frames(&mut later, kept..written + 2);
@@ -192,7 +194,7 @@ fn a_frame_that_only_some_formats_have_is_written_again() {
     for kept in [0, 2] {
         let [cut, straight] = [(); 2].map(|()| folder());
         write_frames(&mut start(cut.path()), 0..3);
-        // The list after a kill between writing the last frames and the list of frames.
+        // The list of frames as it is after a kill between writing the last frames and writing the list.
         let list = cut.path().join("frames.csv");
         let text = read(&list);
         let lines: Vec<&str> = text.lines().collect();

@@ -1,4 +1,4 @@
-//! The command, and its messages about faulty files.
+//! Tests of the command `slump problem`, and of its error messages about faulty files.
 
 use serde_json::json;
 use slump::interchange::{Friction, ProblemFile, Solution};
@@ -6,7 +6,7 @@ use slump::interchange::{Friction, ProblemFile, Solution};
 use super::{SICONOS, problems};
 use crate::program::*;
 
-/// A correct problem of two contacts, to be changed.
+/// Returns a correct problem of two contacts, which the tests change.
 fn sound() -> Value {
     json!({
         "nc": 2,
@@ -25,7 +25,7 @@ fn spoilt(mut problem: Value, change: fn(&mut Value)) -> String {
     problem.to_string()
 }
 
-/// Panics unless each text is refused in one sentence that contains the expected words.
+/// Checks that each text is refused in one sentence that contains the expected words.
 fn assert_refused(cases: &[(String, &str)]) {
     let folder = folder();
     let path = folder.path().join("problem.json");
@@ -132,7 +132,8 @@ fn the_command_writes_a_problem_and_a_solution() {
     let text = read(&solution);
     let solution: Solution = serde_json::from_str(&text).expect("a proper solution");
     assert!(solution.converged && solution.residual <= 1e-8);
-    // The residual is that of the written impulses, not the method's own.
+    // The reported residual must be the residual of the written impulses, not the value that the method used in its
+    // stop test.
     let mut judge = file.delassus().expect("a proper problem");
     judge.set_impulses(solution.r.chunks_exact(2).map(|pair| [pair[0], pair[1]]));
     assert_eq!(judge.residual(), solution.residual);

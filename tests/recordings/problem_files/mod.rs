@@ -1,4 +1,4 @@
-//! Contact problems as files: written from a scene, read back, checked, and solved on their own.
+//! Tests of contact problems as files: written from a scene, read back, checked, and solved without a scene.
 
 mod faults;
 
@@ -17,7 +17,7 @@ fn kept_problem(name: &str) -> ProblemFile {
     ProblemFile::read(&problems().join(name)).expect("a proper problem file")
 }
 
-/// Names of the stored problems: Slump's own, then the published one.
+/// Returns the names of the stored contact problems: first those from Slump, then a published one from Siconos.
 fn kept() -> Vec<String> {
     let mut names = names_in(&problems());
     names.retain(|name| name.ends_with(".json"));
@@ -31,7 +31,7 @@ fn settings(method: Method, tolerance: f64) -> SolverSettings {
     SolverSettings { method, tolerance, max_sweeps: 1_000_000, stop, ..SolverSettings::SWEEPS }
 }
 
-/// Scenes of every model, after a few steps.
+/// Returns scenes for every set of physics, each with a name and the time at which its problem is written (s).
 fn scenes() -> Vec<(&'static str, Scene, f64)> {
     let pile = |physics: Physics, bond: f64, cone: FrictionCone| {
         let parameters = parameters(bond, 1e-3, 0.1, 0.5);
@@ -51,7 +51,7 @@ fn scenes() -> Vec<(&'static str, Scene, f64)> {
     let mut line = cradle();
     line.physics = LINE;
     for grain in &mut line.grains {
-        // Pressed together, so that contacts exist from the start.
+        // The discs are pressed together, so that contacts exist from the start.
         grain.position.x *= 0.999;
         grain.velocity = DVec2::new(-2.0 * grain.position.x, 0.0);
     }
@@ -66,7 +66,8 @@ fn scenes() -> Vec<(&'static str, Scene, f64)> {
     ]
 }
 
-/// Solves a step's problem by a few sweeps. Returns the residual and the impulses.
+/// A visitor that solves the contact problem of a step by this number of sweeps. It returns the residual and the
+/// impulses.
 struct Swept(u32);
 
 impl ProblemVisitor for Swept {
@@ -142,7 +143,7 @@ fn a_file_reads_back_bit_for_bit_and_solves_as_the_simulation_does() {
     }
 }
 
-/// Methods that need bodies refuse a problem in W alone; all others accept both forms.
+/// Methods that need the bodies refuse a problem that has only the matrix W. All other methods accept both forms.
 #[test]
 fn every_method_reaches_1e_6_on_every_kept_problem_or_says_that_it_cannot() {
     let mut on_matrix = 0;
@@ -175,15 +176,15 @@ fn every_method_reaches_1e_6_on_every_kept_problem_or_says_that_it_cannot() {
     assert!(on_matrix >= kept().len());
 }
 
-/// Siconos's solution, written by `tests/problems/make_reference.py`.
+/// Solution by the program Siconos, written by `tests/problems/make_reference.py`.
 #[derive(serde::Deserialize)]
 struct Reference {
     residual: f64,
     u: Vec<f64>,
 }
 
-/// Velocities are unique without friction, and in these problems also with friction: cold starts, warm starts and
-/// both solvers agree to 1e-9 of the fastest free velocity.
+/// Without friction the velocities are unique, and in these problems they are unique with friction, too: cold starts,
+/// warm starts and both solvers agree to 1e-9 of the fastest free velocity.
 #[test]
 fn velocities_are_those_that_siconos_finds() {
     let with_friction = [SICONOS, "bond_0.json", "bond_20.json", "pile_138_bond_50.json"];
@@ -208,7 +209,7 @@ fn velocities_are_those_that_siconos_finds() {
     }
 }
 
-/// Irregular grains: the block of each contact couples its normal and tangential components.
+/// With grains that are not discs, the block of each contact couples its normal and tangential components.
 #[test]
 fn methods_on_w_solve_contacts_that_couple_normal_and_tangent() {
     let mut random = random(5);

@@ -1,4 +1,4 @@
-//! Pictures, animations and videos that the window draws. These tests need a graphics driver.
+//! Tests of pictures, animations and videos that the window draws. These tests need a graphics driver.
 
 mod pictures;
 mod provenance;

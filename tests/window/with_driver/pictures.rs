@@ -1,4 +1,4 @@
-//! Pictures of the panels before the first step, which do not depend on the solver.
+//! Tests of pictures of the panels before the first step. They do not depend on the solver.
 
 #[path = "../../pictures/golden/compare.rs"]
 mod compare;
@@ -9,12 +9,12 @@ use compare::{FilterType, Tolerance, complaint, save_small};
 
 const TOLERANCE: Tolerance = Tolerance { channel: 2, pixels: 0.01 };
 
-/// Draws the window and compares it with its golden picture.
+/// Draws the window and compares the picture with the stored picture.
 fn check(robot: &mut Robot, name: &str) {
     robot.harness.remove_cursor();
     robot.frames(30);
     let mut actual = robot.harness.render().unwrap();
-    // A window is opaque, whatever its pixels contain.
+    // A window is opaque, even if some of its pixels are stored as transparent.
     actual.pixels_mut().for_each(|pixel| pixel.0[3] = 255);
     if std::env::var_os("SLUMP_BLESS").is_some() {
         save_small(&actual, name, FilterType::Adaptive);

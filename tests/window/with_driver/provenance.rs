@@ -1,9 +1,9 @@
-//! Provenance in the files that the window writes, and in their names.
+//! Tests of the facts about their origin in the files that the window writes, and in the file names.
 
 use crate::robot::*;
 use std::collections::BTreeMap;
 
-/// A window with a folder for its files.
+/// Opens a window that writes its files into a folder.
 fn open(folder: &Path) -> Robot {
     let preferences = Preferences {
         folder: folder.to_owned(),
@@ -13,7 +13,7 @@ fn open(folder: &Path) -> Robot {
     Robot::open_with_gpu(Config::of_scene("pile"), preferences)
 }
 
-/// Presses a key or button that writes one file. Returns its path.
+/// Presses a key or button that writes one file. Returns the path of the file.
 fn written(robot: &mut Robot, ask: impl Fn(&mut Robot), ending: &str) -> PathBuf {
     let folder = robot.state().preferences.folder.clone();
     ask(robot);
@@ -25,7 +25,7 @@ fn written(robot: &mut Robot, ask: impl Fn(&mut Robot), ending: &str) -> PathBuf
     files.pop().expect("a file")
 }
 
-/// The texts in a PNG file, and its size.
+/// Returns the texts in a PNG file, and the size of the picture.
 fn texts(path: &Path) -> (BTreeMap<String, String>, [u32; 2]) {
     let file = std::io::BufReader::new(std::fs::File::open(path).expect("a file"));
     let mut reader = png::Decoder::new(file).read_info().expect("a picture");
@@ -61,7 +61,7 @@ fn a_picture_of_a_run_carries_the_command_that_makes_it() {
     assert!(texts["Settings"].contains("--bond 35 --bond-acceleration 0 --dt 0.002"), "{texts:?}");
     assert_eq!((texts["Scene"].as_str(), texts["Time"].as_str()), ("pile", "0.01 s"));
     assert_eq!(texts.get("Changes"), None);
-    // The command reaches the same state: its last row equals the window's.
+    // The command line in the file computes the same state: its last row equals the row of the window.
     let words = shlex::split(&texts["Command line"]).expect("words");
     let frames = folder.path().join("frames");
     succeed(slump("").args(&words[1..]).arg("--frames").arg(&frames));
@@ -73,7 +73,7 @@ fn a_picture_of_a_run_carries_the_command_that_makes_it() {
     let row = robot.observables();
     assert_eq!(column("step"), row.step.to_string());
     assert_eq!(column("slump").parse::<f64>(), Ok(row.slump), "to the last bit");
-    // A file that no command makes says so.
+    // If no command can make the state, the file lists the changes.
     settings.parameters.bond = 5.0;
     robot.state_mut().run.change(0, settings);
     robot.key(egui::Key::ArrowRight);

@@ -1,4 +1,4 @@
-//! Videos and animations of the window's record.
+//! Tests of videos and animations of the window's recorded run.
 
 use std::io::BufReader;
 
@@ -11,7 +11,7 @@ fn film(robot: &mut Robot) -> (PathBuf, String) {
     made(robot, "Save video")
 }
 
-/// A window with pictures of this size.
+/// Opens a window that writes pictures of this size.
 pub(crate) fn open(folder: &Path, size: [u32; 2]) -> Robot {
     let preferences = Preferences {
         folder: folder.to_owned(),
@@ -24,7 +24,7 @@ pub(crate) fn open(folder: &Path, size: [u32; 2]) -> Robot {
     robot
 }
 
-/// Lets a button make a video or animation. Returns its path and the notice about it.
+/// Presses a button that makes a video or an animation. Returns the path of the file and the notice about it.
 pub(crate) fn made(robot: &mut Robot, button: &str) -> (PathBuf, String) {
     robot.click(button);
     let told = robot.written();
@@ -47,14 +47,14 @@ fn shown_ms(frame: &Frame) -> f64 {
     f64::from(numerator) / f64::from(denominator)
 }
 
-/// Mean difference of the channels of two pictures, 0 … 255.
+/// Returns the mean difference of the channels of two pictures, from 0 to 255.
 fn difference(one: &RgbaImage, other: &RgbaImage) -> f64 {
     let differences = one.as_raw().iter().zip(other.as_raw());
     let sum: u64 = differences.map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
     sum as f64 / one.as_raw().len() as f64
 }
 
-/// The first comment of a GIF. It is in blocks of at most 255 bytes, each after its length.
+/// Returns the first comment of a GIF. The file stores it in blocks of at most 255 bytes, each after its length.
 fn comment(gif: &[u8]) -> String {
     let begin = gif.windows(2).position(|two| two == [0x21, 0xfe]).expect("a comment") + 2;
     let (mut rest, mut words) = (&gif[begin..], Vec::new());
@@ -82,15 +82,15 @@ fn the_record_is_an_animation_at_the_pace_of_time() {
         assert_eq!(frame.buffer().dimensions(), (161, 100));
     }
     assert!(difference(frames[0].buffer(), frames[5].buffer()) > 0.5, "the pile moves");
-    // It names its origin, and the same record makes the same file.
+    // The file contains the facts about its origin, and the same recorded run gives the same file.
     let bytes = bytes(&path);
     let said = comment(&bytes);
     assert!(said.contains("Command line: slump --headless "), "{said}");
     assert!(bytes == std::fs::read(animation(&mut robot)).unwrap());
 }
 
-/// A GIF's pictures follow each other by whole hundredths of a second, at least two. Other rates are not requested of
-/// it; the pace of time stays as requested.
+/// The time between pictures of a GIF is a multiple of 10 ms and at least 20 ms. If the user asks for another rate, the
+/// number of pictures changes, but the pace of time does not.
 #[test]
 #[ignore = "needs a graphics driver"]
 fn an_animation_keeps_its_pace_where_it_cannot_have_the_pictures_asked_for() {
@@ -130,7 +130,7 @@ mod with_ffmpeg {
         // An odd side becomes one pixel longer.
         let mut robot = open(folder.path(), [161, 100]);
         robot.take_steps(200);
-        // The position of the timeline does not matter.
+        // The video must not depend on the position of the timeline.
         robot.seek(0.05);
         let (path, told) = film(&mut robot);
         assert!(told.ends_with(" of 6 pictures"), "0 to 0.2 s at 25 a second: {told}");
@@ -139,7 +139,7 @@ mod with_ffmpeg {
         let lines = video.comment;
         assert!(lines.contains("Command line: slump --headless "), "{lines}");
         assert!(lines.contains("--duration 0.2"), "{lines}");
-        // The same record makes the same file; ten times slower it has ten times as many pictures.
+        // The same recorded run gives the same file. Ten times slower, it has ten times as many pictures.
         let (again, _) = film(&mut robot);
         assert!(std::fs::read(&path).unwrap() == std::fs::read(&again).unwrap());
         let field = robot.harness.get_by_role_and_label(egui::Role::SpinButton, "Film");
@@ -158,7 +158,7 @@ mod with_ffmpeg {
         let mut robot = open(folder.path(), [240, 120]);
         robot.state_mut().preferences.style.colour_by = slump::render::ColourBy::Speed;
         let base = robot.settings();
-        // The second world has such long steps that pictures show some of its moments twice.
+        // The steps of the second simulation are so long that two consecutive pictures can show the same state.
         robot.send(Command::Compare(vec![base.over(1e-3), base.over(5e-3)]));
         robot.take_steps(20);
         robot.state_mut().preferences.video_rate_hz = 240.0;

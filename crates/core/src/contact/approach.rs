@@ -1,9 +1,9 @@
 //! Gap and normal between two bodies, and the time at which two freely moving bodies meet.
 //!
-//! **Time of impact.** A body is convex, so its distance is a convex function along a straight path: the tangent of
-//! the gap never exceeds the gap, and Newton's iteration approaches its first zero from below without passing it.
-//! With an acceleration, the parabola of gap, speed and acceleration replaces the tangent. If the gap stops closing,
-//! the two bodies pass each other; the tangent at the beginning alone cannot show that.
+//! **Time of impact.** The bodies are convex, so along a straight path the gap is a convex function of time. Its
+//! tangent never exceeds it, so Newton's iteration approaches the first zero of the gap from below and never passes
+//! it. If the bodies accelerate, the parabola with the present gap, speed and acceleration replaces the tangent. If
+//! the gap stops closing, the two bodies pass each other. The tangent at the beginning alone cannot show this.
 
 use glam::DVec2;
 
@@ -13,14 +13,14 @@ use super::pair::Contact;
 use crate::number::Parts;
 use crate::world::World;
 
-/// Limit for Newton's iterations to a meeting. They converge quadratically, but only by halving at first if the two
-/// bodies graze each other.
+/// Limit for Newton's iterations to the time of impact. The iterations converge quadratically, except if the two
+/// bodies graze each other: then each of the first iterations only halves the error.
 const MOST_STEPS: u32 = 60;
-/// Gap that counts as zero because of rounding, in radii.
+/// Gap that counts as zero because of rounding, in radii of the grain.
 const ROUNDING_IN_RADII: f64 = 1e-13;
 
-/// Normal and gap (m) between a disc (centre, radius; m) and another body. `None` if another feature reports the
-/// nearest point.
+/// Returns the normal and the gap (m) between a disc with the given centre and radius (m) and another body. `None` if
+/// the nearest point is a corner that another feature (another part of a boundary) reports.
 #[inline(always)]
 pub(super) fn approach(
     world: &World,
@@ -45,8 +45,9 @@ pub(super) fn approach(
     Some(disc_gap(offset, radius + other_radius, axes))
 }
 
-/// Normal (from j to i) and gap of two discs, with i at `offset` from j. Coincident centres get a normal along x, so
-/// that the step stays finite.
+/// Returns the normal (from j to i) and the gap (m) of two discs. `offset` is the position of disc i relative to disc
+/// j (m), and `radii` the sum of the two radii (m). If the centres coincide, the normal is along x, so that the step
+/// stays finite.
 #[inline(always)]
 fn disc_gap(offset: DVec2, radii: f64, axes: usize) -> (DVec2, f64) {
     if axes == 1 {
@@ -58,7 +59,8 @@ fn disc_gap(offset: DVec2, radii: f64, axes: usize) -> (DVec2, f64) {
 }
 
 impl Contact {
-    /// The present gap of the pair, m. `None` if the grain now touches another feature instead.
+    /// Returns the gap of the pair at the present positions, m. `None` if the grain now touches another feature
+    /// (another part of a boundary) instead.
     pub(crate) fn gap_now(&self, world: &World, near: &Candidates, axes: usize) -> Option<f64> {
         let (grain, other) = (self.grain as usize, Numbering::of(world).other(self.other));
         let (position, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
@@ -66,32 +68,34 @@ impl Contact {
     }
 }
 
-/// Selects pairs with a gap that are contacts too, because they may touch within the step.
+/// Criterion by which pairs that do not touch yet are contacts too, because they may touch within the step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LookAhead {
-    /// Δt, s.
+    /// Time step Δt, s.
     pub time_step_secs: f64,
-    /// Pairs that would approach to less than this distance are contacts, m.
+    /// Distance, m. Pairs that would approach each other to less than this distance within the step are contacts.
     pub distance: f64,
-    /// Pairs farther apart than this are not contacts, m.
+    /// Largest gap, m. Pairs with a larger gap are not contacts, unless they are bonded.
     pub reach: f64,
-    /// Which of the contacts are in touch.
+    /// Criterion by which a contact is in touch, so that it can pull.
     pub in_touch: InTouch,
 }
 
-/// Criterion by which a contact is in touch and can pull. Other contacts are only near.
+/// Criterion by which a contact is in touch, so that it can pull. The grains of contacts that are not in touch are
+/// only near each other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum InTouch {
-    /// Pairs that touch as the step begins.
+    /// A pair is in touch if it touches when the step begins.
     Touching,
-    /// Pairs that have touched. They stay bonded, and contacts, until the bond breaks.
+    /// A pair is in touch if it has touched. It remains bonded, and in the contact list, until the bond breaks.
     Bonded,
-    /// Pairs with at most this gap as the step begins, m.
+    /// A pair is in touch if its gap is at most this length (m) when the step begins.
     Within(f64),
 }
 
 impl LookAhead {
-    /// The same look-ahead, with all pairs up to `range` (m) apart in touch.
+    /// Returns a copy of this criterion in which all pairs with a gap of at most `range` (m) are in touch, so that
+    /// they can pull.
     pub(crate) fn pulling_within(self, range: f64) -> Self {
         Self {
             distance: self.distance.max(range),
@@ -101,10 +105,11 @@ impl LookAhead {
         }
     }
 
-    /// The gap that a grain of this velocity (m/s) may close by its own speed, m. Bonds may be open however slow
-    /// their grains are, so with bonds it is half the reach.
+    /// Returns the gap that a grain of this velocity (m/s) may close by its own speed within the step, m. If pairs
+    /// stay bonded, it is half of `reach` (the largest gap of a contact), because bonds may be open even if their
+    /// grains are slow.
     pub(crate) fn way_of_grain(&self, velocity: DVec2) -> f64 {
-        /// Allowance for the rounding of a speed.
+        /// Factor that allows for the rounding of a speed.
         const ROUNDING: f64 = 1.0 + 1e-9;
         match self.in_touch {
             InTouch::Bonded => 0.5 * self.reach,
@@ -115,7 +120,8 @@ impl LookAhead {
         }
     }
 
-    /// Detection distance for walls and fixed discs, m, if the fastest wall moves by `way_of_walls` in the step.
+    /// Returns the detection distance for walls and fixed discs, m. The fastest wall moves by `way_of_walls` (m) in
+    /// the step.
     pub(crate) fn way_of_others(&self, way_of_walls: f64) -> f64 {
         let of_bonds =
             if matches!(self.in_touch, InTouch::Bonded) { 0.5 * self.reach } else { 0.0 };
@@ -126,26 +132,27 @@ impl LookAhead {
 /// Motion of a grain relative to the other body of a contact during a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RelativeMotion {
-    /// Offset of the starting point from the present relative position, m.
+    /// Relative position at time 0 of the motion, minus the present relative position, m.
     pub offset: DVec2,
-    /// v, m/s.
+    /// Relative velocity v, m/s, at time 0.
     pub velocity: DVec2,
-    /// a, m/s².
+    /// Relative acceleration a, m/s².
     pub acceleration: DVec2,
 }
 
 impl RelativeMotion {
-    /// Relative displacement x(s) − x, m.
+    /// Returns the relative displacement after `secs` seconds from the present relative position, m.
     fn way(&self, secs: f64) -> DVec2 {
         self.offset + secs * (self.velocity + 0.5 * secs * self.acceleration)
     }
 
-    /// Relative velocity at s, m/s.
+    /// Relative velocity after `secs` seconds, m/s.
     pub(crate) fn velocity_at(&self, secs: f64) -> DVec2 {
         self.velocity + secs * self.acceleration
     }
 
-    /// Normal and gap at s. `None` if another feature reports the nearest point.
+    /// Returns the normal and the gap (m) after `secs` seconds. `None` if the nearest point is a corner that another
+    /// feature (another part of a boundary) reports.
     pub(crate) fn approach(
         &self,
         world: &World,
@@ -160,7 +167,8 @@ impl RelativeMotion {
         approach(world, candidates, place + self.way(secs), radius, other, axes)
     }
 
-    /// Time of impact: the first time in the given interval (s) at which the two bodies touch, and their normal then.
+    /// Returns the time of impact (the first time in the interval `from` to `to`, s, at which the two bodies touch)
+    /// and the normal at that time. `None` if they do not meet.
     pub(crate) fn time_of_impact(
         &self,
         world: &World,
@@ -187,7 +195,8 @@ impl RelativeMotion {
     }
 }
 
-/// The first h > 0, s, at which a gap (m) with opening speed (m/s) and acceleration (m/s²) is zero.
+/// Returns the first time h > 0, s, at which a gap (m) that opens with this speed (m/s) and acceleration (m/s²) is
+/// zero. `None` if the gap never closes.
 fn first_zero(gap: f64, speed: f64, acceleration: f64) -> Option<f64> {
     let squared = speed * speed - 2.0 * acceleration * gap;
     if squared < 0.0 {
@@ -209,7 +218,7 @@ mod tests {
         assert_eq!(first_zero(2.0, -1.0, 0.0), Some(2.0));
         assert_eq!(first_zero(2.0, 1.0, 0.0), None);
         assert_eq!(first_zero(0.0, 3.0, -2.0), Some(3.0));
-        // ½·2·h² − 3h + 2 is zero at h = 1, and again at h = 2.
+        // The gap ½·2·h² − 3h + 2 is zero at h = 1, and again at h = 2.
         assert_eq!(first_zero(2.0, -3.0, 2.0), Some(1.0));
         assert_eq!(first_zero(2.0, -1.0, 2.0), None);
         let h = first_zero(2.0, 1.0, -2.0).expect("it falls back");

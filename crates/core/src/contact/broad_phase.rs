@@ -1,27 +1,29 @@
-//! Search for nearby discs: with a grid, or with a tree if their sizes differ much.
+//! Search for nearby discs, with a grid if the discs have similar sizes and with a tree otherwise.
 //!
-//! **The grid** is a cell list over a hashed uniform grid: points sorted by cell, in linear time and memory. Cells
-//! are square and as wide as the largest distance of interest, so the two points of a pair lie in the same cell or in
-//! neighbouring cells. Each point looks at its own cell and at half of the 8 around it (of the 2 on a line), so each
-//! pair is found once. A cell's index is hashed into as many buckets as there are points: a grain that flies far away
-//! costs one bucket instead of a larger grid, and a scene far from the origin costs nothing. Points are sorted by
-//! bucket with a counting sort; the stored cell distinguishes points of other cells in the same bucket.
+//! **The grid** is a cell list over a hashed uniform grid: points sorted by cell, in linear time and memory. The
+//! cells are squares, as wide as the largest distance at which pairs are searched. So the two points of a pair lie in
+//! the same cell or in neighbouring cells. Each point is compared with the points of its own cell and of half of the
+//! 8 cells around it (on a line, of half of 2), so each pair is found once. The index of a cell is hashed into about
+//! as many buckets as there are points. So a grain that flies far away costs one bucket instead of a larger grid, and
+//! a scene far from the origin costs nothing. Points are sorted by bucket with a counting sort. The stored cell of
+//! each point distinguishes points of different cells in the same bucket.
 //!
 //! **The tree** is parry's bounding volume hierarchy, for discs of very different sizes. Grid cells are as wide as
-//! the largest disc, so each of many small discs would look at very many others; the tree has no such length. It is
-//! built once, then refitted to the moved discs and improved incrementally. Rebuilding it each time is slower than
-//! the grid (`cargo bench --bench broad_phase`).
+//! the largest disc, so each small disc would be compared with very many others. A tree does not need a common cell
+//! width. The tree is built once. After that, its bounding boxes are adjusted to the moved discs, and its structure
+//! is improved a little in each search. According to `cargo bench --bench broad_phase`, building the tree again for
+//! each search is slower than the grid.
 
 use glam::DVec2;
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 
-/// The tree finds the pairs if the largest disc, with or without its skin, is more than this many times as large as
-/// the smallest; otherwise the grid does. At 1:1.5 both take about the same time; at 1:20 the grid takes 1.2 to 18
-/// times as long (`cargo bench --bench broad_phase`).
+/// Ratio of the largest to the smallest disc, with or without skins, above which the tree finds the pairs. Otherwise
+/// the grid finds them. At a ratio of 1.5 both take about the same time. At 20 the grid takes 1.2 to 18 times as long
+/// as the tree (`cargo bench --bench broad_phase`).
 const SIZE_RATIO_OF_TREE: f64 = 4.0;
 
-/// Finder of pairs of discs.
+/// Search for pairs of nearby discs.
 #[derive(Clone, Debug, Default)]
 pub struct BroadPhase {
     radii_differ: bool,
@@ -41,21 +43,21 @@ impl Default for PairFinder {
 }
 
 impl BroadPhase {
-    /// Chooses the method for discs of these radii, m.
+    /// Prepares the search for discs of these radii, m. The radii decide between grid and tree.
     pub fn of(radii: &[f64]) -> Self {
         let (radii_differ, _) = spread(radii.iter().copied());
         Self { radii_differ, ..Self::default() }
     }
 
-    /// Prepares the next search for a different number of discs.
+    /// Discards the tree, because the next search has a different number of discs.
     pub(crate) fn forget_discs(&mut self) {
         if matches!(self.finder, PairFinder::Tree(_)) {
             self.finder = PairFinder::default();
         }
     }
 
-    /// Calls `found` once for every pair of discs whose distance is below the sum of their extents (radii with skins,
-    /// m), and for some other pairs.
+    /// Calls `found` once for every pair of discs whose distance is below the sum of their extents (radius plus
+    /// search margin, m). It is also called for some pairs that are farther apart.
     pub fn pairs<const AXES: usize>(
         &mut self,
         centres: &[DVec2],
@@ -85,7 +87,7 @@ impl BroadPhase {
     }
 }
 
-/// Returns true if the sizes differ enough for the tree, and the largest size.
+/// Returns true if the sizes differ so much that the tree is used, and the largest size (m).
 fn spread(sizes: impl Iterator<Item = f64> + Clone) -> (bool, f64) {
     let largest = sizes.clone().fold(0.0, f64::max);
     let smallest = sizes.fold(f64::INFINITY, f64::min);
@@ -95,20 +97,20 @@ fn spread(sizes: impl Iterator<Item = f64> + Clone) -> (bool, f64) {
 /// The index of a grid cell along each axis.
 type GridCell = [i64; 2];
 
-/// A cell list. All its memory is kept between rebuilds.
+/// A cell list (hashed uniform grid) of points. Its allocated memory is kept between rebuilds.
 #[derive(Clone, Debug, Default)]
 pub struct Grid {
     cells_per_metre: f64,
-    /// Bucket b contains entries `starts[b] .. starts[b + 1]`; the number of buckets is a power of two.
+    /// Bucket b contains the entries `starts[b] .. starts[b + 1]`. The number of buckets is a power of two.
     starts: Vec<u32>,
-    /// Point indices, bucket by bucket, rising within a bucket.
+    /// Indices of the points, bucket by bucket, in increasing order within a bucket.
     entries: Vec<u32>,
-    /// The cell of each entry.
+    /// Grid cell of the point in each entry.
     cells: Vec<GridCell>,
 }
 
 impl Grid {
-    /// Sorts `positions` (m) into cells `cell_width` (m) wide.
+    /// Sorts the points at `positions` (m) into square cells of width `cell_width` (m).
     pub fn rebuild<const AXES: usize>(&mut self, positions: &[DVec2], cell_width: f64) {
         self.cells_per_metre = 1.0 / cell_width;
         let buckets = positions.len().next_power_of_two();
@@ -123,7 +125,7 @@ impl Grid {
         }
         self.entries.resize(positions.len(), 0);
         self.cells.resize(positions.len(), [0; 2]);
-        // Fill each bucket from its end, which leaves its start in place. Walking the points backwards leaves them in
+        // Fill each bucket from its end down to its start. Going through the points backwards leaves them in
         // increasing order within the bucket.
         for (index, &position) in positions.iter().enumerate().rev() {
             let cell = self.cell::<AXES>(position);
@@ -133,15 +135,15 @@ impl Grid {
             self.entries[slot] = index as u32;
             self.cells[slot] = cell;
         }
-        // Entry b + 1 is now the start of bucket b: move the list down by one.
+        // Element b + 1 of `starts` is now the start of bucket b, so move the list down by one element.
         self.starts.copy_within(1.., 0);
         self.starts[buckets] = positions.len() as u32;
     }
 
-    /// Calls `found` once for every pair of points in the same or in neighbouring cells, which includes all pairs
-    /// within one cell width.
+    /// Calls `found` once for every pair of points that are in the same cell or in neighbouring cells. These include
+    /// all pairs within one cell width.
     pub fn pairs<const AXES: usize>(&self, mut found: impl FnMut(u32, u32)) {
-        /// Forward neighbours, row by row. On a line only the first exists.
+        /// Offsets to half of the neighbouring cells. On a line only the first exists.
         const FORWARD: [GridCell; 4] = [[1, 0], [-1, 1], [0, 1], [1, 1]];
         let forward = if AXES == 1 { &FORWARD[..1] } else { &FORWARD };
         for (slot, (&point, &cell)) in self.entries.iter().zip(&self.cells).enumerate() {
@@ -169,8 +171,9 @@ impl Grid {
     }
 
     fn bucket(&self, [x, y]: GridCell) -> usize {
-        // Odd multipliers with well-mixed high bits (the golden ratio's and a similar one's) spread neighbouring
-        // cells over the buckets. The high half is folded in because only low bits are kept.
+        // Multiplication by odd numbers with well-mixed high bits (the first is derived from the golden ratio)
+        // spreads neighbouring cells over the buckets. The high half of the product is combined with the low half,
+        // because only low bits are used.
         let mixed = (x as u64)
             .wrapping_mul(0x9e37_79b9_7f4a_7c15)
             .wrapping_add((y as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f));
@@ -178,7 +181,7 @@ impl Grid {
     }
 }
 
-/// A tree over discs. The pairs it finds depend only on the discs, not on its history.
+/// A bounding volume hierarchy of discs. The pairs that it finds depend only on the discs, not on earlier searches.
 #[derive(Clone, Default)]
 struct Tree {
     tree: Bvh,
@@ -192,7 +195,7 @@ impl std::fmt::Debug for Tree {
 }
 
 impl Tree {
-    /// Updates the tree to discs (centre, radius; m). Their number must not change.
+    /// Updates the tree to these discs (centre and radius, m). The number of discs must not change between calls.
     fn update(&mut self, discs: impl Iterator<Item = (DVec2, f64)>) {
         let boxes = discs
             .map(|(centre, radius)| Aabb::from_half_extents(centre, DVec2::splat(radius)))

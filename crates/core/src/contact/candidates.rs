@@ -1,10 +1,12 @@
-//! The pairs that may touch soon, kept until some grain has moved far enough to change them.
+//! The candidates: pairs of bodies that may touch soon. The list is kept until a grain has moved so far that another
+//! pair could touch.
 //!
-//! Each body has a skin, and a pair is a candidate if its gap is below the sum of its two skins. No pair outside the
-//! list can touch before one of its bodies has moved by its own skin, so the list is rebuilt only then. A skin is a
-//! fraction of the mean diameter, but not larger than the disc. So each disc has few candidates among discs of its
-//! size and larger, and the list grows with the number of discs, whatever their sizes. Candidates are sorted by (i,
-//! other): the order of contacts depends only on positions and numbering, not on when the list was built.
+//! Each body has a search margin, its *skin* (m). A pair is a candidate if its gap is below the sum of its two skins.
+//! No pair outside the list can touch before one of its bodies has moved by its own skin, so the list is rebuilt only
+//! then. A skin is a fraction of the mean diameter, but not larger than the disc. So each disc has few candidates
+//! among discs of its size and larger discs, and the list grows in proportion to the number of discs, whatever their
+//! sizes are. Candidates are sorted by the numbers of their bodies (i, other), so the order of contacts depends only
+//! on positions and numbering and not on the time at which the list was built.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -17,58 +19,62 @@ use super::seam_search;
 use crate::error::{Error, Result};
 use crate::world::{Carry, World};
 
-/// How far the candidate search looks, m.
+/// Search distances of the candidate search, m.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reach {
-    /// Pairs with a gap below this are candidates. Fewer if one disc is smaller than that.
+    /// Search distance, m: pairs with a smaller gap are candidates. If a disc is smaller than this distance, its
+    /// pairs are candidates only up to a smaller gap.
     pub skin: f64,
-    /// Pairs with a gap below this touch. 0 except for a rounding tolerance.
+    /// Largest gap of a touching pair, m. It is 0 or a small tolerance for rounding.
     pub gap_tolerance: f64,
 }
 
-/// Candidate pairs of a world.
+/// The candidate pairs of a world: pairs of bodies that may touch soon.
 ///
-/// A file contains the pairs found and the positions at which they were found, because the rebuild schedule depends on
-/// them. All other fields are rebuilt from the world.
+/// A saved file contains the pairs and the positions at which they were found, because these determine when the list
+/// is next rebuilt. All other fields are recomputed from the world.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Candidates {
     reach: Reach,
     #[serde(skip)]
     features: Vec<Feature>,
-    /// The index of the boundary that each feature is a part of.
+    /// The index of the boundary to which each feature (half-space, segment or polygon) belongs.
     #[serde(skip)]
     boundary_of: Vec<usize>,
-    /// Longest displacement of a feature since the last build, as seen by grains, m.
+    /// Largest displacement of a feature near any grain since the list was last built, m.
     way_of_features: f64,
-    /// Longest displacement of a fixed disc since then, m.
+    /// Largest displacement of a fixed disc since the list was last built, m.
     way_of_discs: f64,
-    /// Displacement since then of images beyond a border relative to their discs, m.
+    /// Displacement of periodic images beyond a sheared border relative to their discs since the list was last built,
+    /// m.
     way_of_images: f64,
     #[serde(skip)]
     broad_phase: BroadPhase,
-    /// Radii of grains, then of fixed discs, m.
+    /// Radii of the grains, then of the fixed discs, m.
     #[serde(skip)]
     radii: Vec<f64>,
-    /// Skins of these bodies at the last build, m: how far each may move before the list is rebuilt.
+    /// Skins (search margins) of the grains and fixed discs when the list was last built, m: the distance that each
+    /// may move before the list is rebuilt.
     skins: Vec<f64>,
     skin_of_features: f64,
-    /// Centres of these bodies at the last build, m.
+    /// Centres of the grains and fixed discs when the list was last built, m.
     centres: Vec<DVec2>,
-    /// Pairs of discs in the order in which they were found.
+    /// Pairs of discs, in the order in which the search found them.
     #[serde(skip)]
     pairs: Vec<(u32, u32)>,
-    /// Grain i's candidates are `others[starts[i] .. starts[i + 1]]`, in increasing order.
+    /// Start indices in `others`: grain i has the candidates `others[starts[i] .. starts[i + 1]]`, in increasing
+    /// order.
     starts: Vec<u32>,
     others: Vec<u32>,
 }
 
 impl Candidates {
-    /// Prepares the search in a world.
+    /// Prepares the search for candidate pairs in a world. The list of pairs is still empty.
     ///
     /// # Errors
-    /// If a boundary has no valid shape.
+    /// If a boundary does not have a valid shape.
     pub fn new(world: &World, reach: Reach) -> Result<Self> {
         let (mut features, mut boundary_of) = (Vec::new(), Vec::new());
         for (index, boundary) in world.boundaries.iter().enumerate() {
@@ -96,18 +102,18 @@ impl Candidates {
         })
     }
 
-    /// Candidates with the same reach, of which nothing is built yet.
+    /// Returns candidates with the same search distances, but with an empty list.
     ///
     /// # Errors
-    /// Same as [`Self::new`].
+    /// The errors of [`Self::new`].
     pub(crate) fn unbuilt(&self, world: &World) -> Result<Self> {
         Self::new(world, self.reach)
     }
 
-    /// Completes candidates read from a file, in the world they belong to.
+    /// Completes candidates that were read from a file, with the data of the world to which they belong.
     ///
     /// # Errors
-    /// If they refer to bodies that do not exist.
+    /// If the candidates refer to bodies that do not exist.
     pub(crate) fn complete(self, world: &World) -> Result<Self> {
         let Self { reach, way_of_features, way_of_discs, way_of_images, .. } = self;
         let Self { skins, skin_of_features, centres, starts, others, .. } = self;
@@ -132,8 +138,9 @@ impl Candidates {
         Ok(Self { skins, centres, starts, others, ..whole })
     }
 
-    /// Unit normal of a feature towards `centre` and distance from it (m), as in [`Feature::distance`]. With periodic
-    /// borders, those of the feature's nearest image.
+    /// Returns the unit normal of a feature (half-space, segment or polygon) towards `centre`, and the distance of
+    /// `centre` from the feature (m), as in [`Feature::distance`]. With periodic borders, the nearest periodic image
+    /// of the feature counts.
     #[inline]
     pub(crate) fn distance(
         &self,
@@ -147,23 +154,24 @@ impl Candidates {
         }
     }
 
-    /// The features of the boundaries.
+    /// The features (half-spaces, segments and polygons) of all boundaries.
     pub(crate) fn features(&self) -> &[Feature] {
         &self.features
     }
 
-    /// Finds the common corners of boundaries again, after the motion of a boundary has changed.
+    /// Searches again for the corners that boundaries share, after the motion of a boundary has changed.
     pub(crate) fn find_seams(&mut self, world: &World) {
         seam_search::find(&mut self.features, &self.boundary_of, world);
     }
 
-    /// The index of the boundary that a feature is a part of.
+    /// Returns the index of the boundary to which a feature (half-space, segment or polygon) belongs.
     pub(crate) fn boundary_of(&self, feature: usize) -> usize {
         self.boundary_of[feature]
     }
 
-    /// Moves the features with their boundaries, which have just moved. `carry_of` gives a boundary's displacement by
-    /// its index. Discs have moved by at most `way_of_discs`, m.
+    /// Moves the features (half-spaces, segments, polygons) with their boundaries, which have just moved. `carry_of`
+    /// returns the displacement of the boundary with a given index, or `None` for a boundary at rest. Fixed discs
+    /// have moved by at most `way_of_discs` (m).
     pub(crate) fn follow<'a>(
         &mut self,
         world: &World,
@@ -173,8 +181,8 @@ impl Candidates {
         let mut longest = 0f64;
         for (feature, &boundary) in self.features.iter_mut().zip(&self.boundary_of) {
             let Some(carry) = carry_of(boundary) else { continue };
-            // A turning half-space changes its distance from a grain in proportion to the grain's distance from the
-            // pivot.
+            // A half-space that rotates changes its distance from a grain in proportion to the distance of the grain
+            // from the pivot.
             let far = |from: f64, place: DVec2| from.max(place.distance(carry.pivot));
             let reach = match (carry.angle == 0.0, feature.is_half_space()) {
                 (true, _) => 0.0,
@@ -188,7 +196,7 @@ impl Candidates {
         self.way_of_discs += way_of_discs;
     }
 
-    /// Records that images beyond a border have moved by `way` relative to their discs, m.
+    /// Adds `way` (m) to the displacement of periodic images beyond a sheared border relative to their discs.
     pub(crate) fn slide(&mut self, way: f64) {
         self.way_of_images += way.abs();
     }
@@ -198,18 +206,20 @@ impl Candidates {
         self.reach.gap_tolerance
     }
 
-    /// Candidates of grain `index`, in increasing order.
+    /// Returns the numbers of the bodies with which the grain `index` forms candidate pairs, in increasing order.
     pub fn of(&self, index: usize) -> &[u32] {
         &self.others[self.starts[index] as usize..self.starts[index + 1] as usize]
     }
 
-    /// Rebuilds the list if the grains have moved too far for the present one. Returns true if it did.
+    /// Rebuilds the list of candidates if the grains have moved so far that the present list may be incomplete.
+    /// Returns true if the list was rebuilt.
     pub fn update<const AXES: usize>(&mut self, world: &World) -> bool {
         self.update_ahead::<AXES>(world, |_| 0.0, 0.0)
     }
 
-    /// Like [`update`](Self::update), but also lists pairs whose gap the displacements of their bodies (m) can close:
-    /// `way_of_grain` for a grain, `way_of_others` for walls and fixed discs.
+    /// Like [`update`](Self::update), but the list also contains pairs whose gap can be closed by the displacements
+    /// of their bodies in the next step. `way_of_grain` returns the displacement of a grain (m), and `way_of_others`
+    /// is the displacement of walls and fixed discs (m).
     pub(crate) fn update_ahead<const AXES: usize>(
         &mut self,
         world: &World,
@@ -238,7 +248,9 @@ impl Candidates {
         !still_good
     }
 
-    /// Makes each skin at least twice the expected displacement, so that the list lasts more than one step.
+    /// Sets the skin (search margin) of each body to at least twice its expected displacement, so that the list can
+    /// be used for more than one step. `of_grain` returns the displacement of a grain, and `of_others` is the
+    /// displacement of fixed discs and features (half-spaces, segments, polygons), m.
     fn set_skins(&mut self, grains: usize, of_grain: impl Fn(usize) -> f64, of_others: f64) {
         let usual = 0.5 * self.reach.skin;
         self.skin_of_features = usual.max(2.0 * of_others);
@@ -259,7 +271,8 @@ impl Candidates {
         let extent = |at: usize| self.radii[at] + self.skins[at];
         let keep = |i: u32, j: u32| {
             let (first, second) = (i.min(j) as usize, i.max(j) as usize);
-            // Fixed discs come last, so in a pair whose first disc is fixed nothing moves.
+            // Fixed discs have the largest indices. If the first disc of a pair is fixed, so is the second, and the
+            // pair is omitted.
             if first < grain_count
                 && length::<AXES>(world.shortest(centres[first] - centres[second]))
                     < extent(first) + extent(second)
@@ -290,7 +303,7 @@ impl Candidates {
         }
         self.others.clear();
         self.others.resize(self.pairs.len(), 0);
-        // Fill each range from its start; the start moves to the range's end meanwhile.
+        // Fill each range from its start. While a range is filled, its stored start moves to its end.
         for &(first, second) in &self.pairs {
             let place = &mut self.starts[first as usize];
             self.others[*place as usize] = second;
@@ -304,7 +317,8 @@ impl Candidates {
         }
     }
 
-    /// Appends the features within reach to each grain's discs.
+    /// Adds the features (half-spaces, segments, polygons) within reach of each grain to the candidates of that
+    /// grain.
     fn add_features(&mut self, world: &World) {
         if self.features.is_empty() {
             return;
@@ -315,7 +329,7 @@ impl Candidates {
             let reach = grains.radii[index] + self.skins[index] + self.skin_of_features;
             images::distance_to_any_point(feature, world, grains.positions[index]) < reach
         };
-        // The pairs are no longer needed: reuse their memory for the longer list.
+        // The list of pairs is no longer needed, so its memory is used for the longer list.
         self.pairs.clear();
         for index in 0..grains.len() {
             let grain = index as u32;
@@ -331,7 +345,7 @@ impl Candidates {
     }
 }
 
-/// Length of a vector: along x alone in scenes with one axis.
+/// Returns the length of a vector, m. In scenes on a line only the x component counts.
 #[inline(always)]
 fn length<const AXES: usize>(way: DVec2) -> f64 {
     if AXES == 1 { way.x.abs() } else { way.length() }
@@ -342,7 +356,8 @@ mod tests {
     use super::*;
     use crate::world::{Grain, Grains, Gravity};
 
-    /// Discs in rows, with centres three radii apart; their radii repeat `radii`.
+    /// Returns a world with `count` discs in rows. Their centres are three of the largest radii apart, and their
+    /// radii repeat `radii`.
     fn rows(count: usize, radii: &[f64], mean_diameter: f64) -> World {
         let largest = radii.iter().copied().fold(0.0, f64::max);
         let columns = (count as f64).sqrt() as usize;
@@ -367,7 +382,7 @@ mod tests {
         assert!(candidates.update::<2>(&world));
         let at_rest = candidates.others.len();
         let fast = 777;
-        // It sees all others, and no other pair becomes a candidate.
+        // The fast grain forms a candidate pair with every other grain. No other new pair becomes a candidate.
         let way = |grain: usize| if grain == fast { 1e3 } else { 0.0 };
         assert!(candidates.update_ahead::<2>(&world, way, 0.0));
         assert_eq!(candidates.others.len(), at_rest + count - 1);
@@ -386,7 +401,8 @@ mod tests {
             candidates.update::<2>(&world);
             assert!(candidates.others.len() < 24 * count, "{}", candidates.others.len());
         }
-        // The same next to a disc as large as all of them together.
+        // The limit on the number of candidates is also valid next to one disc that is as large as all the other
+        // discs together.
         let count = 4_000;
         let mut world = rows(count, &[1e-3], 1.0);
         let large = Grain::at_rest(DVec2::new(-2.0, 0.0), 2.0);

@@ -1,4 +1,4 @@
-//! The contacts of one step. A contact that existed in the step before keeps its impulses.
+//! The list of the contacts of one step. A contact that existed in the previous step keeps its impulses.
 
 use std::ops::Range;
 
@@ -16,10 +16,11 @@ use crate::number::Parts;
 use crate::threads;
 use crate::world::World;
 
-/// Grains whose contacts one thread finds at a time: about a hundred microseconds of work.
+/// Number of grains whose contacts one thread finds at a time. The search takes about a hundred microseconds for this
+/// many grains.
 const GRAINS_IN_PART: usize = 2048;
 
-/// The contact data that a stepper reads and changes, as separate columns.
+/// The columns of a [`ContactList`] that a stepper reads or changes.
 pub(crate) struct ContactParts<'a> {
     pub contacts: &'a [Contact],
     pub found_in: &'a [u64],
@@ -28,42 +29,48 @@ pub(crate) struct ContactParts<'a> {
     pub sums: &'a mut StepSums,
 }
 
-/// The contacts of a step, sorted by (i, other), and their impulses. Memory is kept between steps.
+/// The contacts of a step, sorted by their bodies (i, other), with their impulses and other data, one column for each
+/// kind. The list keeps its allocated memory from step to step.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactList {
     now: ContactColumns,
-    /// Kept for its memory only: the next step fills it.
+    /// Contacts of the previous step while the present contacts are searched for. Afterwards only its allocated
+    /// memory is used.
     #[serde(skip)]
     before: ContactColumns,
-    /// Kept for its memory only: the contacts that each thread finds.
+    /// Contacts that each thread finds. Kept between steps for the allocated memory only.
     #[serde(skip)]
     parts: Vec<ContactColumns>,
-    /// True if pairs with a gap are among the contacts.
+    /// True if the list also contains pairs that do not touch yet (pairs with a gap).
     looks_ahead: bool,
-    /// Index of the present step, recorded for contacts found from now on.
+    /// Index of the present step, which contacts record when they are found.
     step: u64,
-    /// Sums transmitted by pairs in a step that is taken in pieces; empty if the step is taken as a whole.
+    /// Sums of the impulses that each pair transmits in a step that is divided into shorter steps (pieces). Empty if
+    /// the step is undivided.
     sums: StepSums,
-    /// True if the present step is summed up.
+    /// True if the impulses of the present step are summed, because it is divided into shorter steps (pieces).
     #[serde(skip)]
     is_summed_up: bool,
 }
 
 impl ContactList {
-    /// Sets the index of the step in which contacts are found from now on.
+    /// Begins the step with this index. Contacts found from now on record the index. The sums of the previous step
+    /// are cleared.
     pub(crate) fn begin_step(&mut self, step: u64) {
         self.step = step;
         self.sums.clear();
         self.is_summed_up = false;
     }
 
-    /// Declares that the step is taken in pieces.
+    /// Declares that the present step is divided into shorter steps (pieces), so that the impulses of these are
+    /// summed.
     pub(crate) fn begin_sums(&mut self) {
         self.is_summed_up = true;
     }
 
-    /// Adds the impulses of a piece of the step to the sums.
+    /// Adds the impulses of the present piece to the sums of the step if the step is divided into shorter steps
+    /// (pieces). Does nothing in an undivided step.
     pub(crate) fn sum_up(&mut self) {
         if self.is_summed_up {
             for index in 0..self.now.contacts.len() {
@@ -72,24 +79,27 @@ impl ContactList {
         }
     }
 
-    /// Adds an impulse of a contact along `normal`, which may have turned since the contact was found.
+    /// Adds an impulse of the contact with this index to the sums of the step. The impulse acts along `normal`, which
+    /// may have turned since the contact was found.
     pub(crate) fn add_to_sums(&mut self, index: usize, normal: DVec2, impulse: Impulse) {
         let ContactColumns { contacts, found_in, .. } = &self.now;
         self.sums.add(Transmitted::of(contacts[index], found_in[index], normal, impulse));
     }
 
-    /// Total impulse transmitted by the pair of a contact in a step that is summed up.
+    /// Returns the total impulse that the pair of a contact has transmitted in the present step, which is divided
+    /// into shorter steps (pieces).
     pub(crate) fn sum_of(&self, contact: &Contact) -> Impulse {
         self.sums.of(contact.pair())
     }
 
-    /// True if the transmitted impulses are those of a whole step, not of its last piece.
+    /// True if sums of impulses over the parts of the step exist. Then the sums belong to the whole step, and the
+    /// impulses in the list only to its last part.
     pub(crate) fn has_sums(&self) -> bool {
         !self.sums.pairs.is_empty()
     }
 
-    /// Impulses transmitted in the last step, sorted by pair, each pair once. In a step that is summed up, from the
-    /// sums.
+    /// Returns the impulses transmitted in the last step, sorted by pair, with each pair once. If the step was
+    /// divided into shorter steps (pieces), these are the sums over the pieces.
     pub(crate) fn transmitted_in_step(&self) -> impl Iterator<Item = Transmitted> + '_ {
         let ContactColumns { contacts, impulses, found_in, .. } = &self.now;
         let is_whole = !self.has_sums();
@@ -100,8 +110,8 @@ impl ContactList {
         self.sums.pairs.iter().copied().chain(of_contacts)
     }
 
-    /// Impulses transmitted in the last step, sorted by pair, each with its index among the contacts if it still is a
-    /// contact.
+    /// Returns the impulses transmitted in the last step, sorted by pair, with each pair once. The second item is the
+    /// index of the contact, or `None` if the pair is no longer in the contact list.
     pub(crate) fn transmitted(&self) -> Vec<(Transmitted, Option<usize>)> {
         let ContactColumns { contacts, impulses, found_in, .. } = &self.now;
         let whole = !self.has_sums();
@@ -113,7 +123,7 @@ impl ContactList {
         let of_contacts = contacts.iter().zip(impulses).enumerate().map(of_contact);
         let sums = self.sums.pairs.iter().map(|pair| (*pair, None));
         let mut all: Vec<_> = sums.chain(of_contacts).collect();
-        // The sort is stable, so the sum of a pair comes first.
+        // The sort is stable, so the summed impulse of a pair comes before the impulse of its last piece.
         all.sort_by_key(|(pair, _)| pair.contact.pair());
         all.dedup_by(|second, first| {
             let is_same = second.0.contact.pair() == first.0.contact.pair();
@@ -123,75 +133,79 @@ impl ContactList {
         all
     }
 
-    /// The contacts, sorted by (i, other).
+    /// The contacts, sorted by their bodies (i, other).
     pub fn contacts(&self) -> &[Contact] {
         &self.now.contacts
     }
 
-    /// The impulses, one per contact.
+    /// The impulses of the contacts, N·s, in the order of [`Self::contacts`].
     pub fn impulses(&self) -> &[Impulse] {
         &self.now.impulses
     }
 
-    /// Moment impulse that resists rolling, on grain i of a contact, N·m·s.
+    /// Moment impulse on grain i of the contact with this index, N·m·s. It resists rolling.
     pub fn rolling(&self, index: usize) -> f64 {
         self.now.rolling.get(index).copied().unwrap_or(0.0)
     }
 
-    /// Moment impulses that resist rolling, one per contact or none, for the solver to fill in.
+    /// Moment impulses that resist rolling, N·m·s, to be filled in by the solver. The list has one number per
+    /// contact, or is empty without rolling friction.
     pub(crate) fn rolling_mut(&mut self) -> &mut Vec<f64> {
         &mut self.now.rolling
     }
 
-    /// Mutable impulses, one per contact, for the solver to fill in.
+    /// The impulses, N·s, one per contact, mutable. The solver fills them in.
     pub fn impulses_mut(&mut self) -> &mut [Impulse] {
         &mut self.now.impulses
     }
 
-    /// Data kept by the stepper, one per contact.
+    /// Data that the stepper keeps about each contact, one entry per contact.
     pub fn memories(&self) -> &[ContactMemory] {
         &self.now.memories
     }
 
-    /// Contacts and the steps in which they were found, with mutable impulses, memories and sums.
+    /// Returns the contacts and the steps in which they were found, with mutable impulses, memories and sums.
     pub(crate) fn parts_mut(&mut self) -> ContactParts<'_> {
         let ContactColumns { contacts, impulses, memories, found_in, .. } = &mut self.now;
         ContactParts { contacts, found_in, impulses, memories, sums: &mut self.sums }
     }
 
-    /// The step that each contact was first found in.
+    /// Index of the step in which each contact was first found, one per contact.
     pub(crate) fn found_in(&self) -> &[u64] {
         &self.now.found_in
     }
 
-    /// The bonds, one per contact. Only the law `range` gives them meaning.
+    /// The bonds, one per contact. They have a meaning only under the law `range` or if the list contains pairs with
+    /// a gap.
     pub(crate) fn bonds(&self) -> &[Bond] {
         &self.now.bonds
     }
 
-    /// The bonds, mutable.
+    /// The bonds, one per contact, mutable.
     pub(crate) fn bonds_mut(&mut self) -> &mut [Bond] {
         &mut self.now.bonds
     }
 
-    /// True if pairs with a gap are among the contacts.
+    /// True if the list also contains pairs that do not touch yet (pairs with a gap).
     pub(crate) fn looks_ahead(&self) -> bool {
         self.looks_ahead
     }
 
-    /// True if the pair of a contact touches or is bonded. False if it is only near.
+    /// True if the pair of the contact with this index touches or is bonded. False if its grains are only near each
+    /// other.
     pub fn is_in_touch(&self, index: usize) -> bool {
         !self.looks_ahead || self.now.bonds[index].alive
     }
 
-    /// Clears the memories, rolling moments and sums, because the next stepper did not write them.
+    /// Clears the memories of the stepper, the rolling moments and the sums of impulses. Called when the stepper
+    /// changes, because the new stepper did not write these data.
     pub(crate) fn forget(&mut self) {
         self.now.memories.fill(ContactMemory::default());
         self.now.rolling.clear();
         self.sums.clear();
     }
 
-    /// Multiplies all impulses, so that a change of Δt leaves the forces as they were.
+    /// Multiplies all impulses by `factor`, so that the contact forces stay the same when the time step changes.
     pub(crate) fn scale_impulses(&mut self, factor: f64) {
         for impulse in &mut self.now.impulses {
             impulse.normal *= factor;
@@ -200,7 +214,7 @@ impl ContactList {
         self.now.rolling.iter_mut().for_each(|impulse| *impulse *= factor);
     }
 
-    /// Removes the contacts of a body, and decreases the indices above it by one.
+    /// Removes the contacts of a body and decreases all body indices above `body` by one.
     pub(crate) fn remove_body(&mut self, body: u32) {
         let ContactColumns { contacts, impulses, memories, bonds, found_in, rolling } =
             &mut self.now;
@@ -221,13 +235,14 @@ impl ContactList {
         }
     }
 
-    /// The contacts, and the contacts recorded in the step's sums.
+    /// Iterates over the contacts of the list and over the contacts in the sums of the step.
     fn all_mut(&mut self) -> impl Iterator<Item = &mut Contact> {
         let earlier = self.sums.pairs.iter_mut().map(|pair| &mut pair.contact);
         self.now.contacts.iter_mut().chain(earlier)
     }
 
-    /// Makes room for a new body with index `body`, which touches no other yet.
+    /// Increases all body indices from `body` on by one, so that a new body can have this index. The new body has no
+    /// contacts yet.
     pub(crate) fn insert_body(&mut self, body: u32) {
         for contact in self.all_mut() {
             contact.grain += u32::from(contact.grain >= body);
@@ -235,8 +250,8 @@ impl ContactList {
         }
     }
 
-    /// True if all lists have the same length and refer to existing bodies. There are `bodies` bodies, the first
-    /// `grains` of which are grains.
+    /// Returns true if all columns have the same length and all indices refer to existing bodies. `bodies` is the
+    /// number of all bodies, and the first `grains` of them are grains.
     pub(crate) fn is_sound(&self, bodies: usize, grains: usize) -> bool {
         let ContactColumns { contacts, impulses, memories, bonds, found_in, rolling } = &self.now;
         let lengths = [impulses.len(), memories.len(), bonds.len(), found_in.len()];
@@ -250,15 +265,17 @@ impl ContactList {
             && found_in.iter().all(is_past)
     }
 
-    /// Finds the contacts at the present positions: candidates with a gap below the tolerance. A contact that existed
-    /// in the step before starts from its previous impulses and memory, any other from 0.
+    /// Finds the contacts at the present positions: candidate pairs with a gap below the gap tolerance. A contact
+    /// that existed in the previous step starts from its previous impulses and memory. All other contacts start from
+    /// zero.
     pub fn detect<const AXES: usize>(&mut self, world: &World, candidates: &Candidates) {
         self.looks_ahead = false;
         let gap_tolerance = candidates.gap_tolerance();
         self.find::<AXES>(world, candidates, |contact, _| contact.gap < gap_tolerance);
     }
 
-    /// Finds the pairs that touch, are bonded, or may touch within the step.
+    /// Finds the pairs that touch, are bonded, or may touch within the step. `normal_velocity_of_wall` returns the
+    /// normal velocity (m/s) of the wall or fixed disc of a contact.
     pub(crate) fn detect_ahead<const AXES: usize>(
         &mut self,
         world: &World,
@@ -298,7 +315,8 @@ impl ContactList {
         });
     }
 
-    /// Takes the candidates for which `keep` returns true, given the contact and its bond.
+    /// Replaces the contacts by all candidate pairs for which `keep` returns true. `keep` receives the contact and
+    /// its bond, which it may change.
     #[inline(always)]
     fn find<const AXES: usize>(
         &mut self,
@@ -322,9 +340,10 @@ impl ContactList {
         now.take_all(parts);
     }
 
-    /// Separates bodies that overlap by more than `allowed` (m), pair by pair. Each grain of a pair moves in
-    /// proportion to the other's mass. Velocities, and so the kinetic energy, stay the same. Returns true if there
-    /// were any such overlaps: one pass may open one pair and close the next.
+    /// Separates bodies that overlap by more than `allowed` (m), one pair after the other. Each of the two grains of
+    /// a pair moves in proportion to the mass of the other grain. Velocities, and so the kinetic energy, stay the
+    /// same. Returns true if such overlaps existed. Then another pass may be needed, because separating one pair may
+    /// push others together.
     pub(crate) fn separate(
         &self,
         world: &mut World,
@@ -357,7 +376,7 @@ impl ContactList {
     }
 }
 
-/// Data kept of contacts from one step to the next, as columns.
+/// Contact data that is kept from one step to the next, as columns with one entry per contact.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ContactColumns {
@@ -365,9 +384,9 @@ struct ContactColumns {
     impulses: Vec<Impulse>,
     memories: Vec<ContactMemory>,
     bonds: Vec<Bond>,
-    /// The step in which each contact was first found.
+    /// Index of the step in which each contact was first found.
     found_in: Vec<u64>,
-    /// Moment impulses on i that resist rolling, N·m·s; empty if no contact does.
+    /// Moment impulses on grain i that resist rolling, N·m·s. Empty without rolling friction.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     rolling: Vec<f64>,
 }
@@ -410,15 +429,15 @@ impl ContactColumns {
 struct ContactSearch<'a> {
     world: &'a World,
     candidates: &'a Candidates,
-    /// The contacts of the step before.
+    /// The contacts of the previous step.
     before: &'a ContactColumns,
-    /// True if pairs with a gap are among the contacts.
+    /// True if the list also contains pairs that do not touch yet (pairs with a gap).
     looks_ahead: bool,
     step: u64,
 }
 
 impl ContactSearch<'_> {
-    /// Finds the contacts of a range of grains, in order.
+    /// Writes the contacts of a range of grains to `now`, in the order of the grains.
     #[inline(always)]
     fn find<const AXES: usize>(
         &self,
@@ -438,7 +457,7 @@ impl ContactSearch<'_> {
                 let found = approach(world, candidates, position, radius, body, AXES);
                 let Some((normal, gap)) = found else { continue };
                 let contact = Contact { grain: index as u32, other, normal, gap };
-                // Both lists have the same order, so one walk over the old list suffices.
+                // Both lists are sorted by pair, so one pass over the old list suffices.
                 while before < old.contacts.len() && old.contacts[before].pair() < contact.pair() {
                     before += 1;
                 }
@@ -449,7 +468,8 @@ impl ContactSearch<'_> {
                 } else {
                     Default::default()
                 };
-                // A pair that only came near so far counts as found when it touches.
+                // If pairs with a gap are in the list, a contact counts as found in the step in which it first
+                // touches.
                 let was_found = lives_on && (bond.alive || !looks_ahead);
                 if !keep(&contact, &mut bond) {
                     continue;

@@ -1,4 +1,5 @@
-//! Fixed shapes, divided into features that a disc touches in one point each.
+//! Boundaries (fixed shapes), divided into features: half-spaces, segments and convex polygons. A disc touches each
+//! feature in at most one point.
 
 use glam::DVec2;
 use parry2d_f64::query::{PointQuery, PointQueryWithLocation};
@@ -8,43 +9,43 @@ use super::seams::{Seams, nearest_corner};
 use crate::error::{Error, Result};
 use crate::world::{Boundary, Carry};
 
-/// A part of a boundary that a disc touches in at most one point.
+/// A half-space, segment or convex polygon that is a part of a boundary. A disc touches it in at most one point.
 #[derive(Clone, Debug)]
 pub(crate) enum Feature {
     /// A half-space.
     HalfSpace {
         /// A point of the surface, m.
         point: DVec2,
-        /// The half-space through the origin.
+        /// The half-space with the same normal, moved so that its surface passes through the origin.
         shape: HalfSpace,
     },
-    /// A segment, solid from both sides. If it follows or precedes another one of its polyline, only the later
-    /// segment reports the shared corner, and only if the corner is the nearest point of both. Otherwise the other
-    /// segment's inner part is nearer.
+    /// A segment that discs can touch from both sides. Neighbouring segments of a polyline share a corner. Only the
+    /// later segment reports a contact with this corner, and only if the corner is the nearest point of both
+    /// segments. Otherwise an inner point of one of the segments is nearer.
     Segment {
         /// The segment.
         shape: Segment,
-        /// The previous segment.
+        /// The previous segment of the polyline, if there is one.
         before: Option<Segment>,
-        /// True if another segment follows.
+        /// True if another segment of the polyline follows.
         has_next: bool,
-        /// Its ends that belong to other boundaries too.
+        /// The ends that this segment shares with other boundaries.
         seams: Seams,
     },
-    /// A solid convex polygon, anticlockwise.
+    /// A solid convex polygon with its corners in anticlockwise order.
     ConvexPolygon {
-        /// Its sides.
+        /// The sides of the polygon.
         sides: Vec<Segment>,
-        /// Its corners that belong to other boundaries too.
+        /// The corners that this polygon shares with other boundaries.
         seams: Seams,
     },
 }
 
 impl Feature {
-    /// Divides a boundary into features and appends them to `features`.
+    /// Divides a boundary into features (half-spaces, segments, polygons) and appends them to `features`.
     ///
     /// # Errors
-    /// Names the boundary (`field`) and the part of it that is not a valid shape.
+    /// If a part of the boundary is not a valid shape. The error names the boundary (`field`) and that part.
     pub(crate) fn collect(
         boundary: &Boundary,
         field: &str,
@@ -88,7 +89,8 @@ impl Feature {
         Ok(())
     }
 
-    /// Checks a chain of points and appends its segments. `name` gives the user's name of a point.
+    /// Checks a chain of points and appends its segments to `features`. `name` returns the name of a point in error
+    /// messages, by its index.
     fn collect_chain(
         points: &[DVec2],
         field: &str,
@@ -118,8 +120,8 @@ impl Feature {
         Ok(())
     }
 
-    /// Moves with its boundary, which has just moved. The result equals that of rebuilding the feature, to the last
-    /// bit.
+    /// Moves the feature by the displacement `carry` of its boundary. `boundary` is the boundary after the move. The
+    /// result is bitwise equal to a feature built from the moved boundary.
     pub(crate) fn carry(&mut self, carry: &Carry, boundary: &Boundary) {
         let follow = |segment: &mut Segment| {
             (segment.a, segment.b) = (carry.place(segment.a), carry.place(segment.b));
@@ -143,7 +145,7 @@ impl Feature {
         }
     }
 
-    /// Its corners that belong to other boundaries too; `None` for a half-space.
+    /// The corners that this feature shares with other boundaries. `None` for a half-space.
     pub(super) fn seams_mut(&mut self) -> Option<&mut Seams> {
         match self {
             Feature::HalfSpace { .. } => None,
@@ -151,7 +153,7 @@ impl Feature {
         }
     }
 
-    /// Its corners, m.
+    /// The corners of the feature, m. Empty for a half-space.
     pub(crate) fn corners(&self) -> impl Iterator<Item = DVec2> + '_ {
         let (segment, sides): (_, &[Segment]) = match self {
             Feature::HalfSpace { .. } => (None, &[]),
@@ -161,13 +163,14 @@ impl Feature {
         segment.into_iter().flatten().chain(sides.iter().map(|side| side.a))
     }
 
-    /// True if it is a half-space.
+    /// True if the feature is a half-space.
     pub(crate) fn is_half_space(&self) -> bool {
         matches!(self, Feature::HalfSpace { .. })
     }
 
-    /// Distance of `centre` from the surface (m), including corners that another feature reports, because this
-    /// feature may report them a moment later. Negative in solids.
+    /// Returns the distance of `centre` from the surface, m, negative inside solids. Unlike [`Self::distance`], this
+    /// includes corners that another feature (part of a boundary) reports at present, because this feature may report
+    /// them a moment later.
     pub(crate) fn distance_to_any_point(&self, centre: DVec2) -> f64 {
         match self {
             Feature::Segment { shape, .. } => shape.distance_to_local_point(centre, false),
@@ -181,8 +184,8 @@ impl Feature {
         }
     }
 
-    /// Unit normal towards `centre` and distance of `centre` from the surface (m, negative inside). `None` if another
-    /// feature reports this point.
+    /// Returns the unit normal towards `centre`, and the distance of `centre` from the surface (m, negative inside
+    /// solids). `None` if the nearest point is a corner that another feature (part of a boundary) reports.
     pub(crate) fn distance(&self, centre: DVec2) -> Option<(DVec2, f64)> {
         match self {
             Feature::HalfSpace { point, shape } => {
@@ -214,7 +217,7 @@ impl Feature {
                 Some(outward(centre, nearest.point, left_of(shape)))
             }
             Feature::ConvexPolygon { sides, seams } => {
-                // Outside, the nearest point of the surface is that of the nearest side.
+                // Outside the polygon, the nearest point of the surface is the nearest point of the nearest side.
                 let (normal, depth) = way_out(sides, centre);
                 if depth <= 0.0 {
                     return Some((normal, depth));
@@ -235,8 +238,9 @@ impl Feature {
     }
 }
 
-/// Outward normal of the side of a convex polygon whose line is nearest to a point inside, and the signed distance,
-/// m, which is positive outside.
+/// Finds that side of a convex polygon from whose line a point has the largest signed distance (negative inside the
+/// polygon, positive outside). For a point inside, this is the nearest side. Returns the outward normal of the side,
+/// and the signed distance, m.
 fn way_out(sides: &[Segment], place: DVec2) -> (DVec2, f64) {
     let lines = sides.iter().map(|side| (-left_of(side), (place - side.a).dot(-left_of(side))));
     lines.fold(
@@ -245,12 +249,14 @@ fn way_out(sides: &[Segment], place: DVec2) -> (DVec2, f64) {
     )
 }
 
-/// The unit normal on the left of a segment; inward for the side of an anticlockwise polygon.
+/// Returns the unit normal on the left of a segment. For a side of an anticlockwise polygon this normal points
+/// inward.
 fn left_of(segment: &Segment) -> DVec2 {
     (segment.b - segment.a).perp().normalize_or_zero()
 }
 
-/// Unit normal and distance from `nearest` to `centre`; `fallback` is the normal if the two coincide.
+/// Returns the unit normal and the distance (m) from `nearest` to `centre`. `fallback` is the normal if the two
+/// points coincide.
 fn outward(centre: DVec2, nearest: DVec2, fallback: DVec2) -> (DVec2, f64) {
     let offset = centre - nearest;
     let distance = offset.length();
@@ -264,9 +270,10 @@ fn check_finite(points: &[DVec2], name: impl Fn(usize) -> String) -> Result<()> 
     }
 }
 
-/// Checks that corners go once around a convex polygon, anticlockwise. A pentagram also turns left at each corner,
-/// but goes around twice. On a single round the sides' direction passes only once from below into the upper half of
-/// the plane.
+/// Checks that the points are the corners of a convex polygon, once around and anticlockwise. It is not enough that
+/// the outline turns left at each corner, because the outline of a pentagram also does so but goes around twice. So
+/// the function also counts how often the direction of the sides passes from the lower into the upper half of the
+/// plane: once for a single round.
 fn check_convex(points: &[DVec2], field: &str) -> Result<()> {
     let count = points.len();
     if count < 3 {
@@ -318,7 +325,8 @@ mod tests {
             points: vec![DVec2::new(-1.0, 1.0), DVec2::ZERO, DVec2::new(1.0, 1.0)],
         });
         assert_eq!(hits(&valley, 0.0, 0.5).len(), 2);
-        // Clockwise, so that its outside is on the left; the seam is at the top.
+        // The points are in clockwise order, so the outside is on the left. The first and the last point are at the
+        // top.
         let [top, right, left] = [(0.0, 1.0), (1.0, 0.0), (-1.0, 0.0)].map(DVec2::from);
         let closed = features(Boundary::Polyline { points: vec![top, right, left, top] });
         for (corner, (x, y)) in [(top, (0.1, 1.5)), (right, (1.5, -0.1)), (left, (-1.5, -0.1))] {

@@ -1,13 +1,15 @@
-//! Candidates across periodic borders.
+//! Search for pairs of bodies that are near each other across periodic borders.
 //!
-//! **Discs.** Discs near the left border are repeated one period further, beyond the right border. Discs near the
-//! lower border are repeated above, and discs near the corners likewise. Only the images with the shortest offset
-//! report a pair, so that each pair is reported once, however far the search looks.
+//! **Discs.** Discs near the left border are repeated one period further right, beyond the right border. Discs near
+//! the lower border are repeated one period higher, and discs near the corners are repeated diagonally. A pair is
+//! reported only for those images whose offset is the shortest, so that each pair is reported once, however large the
+//! search distance is.
 //!
-//! With sheared borders, images above are shifted sideways and wrapped before the images beside them are looked for.
+//! With sheared borders, images above the cell are shifted sideways. They are wrapped into the cell along x before
+//! images beside the cell are searched for.
 //!
-//! **Shapes** with ends lie in the cell. A disc near a border may be nearest to an image of a shape, so the disc is
-//! tried at its own place and one period to each side.
+//! **Shapes** of finite length lie in the cell. A disc near a border may be nearest to an image of a shape. So the
+//! distance is computed for the disc at its own position and for positions one period to each side.
 
 use glam::DVec2;
 
@@ -15,12 +17,12 @@ use super::broad_phase::BroadPhase;
 use super::features::Feature;
 use crate::world::{Periodic, World};
 
-/// Periods from a disc to those of its images that are searched: half of the images around the cell, because either
-/// disc of a pair across a border can be the one in the cell.
+/// Offsets, in periods, from a disc to those of its periodic images that are searched. They are half of the images
+/// around the cell, because either disc of a pair across a border can be the disc in the cell.
 const HALF_AROUND: [DVec2; 4] = [DVec2::X, DVec2::Y, DVec2::ONE, DVec2::new(-1.0, 1.0)];
 
-/// Calls `found` once for every pair of discs, given by indices, whose nearest images are closer than the sum of
-/// their extents (radii with skins, m), and for some other pairs.
+/// Calls `found` once for every pair of discs, given by their indices, whose nearest periodic images are closer than
+/// the sum of their extents (radius plus search margin, m). It is also called for some pairs that are farther apart.
 pub(super) fn pairs<const AXES: usize>(
     broad_phase: &mut BroadPhase,
     periodic: Periodic,
@@ -33,7 +35,8 @@ pub(super) fn pairs<const AXES: usize>(
     let mut places: Vec<DVec2> = centres.iter().map(|&centre| periodic.wrap(centre)).collect();
     let mut extents: Vec<f64> = extents.collect();
     let size = DVec2::from(periodic.periods().map(|period| period.unwrap_or(0.0)));
-    // The disc of each image, and the periods between them.
+    // For each periodic image, the index of its disc and the number of periods between disc and image along each
+    // axis.
     let mut images: Vec<(u32, DVec2)> = Vec::new();
     for disc in 0..count {
         let place = places[disc];
@@ -50,7 +53,8 @@ pub(super) fn pairs<const AXES: usize>(
             extents.push(extents[disc]);
         }
     }
-    // A tree needs a constant number of discs.
+    // A tree keeps its discs from search to search, so it needs a constant number of discs. The number of periodic
+    // images changes.
     broad_phase.forget_discs();
     broad_phase.pairs::<AXES>(&places, extents.iter().copied(), |first, second| {
         let image = |place: u32| (place as usize).checked_sub(count).map(|number| images[number]);
@@ -61,14 +65,16 @@ pub(super) fn pairs<const AXES: usize>(
             (Some(_), Some(_)) => return,
         };
         let [from, to] = discs.map(|disc| places[disc as usize]);
-        // Whole periods from the second disc to its image that is nearest to the first.
+        // The number of periods along each axis from the second disc to its periodic image that is nearest to the
+        // first disc.
         if periodic.whole(from - to) == told_by && discs[0] != discs[1] {
             found(discs[0], discs[1]);
         }
     });
 }
 
-/// True if a disc is near enough to a border that its image `periods` away along this axis matters.
+/// Returns true if the disc at the coordinate `at` (m) is so near to a border that its periodic image, which is
+/// `periods` periods away along this axis, can be within `reach` (m) of another disc.
 fn near_border(borders: Option<[f64; 2]>, at: f64, periods: f64, reach: f64) -> bool {
     match borders {
         _ if periods == 0.0 => true,
@@ -78,7 +84,8 @@ fn near_border(borders: Option<[f64; 2]>, at: f64, periods: f64, reach: f64) -> 
     }
 }
 
-/// Normal and distance of the nearest image of a feature, as in [`Feature::distance`].
+/// Returns the normal and the distance (m) of the nearest periodic image of a feature (half-space, segment or
+/// polygon), as in [`Feature::distance`].
 pub(super) fn distance(
     feature: &Feature,
     periodic: Periodic,
@@ -91,7 +98,8 @@ pub(super) fn distance(
     distances.min_by(|(_, one), (_, other)| one.total_cmp(other))
 }
 
-/// The smallest [`Feature::distance_to_any_point`] over the images of a feature, with or without periodic borders.
+/// Returns the smallest [`Feature::distance_to_any_point`] (m) over the periodic images of a feature (half-space,
+/// segment or polygon). Without periodic borders only the feature itself counts.
 pub(super) fn distance_to_any_point(feature: &Feature, world: &World, centre: DVec2) -> f64 {
     match world.periodic {
         Some(periodic) if !feature.is_half_space() => {
@@ -102,7 +110,7 @@ pub(super) fn distance_to_any_point(feature: &Feature, world: &World, centre: DV
     }
 }
 
-/// The place of a disc in the cell, and one period to each side.
+/// Returns the position of a disc in the periodic cell, and the positions one period to each side, m.
 fn places(periodic: Periodic, centre: DVec2) -> impl Iterator<Item = DVec2> {
     let centre = periodic.wrap(centre);
     periodic.around().map(move |by| centre + by)

@@ -1,13 +1,13 @@
-//! Number types over which a contact's arithmetic is generic.
+//! Trait for the number types of contact arithmetic: a scalar, or a vector register with several numbers.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
 use fearless_simd::{Select, Simd, SimdBase, f64x4};
 
-/// A number, or a vector register with one number per lane. Each lane gives exactly the bits of the scalar code, also
-/// for signed zeros and NaN: operations are done in the order of the code, and multiplications and additions are not
-/// fused.
+/// A number, or a vector register with one number per lane. Each lane gives exactly the same bits as the scalar code,
+/// also for signed zeros and NaN. For this, operations are done in the order of the code, and a multiplication and an
+/// addition are never fused.
 pub trait Lanes:
     Copy
     + Debug
@@ -21,13 +21,13 @@ pub trait Lanes:
     + SubAssign
     + 'static
 {
-    /// `number` in each lane.
+    /// Returns a value that has `number` in each lane.
     fn same(self, number: f64) -> Self;
-    /// The larger of two numbers in one machine instruction; `other` if `self` is NaN.
+    /// Returns the larger of two numbers in one machine instruction; `other` if either is NaN.
     fn larger(self, other: Self) -> Self;
-    /// The smaller of two numbers in one machine instruction; `other` if `self` is NaN.
+    /// Returns the smaller of two numbers in one machine instruction; `other` if either is NaN.
     fn smaller(self, other: Self) -> Self;
-    /// The absolute value.
+    /// Returns the absolute value.
     fn magnitude(self) -> Self;
 }
 
@@ -83,10 +83,11 @@ impl<S: Simd> Lanes for f64x4<S> {
     }
 }
 
-/// True if the processor's own minimum and maximum return the second operand if either is NaN or both are zeros.
+/// True if the minimum and maximum instructions of the processor return the second operand if either operand is NaN
+/// or both are zeros.
 const SECOND_WHERE_UNDECIDED: bool = cfg!(any(target_arch = "x86_64", target_arch = "x86"));
 
-/// Vector instruction sets that this processor supports.
+/// Returns the vector instruction sets that this processor supports.
 #[cfg(test)]
 pub(crate) fn levels() -> Vec<fearless_simd::Level> {
     let best = fearless_simd::Level::new();

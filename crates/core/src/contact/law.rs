@@ -1,34 +1,39 @@
-//! The contact laws, as projections of one contact's impulse.
+//! The contact laws, written as projections of the impulse of one contact.
 //!
-//! Signorini's law with cohesion (paper eq. 3 and 8, Fig. 2b) asks 0 ≤ N + C₀ ⟂ v̄_n ≥ 0, with the
-//! formal velocity v̄ = (v^n + ρ v^{n−1}) / (1 + ρ). Over one step N = P/Δt, and a positive factor
-//! does not change a complementarity condition. Divided by m_ij, with the reduced impulse λ = P/m_ij, the shifted
-//! reduced impulse σ = λ_n + C₀Δt/m_ij and u = v_n^n + ρ v_n^{n−1},
+//! Signorini's law with cohesion (paper eq. 3 and 8, Fig. 2b) requires 0 ≤ N + C₀ ⟂ v̄_n ≥ 0, with the normal force
+//! N, the cohesion force C₀ (N) and the formal velocity v̄ = (v^n + ρ v^{n−1}) / (1 + ρ). Here v^{n−1} and v^n are
+//! the relative velocities before and after the step, and ρ is the restitution. Over one step N = P/Δt, with the
+//! impulse P (N·s) and the time step Δt (s). A positive factor does not change a complementarity condition, so the
+//! law can be divided by the effective mass m_ij. With the reduced impulse λ = P/m_ij (m/s), the shifted reduced
+//! impulse σ = λ_n + C₀Δt/m_ij and u = v_n^n + ρ v_n^{n−1}, the law is
 //!
 //! > 0 ≤ σ ⟂ u ≥ 0   ⇔   σ = max(σ − u, 0).
 //!
-//! C₀Δt/m_ij = Bond·a·Δt is the capture speed, with a = g unless another acceleration is given. It is the same for
-//! every contact of a scene. In terms of σ, cohesion is only a constant pull against which the contact pushes, and
-//! the law without cohesion has a capture speed of 0. Coulomb's law in the shifted cone is |λ_t| ≤ μσ; on the
-//! compressive part alone it is |λ_t| ≤ μ max(σ − capture speed, 0). Both have the form |λ_t| ≤ μ max(σ − c, 0), with
-//! the tip of the cone at c. For the shifted cone c is 0, and any σ that the law allows is at least 0.
+//! C₀Δt/m_ij = Bond·a·Δt is the capture speed (m/s), with a = g unless another acceleration is given. It is the same
+//! for all contacts of a scene, unless pairs of materials have a cohesion of their own. In terms of σ, cohesion is
+//! only a constant pull against which the contact pushes. Without cohesion the capture speed is 0.
+//!
+//! Coulomb's law with the friction coefficient μ is |λ_t| ≤ μσ in the shifted cone and |λ_t| ≤ μ max(σ − capture
+//! speed, 0) in the compressive cone. Both have the form |λ_t| ≤ μ max(σ − c, 0), with the tip of the cone at c. In
+//! the shifted cone c is 0, and every σ that Signorini's law allows is at least 0.
 
 use super::lanes::Lanes;
 use crate::world::FrictionCone;
 
-/// The parameters of the contact law shared by all contacts of a step.
+/// Parameters of the contact law that all contacts of a step share.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ContactLaw {
     /// Friction coefficient μ.
     pub friction: f64,
     capture_speed: f64,
-    /// Tip of the cone c, m/s.
+    /// Tip c of the friction cone, m/s.
     tip: f64,
     cone: FrictionCone,
 }
 
 impl ContactLaw {
-    /// The law with friction μ, capture speed C₀Δt/m_ij (m/s; 0 without cohesion) and a cone.
+    /// Returns the law with a friction coefficient μ, a capture speed C₀Δt/m_ij (m/s; 0 without cohesion) and a
+    /// friction cone.
     #[inline(always)]
     pub fn new(friction: f64, capture_speed: f64, cone: FrictionCone) -> Self {
         let tip = match cone {
@@ -38,61 +43,67 @@ impl ContactLaw {
         Self { friction, capture_speed, tip, cone }
     }
 
-    /// The same law with another capture speed, m/s.
+    /// Returns this law with another capture speed (the opening speed that cohesion cancels in one step), m/s.
     #[inline(always)]
     pub(crate) fn with_capture_speed(self, capture_speed: f64) -> Self {
         Self::new(self.friction, capture_speed, self.cone)
     }
 
-    /// Capture speed C₀Δt/m_ij = Bond·a·Δt, m/s; 0 in a scene without cohesion.
+    /// Capture speed C₀Δt/m_ij = Bond·a·Δt, m/s: the opening speed that cohesion cancels in one step. 0 in a scene
+    /// without cohesion.
     #[inline(always)]
     pub fn capture_speed(&self) -> f64 {
         self.capture_speed
     }
 
-    /// The part of the normal force that bounds friction.
+    /// The friction cone: it determines which part of the normal force bounds friction.
     pub fn cone(&self) -> FrictionCone {
         self.cone
     }
 
-    /// True if all of σ bounds friction, because the tip of the cone is at 0.
+    /// True if the whole shifted impulse σ (normal impulse plus cohesion) bounds friction, because the tip of the
+    /// cone is at 0.
     #[inline(always)]
     pub(crate) fn all_rubs(&self) -> bool {
         self.tip == 0.0
     }
 
-    /// The part of σ that bounds friction, σ − c, m/s.
+    /// Returns the part of the shifted normal impulse σ that bounds friction, σ − c, m/s (c: tip of the cone).
+    /// Negative if the contact has no friction.
     #[inline(always)]
     pub(crate) fn rubbing<T: Lanes>(&self, shifted_impulse: T) -> T {
         shifted_impulse - shifted_impulse.same(self.tip)
     }
 
-    /// The largest |λ_t| that a shifted normal impulse allows, m/s.
+    /// Returns the largest tangential reduced impulse |λ_t| (m/s) that a shifted normal impulse σ (m/s) allows.
     #[inline(always)]
     pub fn friction_bound<T: Lanes>(&self, shifted_impulse: T) -> T {
         shifted_impulse.same(self.friction) * signorini(self.rubbing(shifted_impulse))
     }
 }
 
-/// Cohesion C₀ = Bond · m_ij · a, newton (paper eq. 10, with a = g).
+/// Returns the cohesion force C₀ = Bond · m_ij · a, newton (paper eq. 10, with a = g), for an effective mass m_ij
+/// (kg) and an acceleration a (m/s²).
 pub(crate) fn cohesion_force(bond: f64, effective_mass: f64, acceleration: f64) -> f64 {
     bond * effective_mass * acceleration
 }
 
-/// Projects σ (m/s) onto σ ≥ 0.
+/// Projects a shifted normal impulse σ (m/s) onto σ ≥ 0.
 #[inline(always)]
 pub(crate) fn signorini<T: Lanes>(shifted_impulse: T) -> T {
     shifted_impulse.larger(shifted_impulse.same(0.0))
 }
 
-/// Projects a tangential impulse onto [−bound, bound], in any unit.
+/// Projects a tangential impulse onto the interval from −`bound` to `bound`, both in the same unit.
 #[inline(always)]
 pub(crate) fn coulomb<T: Lanes>(tangential_impulse: T, bound: T) -> T {
     tangential_impulse.larger(-bound).smaller(bound)
 }
 
-/// The point of |λ_t| ≤ μσ nearest to `trial`, in the metric diag(1, c) with c = m_n/m_t. For a trial (a, b) it is
-/// the trial itself if |b| ≤ μa, the apex if a + μc|b| ≤ 0, and otherwise the point of the nearer edge that
+/// Returns the point of the friction cone |λ_t| ≤ μσ that is nearest to `trial`, in the metric diag(1, c) with the
+/// tangential compliance c = m_n/m_t (ratio of the effective masses). For a trial point (σ, λ_t) = (a, b) the result
+/// is the trial point itself if |b| ≤ μa, the apex of the cone if a + μc|b| ≤ 0, and otherwise the point of the
+/// nearer edge that
 ///
 /// > minimises ½(σ − a)² + ½c(μσ − |b|)²:  σ = (a + μc|b|)/(1 + μ²c),  λ_t = ±μσ.
 #[inline(always)]

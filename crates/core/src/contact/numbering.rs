@@ -1,27 +1,29 @@
-//! Body indices: grains first, then fixed discs, then features of the boundaries.
+//! The joint numbering of all bodies: grains first, then fixed discs, then features (half-spaces, segments, polygons)
+//! of the boundaries.
 
 use crate::world::World;
 
-/// The other body of a contact, by its index within its kind.
+/// The second body of a contact, with its index among the bodies of its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Other {
     /// A grain.
     Grain(usize),
     /// A fixed disc.
     FixedDisc(usize),
-    /// A feature of the boundaries.
+    /// A feature (a half-space, segment or polygon) of the boundaries.
     Feature(usize),
 }
 
 impl Other {
-    /// The grain, if it is one.
+    /// Returns the index of the grain, or `None` if the body is not a grain.
     #[inline(always)]
     pub fn grain(self) -> Option<usize> {
         if let Self::Grain(index) = self { Some(index) } else { None }
     }
 }
 
-/// The joint numbering of all bodies: grains, then fixed discs, then features of the boundaries.
+/// Converts between the index of a body in the joint numbering and its kind and index. The joint numbering has grains
+/// first, then fixed discs, then features of the boundaries.
 #[derive(Clone, Copy, Debug)]
 pub struct Numbering {
     grains: usize,
@@ -29,17 +31,18 @@ pub struct Numbering {
 }
 
 impl Numbering {
-    /// The numbering of a world.
+    /// Returns the joint numbering of the bodies of a world.
     pub fn of(world: &World) -> Self {
         Self { grains: world.grains.len(), fixed_discs: world.fixed_discs.len() }
     }
 
-    /// A numbering if only the number of grains is known.
+    /// Returns the joint numbering of a world with this many grains and without fixed discs, for callers that need
+    /// not distinguish fixed discs from features (parts of boundaries).
     pub(crate) fn of_grains(grains: usize) -> Self {
         Self { grains, fixed_discs: 0 }
     }
 
-    /// The body with this number.
+    /// Returns the kind and index of the body that has this number in the joint numbering.
     #[inline(always)]
     pub fn other(self, number: u32) -> Other {
         let index = number as usize;
@@ -54,7 +57,7 @@ impl Numbering {
         }
     }
 
-    /// The number of a body.
+    /// Returns the number of a body in the joint numbering.
     #[inline(always)]
     pub(crate) fn number(self, other: Other) -> u32 {
         let index = match other {

@@ -1,24 +1,24 @@
-//! One contact, its impulses, and the data that steppers keep of it.
+//! The data of one contact: geometry, impulses, and values that steppers keep about it.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-/// One touching pair.
+/// A pair of bodies that touch, or that may touch within the step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
-    /// Grain i.
+    /// Index of grain i.
     pub grain: u32,
-    /// Body j, in the joint numbering ([`Numbering`](super::Numbering)).
+    /// Index of body j in the joint numbering of grains, fixed discs and features ([`Numbering`](super::Numbering)).
     pub other: u32,
-    /// Normal n, from j to i. On a line its y component is 0.
+    /// Unit normal n, from j to i. In scenes on a line its y component is 0.
     pub normal: DVec2,
-    /// Gap, m; negative for an overlap.
+    /// Gap between the surfaces, m; negative for an overlap.
     pub gap: f64,
 }
 
 impl Contact {
-    /// The bodies (i, other), the sort key of contacts.
+    /// Returns the indices of the two bodies (i, other), by which contacts are sorted.
     pub(crate) fn pair(&self) -> (u32, u32) {
         (self.grain, self.other)
     }
@@ -28,23 +28,23 @@ impl Contact {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Impulse {
-    /// Normal impulse P_n.
+    /// Normal impulse P_n, N·s.
     pub normal: f64,
-    /// Tangential impulse P_t.
+    /// Tangential impulse P_t, N·s.
     pub tangential: f64,
 }
 
-/// Data that a stepper keeps of a contact from one substep to the next. Solvers of the step problem neither read nor
-/// write it.
+/// Data that a stepper keeps about a contact from one substep to the next. The solvers of the contact problem neither
+/// read nor write these data.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactMemory {
-    /// Stretch of the tangential spring, m; same sign as v_t.
+    /// Stretch of the tangential spring, m; positive in the direction of a positive tangential velocity v_t.
     pub tangential_displacement: f64,
-    /// Normal force N of the last substep, newton.
+    /// Normal force N in the last substep, newton.
     pub normal_force: f64,
-    /// Tangential force T of the last substep, newton.
+    /// Tangential force T in the last substep, newton.
     pub tangential_force: f64,
-    /// Penalty stiffness along normal and tangent, N/m.
+    /// Penalty stiffness along the normal and along the tangent, N/m.
     pub stiffness: [f64; 2],
 }

@@ -1,39 +1,40 @@
-//! The contact laws of all pairs of materials of a world, and the pair of a contact.
+//! The contact laws of all pairs of materials of a world, and the selection of the pair of materials of a contact.
 
 use super::{Candidates, Contact, Numbering, Other, law};
 use crate::world::{
     Cohesion, Grains, Material, PairNumbers, Parameters, Physics, World, materials_of,
 };
 
-/// The numbers of the law of one contact.
+/// The coefficients of the contact law of one contact. A contact is a row in the problem of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct RowNumbers {
     /// Friction coefficient μ.
     pub friction: f64,
-    /// Rolling friction μ_r.
+    /// Coefficient of rolling friction μ_r.
     pub rolling_friction: f64,
-    /// Restitution ρ.
+    /// Coefficient of restitution ρ.
     pub restitution: f64,
-    /// C₀/m_ij, m/s².
+    /// Cohesion force per effective mass, C₀/m_ij, m/s².
     pub cohesion_per_mass: f64,
 }
 
-/// Contact laws by pairs of materials, for worlds whose pairs have numbers of their own.
+/// Contact laws by pairs of materials. A world has them if some pairs of its materials have coefficients that differ
+/// from the parameters of the run.
 #[derive(Clone, Debug)]
 pub(crate) struct PairLaws {
     /// Number of materials.
     count: usize,
-    /// The numbers of materials a and b are at `count` · a + b.
+    /// The coefficients of the pair of materials a and b are at index `count` · a + b.
     numbers: Vec<PairNumbers>,
-    /// The material of each fixed disc and of each boundary.
+    /// Index of the material of each fixed disc. `of_boundary` has the index for each boundary.
     of_disc: Vec<u8>,
     of_boundary: Vec<u8>,
-    /// a in C₀ = Bond · m_ij · a, m/s².
+    /// Acceleration a in the cohesion force C₀ = Bond · m_ij · a, m/s².
     acceleration: f64,
 }
 
 impl PairLaws {
-    /// The laws of a world; `None` if all contacts have the numbers of the parameters.
+    /// Returns the laws of a world. `None` if all contacts have the coefficients of the parameters.
     pub(crate) fn of(world: &World, parameters: &Parameters, physics: Physics) -> Option<Self> {
         let World { materials, pairs, .. } = world;
         if pairs.is_empty() {
@@ -55,7 +56,7 @@ impl PairLaws {
         })
     }
 
-    /// The numbers of a contact with this effective mass, kg.
+    /// Returns the coefficients of the law of a contact. `effective_mass` is the effective mass of the contact, kg.
     pub(crate) fn numbers(
         &self,
         world: &World,
@@ -82,7 +83,8 @@ impl PairLaws {
         RowNumbers { friction, rolling_friction, restitution, cohesion_per_mass }
     }
 
-    /// The largest μ and μ_r of all pairs, and the largest C₀/m_ij, m/s², for two grains of the mean mass.
+    /// Returns the largest friction coefficient, the largest coefficient of rolling friction and the largest cohesion
+    /// per effective mass C₀/m_ij (m/s²) of all pairs, for two grains of the mean mass.
     pub(crate) fn largest(&self, grains: &Grains) -> [f64; 3] {
         let effective_mass = 0.5 * grains.masses.iter().sum::<f64>() / grains.len() as f64;
         self.numbers.iter().fold([0.0; 3], |[friction, rolling, cohesion], &pair| {

@@ -1,53 +1,57 @@
-//! The law `range`: a bond that exists until it has been stretched by δ_c, whatever the time step.
+//! The law `range`: a bond that exists until it has been stretched by the debonding distance δ_c, whatever the time
+//! step.
 //!
-//! **The law.** Two grains that have touched are bonded. A bond pulls with at most C₀. While it is open it pulls with
-//! exactly C₀, until it has opened by the debonding distance δ_c: breaking it takes the work C₀·δ_c. So a pair thrown
-//! apart faster than the escape speed √(2C₀δ_c/m_ij) separates, and a slower pair does not. A steady pull below C₀
-//! never separates it.
+//! **The law.** Two grains that have touched are bonded. A bond pulls with at most the cohesion force C₀ (N). While
+//! the bond is open, it pulls with exactly C₀. It breaks when it has opened by the debonding distance δ_c (m), so
+//! breaking it takes the work C₀·δ_c. A pair of effective mass m_ij that is thrown apart faster than the escape speed
+//! √(2C₀δ_c/m_ij) separates, and a slower pair does not. A steady pull below C₀ never separates the pair.
 //!
 //! **Earlier laws of finite range.** The wet law of LMGC90, `IQS_WET_DS_CLB` (its manual, *Contact laws*), applies
-//! Signorini's and Coulomb's laws to R_n + C₀ for every pair whose gap is at most W_thk as the step begins: a
-//! constant pull over a finite range, and the shifted cone. In `xQS_WET_DS_CLB` broken bonds stay broken, and
-//! `RST_WET_CLB` bounces. All depend on the gap and pull during the whole step, as in `examples/wet_law.rs`. Here, a
-//! pair pulls only after it has touched, and the pull depends on its stretch since then; breaking it takes the same
-//! work at every Δt; and collisions bounce.
+//! Signorini's and Coulomb's laws to R_n + C₀ (normal force plus cohesion force) for every pair whose gap is at most
+//! the thickness W_thk when the step begins: a constant pull over a finite range, and the shifted friction cone. In
+//! `xQS_WET_DS_CLB` broken bonds stay broken, and in `RST_WET_CLB` grains bounce. All three laws depend on the gap
+//! and pull during the whole step, as in `examples/wet_law.rs`. In the law `range` a pair pulls only after it has
+//! touched, and the pull depends on how far the bond has been stretched since then. Breaking a bond takes the same
+//! work at every time step Δt, and collisions bounce.
 //!
-//! **Why a step needs its own bound.** A step that is long compared with the time of a break, √(2δ_c m_ij/C₀), sees
-//! only the beginning of the break. If its only condition is N ≥ −C₀, the bond may pull for all of Δt. It then stops
-//! any opening slower than C₀Δt/m_ij and takes any work: cohesion grows with Δt. A bond pulls no longer than it
-//! exists, so its impulse is bounded by C₀·min(Δt, τ), with τ the time at which it has opened by δ_c.
+//! **Why the impulse of a bond is bounded in each step.** The bond alone would break or close in the time √(2δ_c
+//! m_ij/C₀). A step that is much longer than this time sees only the beginning of the break. If N ≥ −C₀ were the only
+//! condition on the normal force N, the bond could pull for all of Δt. It would then stop any opening slower than
+//! C₀Δt/m_ij and take any amount of work, so cohesion would grow with Δt. But a bond pulls only as long as it exists.
+//! So its impulse is bounded by C₀·min(Δt, τ), with τ (s) the time at which the bond has opened by δ_c.
 //!
-//! **τ in a step.** Let the bond be stretched by s and open with v at the beginning of the step, after the shocks of
-//! the step (`sim::steppers::range::bonds`), and let the other forces on the two grains change that speed evenly by J
-//! during the step. With C = C₀Δt/m_ij the pair opens as
+//! **The time τ in a step.** Let the bond be stretched by s (m) and open with the speed v (m/s) at the beginning of
+//! the step, after the shocks of the step (`sim::steppers::range::bonds`). Let the other forces on the two grains
+//! change this speed evenly by J (m/s) during the step. With C = C₀Δt/m_ij, the pair opens as
 //!
 //! > s(t) = s + v t + ½ a t²,  a = (J − C)/Δt,
 //!
-//! and τ is the first root of s(τ) = δ_c: with D = δ_c − s,
+//! and τ is the first root of s(τ) = δ_c. With the remaining opening D = δ_c − s,
 //!
 //! > τ = 2D / (v + √(v² + 2aD)),
 //!
-//! or infinite if the root is not real or the denominator not positive. This distinguishes a shock (v) from a load
-//! (J): a load below C₀ alone (v = 0, J < C) never breaks the bond, however long the step, while a shock is stopped
-//! only if ½m v² is below the remaining work. For an isolated pair this is exact: the step ends with the speed of the
-//! continuous motion.
+//! or infinite if the root is not real or the denominator is not positive. This formula distinguishes a shock (v)
+//! from a load (J). A load below C₀ alone (v = 0, J < C) never breaks the bond, however long the step is. A shock is
+//! stopped only if the kinetic energy ½ m_ij v² is below the remaining work. For an isolated pair the formula is
+//! exact: the step ends with the speed of the continuous motion.
 //!
-//! If the step does not break the bond, the stretch grows by Δt·(v + v^n)/2, which is exact for a constant force. The
-//! bond stores this stretch, not the gap, which differs from it by the order of Δt². So the work C₀·s equals the work
-//! of the impulses. A pair that rotates about itself, whose gap opens by (Δt v_t)²/2d in every step and closes in the
-//! next, does not tear its bond.
+//! If the step does not break the bond, the stretch s grows by Δt·(v + v^n)/2, where v^n is the opening speed at the
+//! end of the step. This is exact for a constant force. The bond stores the stretch s and not the gap, which differs
+//! from s by the order of Δt². So the work C₀·s equals the work of the impulses. A pair that rotates about itself
+//! does not tear its bond, although its gap opens by (Δt v_t)²/2d in every step and closes in the next step (v_t:
+//! tangential velocity, d: diameter).
 
 use serde::{Deserialize, Serialize};
 
 use super::law;
 
-/// Gaps and overlaps below this many diameters count as rounding and solver tolerance: the gap is not closed, the
-/// overlap is not pushed out, and the contact bounces. Without this allowance every contact of a bonded network,
-/// which has more contacts than its grains have degrees of freedom, would demand a gap of exactly zero, which is
-/// impossible.
+/// Gaps and overlaps below this many mean diameters count as rounding and solver tolerance: the solver does not close
+/// such a gap or push out such an overlap, and the contact bounces. Without this allowance every contact of a bonded
+/// network, which has more contacts than its grains have degrees of freedom, would demand a gap of exactly zero,
+/// which is impossible.
 pub(crate) const TOUCH_IN_DIAMETERS: f64 = 1e-4;
 
-/// A contact's bond.
+/// The bond of one contact under the law `range`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Bond {
@@ -60,17 +64,18 @@ pub(crate) struct Bond {
 /// The opening of one bond during one step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OpeningMotion {
-    /// Remaining opening D = δ_c − s, m.
+    /// Remaining opening before the bond breaks, D = δ_c − s, m.
     pub left: f64,
     /// Opening speed v, m/s.
     pub speed: f64,
-    /// Load J: change of v by the other forces during the step, m/s.
+    /// Load J: change of the opening speed by the other forces during the step, m/s.
     pub load: f64,
 }
 
 impl OpeningMotion {
-    /// C·min(1, τ/Δt), m/s: the largest reduced impulse of the bond in a step of `time_step_secs` in which its force
-    /// alone would change the speed by `capture_speed` (C).
+    /// Returns the largest reduced impulse (impulse per effective mass) of the bond in a step, C·min(1, τ/Δt) in m/s.
+    /// The step lasts `time_step_secs` (Δt). The force of the bond alone would change the speed in it by
+    /// `capture_speed` (C, m/s). The bond breaks after the time τ.
     pub(crate) fn bound(&self, capture_speed: f64, time_step_secs: f64) -> f64 {
         let Self { left, speed, load } = *self;
         let acceleration = (load - capture_speed) / time_step_secs;
@@ -86,14 +91,14 @@ impl OpeningMotion {
     }
 }
 
-/// Escape speed √(2C₀δ_c/m_ij), m/s, with C₀/m_ij = Bond · `acceleration` (m/s²). A pair thrown apart faster
-/// separates.
+/// Returns the escape speed √(2C₀δ_c/m_ij), m/s, with C₀/m_ij = Bond · `acceleration` (m/s²) and the debonding
+/// distance δ_c (m). A pair that is thrown apart faster separates.
 pub fn escape_speed(bond: f64, acceleration: f64, debonding_distance: f64) -> f64 {
     (2.0 * law::cohesion_force(bond, 1.0, acceleration) * debonding_distance).sqrt()
 }
 
-/// √(2δ_c m_ij/C₀), s: the time in which the pull of a bond alone would open or close it by δ_c. Infinite without
-/// cohesion.
+/// Returns the time √(2δ_c m_ij/C₀), s, in which the pull of a bond alone would open or close it by the debonding
+/// distance δ_c (m). Infinite without cohesion.
 pub(crate) fn bond_time_secs(bond: f64, acceleration: f64, debonding_distance: f64) -> f64 {
     (2.0 * debonding_distance / law::cohesion_force(bond, 1.0, acceleration)).sqrt()
 }
@@ -112,7 +117,8 @@ mod tests {
     #[test]
     fn a_load_below_the_cohesion_holds_and_a_shock_takes_the_work() {
         assert_eq!(bound(1e-3, 0.0, 1.9), CAPTURE_SPEED);
-        // v² = 2·(C/Δt)·D is the escape speed.
+        // The escape speed v has v² = 2·(C/Δt)·D, with the capture speed C, the time step Δt and the remaining
+        // opening D.
         let escape = (2.0 * CAPTURE_SPEED / TIME_STEP_SECS * 1e-3f64).sqrt();
         assert_eq!(bound(1e-3, 0.99 * escape, 0.0), CAPTURE_SPEED);
         let speed = 1.5 * escape;

@@ -1,4 +1,4 @@
-//! The search for corners that separate boundaries have in common (`contact::seams`).
+//! The search for corners that separate boundaries share (`contact::seams`).
 
 use glam::DVec2;
 use parry2d_f64::query::PointQuery;
@@ -7,15 +7,16 @@ use super::features::Feature;
 use super::seams::{Piece, Seam};
 use crate::world::World;
 
-/// Largest distance of a corner from another piece, in mean diameters, at which the two have the corner in common.
-/// If it is smaller, corners that are equal except for rounding slow discs down. If it is larger, discs do not feel
-/// steps in a floor that are meant.
+/// Largest distance of a corner from another boundary, in mean diameters, at which the two share the corner. If the
+/// value is smaller, corners that are equal except for rounding slow down discs that slide over them. If it is
+/// larger, discs do not feel intended small steps in a floor.
 const APART_IN_DIAMETERS: f64 = 1e-9;
 
-/// Finds the seams of all features. Feature `number` is a part of boundary `boundary_of[number]`.
+/// Finds the corners that features (segments, polygons) of different boundaries share and stores them in the
+/// features. Feature `k` is a part of boundary `boundary_of[k]`.
 pub(super) fn find(features: &mut [Feature], boundary_of: &[usize], world: &World) {
     let tolerance = APART_IN_DIAMETERS * world.mean_diameter;
-    // Pieces with different motions have no seams.
+    // Boundaries that move differently do not share corners.
     let mut carried_by = vec![None; world.boundaries.len()];
     for (number, motion) in world.motions.iter().enumerate() {
         if motion.course.is_some() || motion.drive.is_some() {
@@ -71,7 +72,8 @@ fn piece(feature: &Feature) -> Piece {
     }
 }
 
-/// Distance of a place from the surface of a feature, m, inside as outside.
+/// Returns the distance of a point from the surface of a feature (half-space, segment or polygon), m. It is positive
+/// outside and inside.
 fn distance_from_surface(feature: &Feature, place: DVec2) -> f64 {
     match feature {
         Feature::ConvexPolygon { sides, .. } => {
@@ -89,7 +91,8 @@ mod tests {
     use super::*;
     use crate::world::Boundary;
 
-    /// Features of boundaries with their seams, in a world without motions.
+    /// Returns the features (half-spaces, segments, polygons) of these boundaries with their shared corners, in a
+    /// world without motions.
     fn features(boundaries: Vec<Boundary>) -> Vec<Feature> {
         use crate::contact::{Candidates, Reach};
         use crate::world::{Grain, Grains, Gravity};
@@ -122,7 +125,7 @@ mod tests {
             vec![box_from(0.0, 1.0), box_from(1.0, 1.0)],
             vec![box_from(0.0, 1.0), box_from(1.0, 3.0)],
             vec![box_from(1.0, 1.0), segment([1.0, 0.0], [-1.0, 0.0])],
-            // The end of a segment below lies on the surface of another one.
+            // The second segment is below the first, and one of its ends lies on the first.
             vec![segment([-1.0, 0.0], [3.0, 0.0]), segment([1.0, 0.0], [2.0, -1.0])],
         ];
         for floor in floors {

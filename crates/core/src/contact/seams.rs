@@ -1,14 +1,18 @@
-//! Corners that separate boundaries have in common.
+//! Corners that two separate boundaries share (*seams*), and the rule by which a disc touches a shared corner only
+//! once.
 //!
-//! A floor may consist of several segments or polygons that lie end to end. While a disc slides towards the end of one
-//! piece, its distance from the corner of the next piece is √(x² + r²), hardly more than r if the way x to the corner
-//! is short. If the disc overlaps the floor a little, it touches that corner too early, and the corner slows it down.
+//! A floor may consist of several segments or polygons (*pieces*) that lie end to end. While a disc of radius r
+//! slides towards the end of one piece, its distance from the corner of the next piece is √(x² + r²). This is hardly
+//! more than r if the distance x to the corner is short. If the disc overlaps the floor a little, it touches that
+//! corner too early, and the corner slows the disc down.
 //!
-//! A point of several pieces is the nearest one of their union only if it is the nearest one of each piece; otherwise
-//! a piece has a nearer point. So a disc touches a common corner only there. The last of the pieces to which the corner
-//! belongs reports the contact, so that it exists once. Within a polyline `Feature::distance` does the same.
+//! A point that several pieces share is the nearest point of their union only if it is the nearest point of each
+//! piece. Otherwise one of the pieces has a point that is nearer. So a disc touches a shared corner only if the
+//! corner is the nearest point of every piece to which it belongs. The last of these pieces reports the contact, so
+//! that the contact exists once. Within a polyline, `Feature::distance` follows the same rule.
 //!
-//! A corner may also lie on a side of another piece, or on a half-space: then it is never the nearest point.
+//! A corner may also lie on a side of another piece, or on a half-space. Such a corner is never the nearest point of
+//! the union.
 
 use parry2d_f64::query::PointQueryWithLocation;
 use parry2d_f64::shape::{Segment, SegmentPointLocation};
@@ -17,24 +21,24 @@ use glam::DVec2;
 
 use crate::world::Carry;
 
-/// The corners that a feature has in common with features of other boundaries.
+/// The corners that a feature (a segment or a polygon) shares with features of other boundaries.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Seams(pub(super) Vec<Seam>);
 
-/// A corner that lies on another piece.
+/// A corner of one feature (segment or polygon) that lies on a feature of another boundary, called the other piece.
 #[derive(Clone, Debug)]
 pub(super) struct Seam {
-    /// The number of the corner among those of its feature.
+    /// Index of the corner in its own feature.
     pub corner: usize,
-    /// The piece that the corner lies on.
+    /// The other piece, on which the corner lies.
     pub other: Piece,
-    /// The number of that corner among those of the other piece, if it is a corner there.
+    /// Index of the corner in the other piece. `None` if the corner lies on a side of that piece.
     pub other_corner: Option<usize>,
-    /// True if the other piece comes later.
+    /// True if the feature of this corner comes before the other piece in the list of features.
     pub is_earlier: bool,
 }
 
-/// The shape of another feature.
+/// Shape of the feature on which a shared corner lies.
 #[derive(Clone, Debug)]
 pub(super) enum Piece {
     HalfSpace,
@@ -43,13 +47,14 @@ pub(super) enum Piece {
 }
 
 impl Seams {
-    /// True if no corner lies on another piece.
+    /// True if no corner of the feature (segment or polygon) lies on a feature of another boundary.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// True if a disc with this centre, to which a corner of this feature is nearest, touches the corner and this
-    /// feature reports it.
+    /// Returns true if this feature (segment or polygon) reports the contact of a disc with its corner number
+    /// `corner`. The disc has its centre at `centre` (m), and the corner is the point of this feature that is nearest
+    /// to the disc.
     pub(super) fn reports(&self, corner: usize, centre: DVec2) -> bool {
         self.0.iter().filter(|seam| seam.corner == corner).all(|seam| {
             let nearest = match &seam.other {
@@ -61,7 +66,8 @@ impl Seams {
         })
     }
 
-    /// Moves with the boundaries, which move together.
+    /// Moves the stored shapes of those features that share corners with this feature. Features that share a corner
+    /// always move together.
     pub(super) fn carry(&mut self, carry: &Carry) {
         for Seam { other, .. } in &mut self.0 {
             let segments = match other {
@@ -76,7 +82,8 @@ impl Seams {
     }
 }
 
-/// The number of the corner that is the nearest point of a segment or of a polygon's sides, if a corner is.
+/// Returns the index of the corner that is the nearest point of a segment, or of the sides of a polygon, to `centre`.
+/// `None` if the nearest point lies inside a side.
 pub(super) fn nearest_corner(segments: &[Segment], centre: DVec2) -> Option<usize> {
     let corners = if segments.len() == 1 { 2 } else { segments.len() };
     let nearest = segments.iter().enumerate().map(|(number, segment)| {

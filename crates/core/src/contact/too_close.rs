@@ -1,27 +1,30 @@
-//! Refusal of discs that overlap too deeply at the start.
+//! Check that discs of an initial state do not overlap too deeply.
 //!
-//! If the centres of n discs keep a distance, each disc touches few others, and pairs, contacts and time grow with n.
-//! If n discs are at one place, all n²/2 pairs touch. A pair is too close if its centres are nearer than half the
-//! smaller radius. The search goes level by level: for radii from 2^e to 2^(e + 1) the cells are 2^e wide, so that a
-//! disc finds all discs too close to it in its own cell and the 8 around it. Discs are sorted by cell, so three
-//! ranges contain these nine cells.
+//! If the centres of n discs keep a distance, each disc touches few others, and the number of contacts and the
+//! computing time grow in proportion to n. If all n discs are at one point, all n²/2 pairs touch. A pair is too close
+//! if its centres are nearer than half the smaller radius.
+//!
+//! The search goes level by level through the sizes. For radii from 2^e to 2^(e + 1) the cells are 2^e wide, so all
+//! discs that are too close to a disc are in its own cell and in the 8 cells around it. The discs are sorted by cell,
+//! so these nine cells are three ranges of the list.
 
 use glam::DVec2;
 
 use crate::error::{Error, Result};
 use crate::world::World;
 
-/// Smallest allowed distance between a grain and another disc, in radii of the smaller. Compressed packings keep more
-/// than 1.8 in practice; two discs of the challenge `overlap` start with 1.
+/// Smallest allowed distance between the centres of a grain and another disc, in radii of the smaller disc. In
+/// compressed packings the distance is more than 1.8 in practice. Two discs of the scene `overlap` start with 1.
 const LEAST_DISTANCE_IN_RADII: f64 = 0.5;
-/// Largest number of fixed discs within that distance. Overlapping fixed discs can form a smooth wall, but a grain
-/// would touch all of them.
+/// Largest number of fixed discs that may be closer than [`LEAST_DISTANCE_IN_RADII`] to one fixed disc. Overlapping
+/// fixed discs can form a smooth wall, but a grain would touch all of them at once.
 const MOST_FIXED_TOO_CLOSE: usize = 1000;
 
-/// Checks that no two discs are too close, in time and memory proportional to their number.
+/// Checks that no grain is too close to another disc, and that not too many fixed discs are close together. Time and
+/// memory are proportional to the number of discs.
 ///
 /// # Errors
-/// Names the two discs.
+/// If two discs are too close. The error names both.
 pub(crate) fn check_distances(world: &World) -> Result<()> {
     let grains = &world.grains;
     let fixed = world.fixed_discs.iter().map(|disc| (disc.position, disc.radius));
@@ -29,7 +32,8 @@ pub(crate) fn check_distances(world: &World) -> Result<()> {
         grains.positions.iter().copied().zip(grains.radii.iter().copied()).chain(fixed).collect();
     let mut found = first_too_close(&discs, grains.len());
     if let Some(periodic) = world.periodic {
-        // Two discs that meet across a border are next to each other after a shift by half a period.
+        // After a shift by half a period, two discs that were close to each other across a periodic border are
+        // neighbours inside the cell.
         let half = periodic.periods().map(|period| 0.5 * period.unwrap_or(0.0));
         for by in [DVec2::new(half[0], 0.0), DVec2::new(0.0, half[1]), DVec2::from(half)] {
             let shifted = discs.iter().map(|&(place, radius)| (periodic.wrap(place + by), radius));
@@ -50,15 +54,17 @@ pub(crate) fn check_distances(world: &World) -> Result<()> {
     Err(Error::value(format!("{}.position", name(one)), found, allowed))
 }
 
-/// Returns two discs (centre, radius; m) that are too close. The first `grain_count` discs are grains.
+/// Returns the indices of two discs that are too close, if there are any. A disc is a centre and a radius (m), and
+/// the first `grain_count` discs are grains.
 fn first_too_close(discs: &[(DVec2, f64)], grain_count: usize) -> Option<(usize, usize)> {
     let level = |radius: f64| radius.to_bits() >> 52;
     let mut levels: Vec<u64> = discs.iter().map(|&(_, radius)| level(radius)).collect();
     levels.sort_unstable();
     levels.dedup();
-    // Cell indices along each axis, with the disc in the cell.
+    // For each disc, the indices of its cell along both axes and its own index.
     let mut places: Vec<([i64; 2], u32)> = Vec::with_capacity(discs.len());
-    // Largest first, so that the larger discs near a smaller one are already known to keep their distance.
+    // Start with the largest radii, so that the larger discs near a smaller disc are already known to keep their
+    // distance.
     for &now in levels.iter().rev() {
         let width = f64::from_bits(now << 52).max(f64::MIN_POSITIVE);
         let cell = |centre: DVec2| [(centre.x / width).floor(), (centre.y / width).floor()];
@@ -100,7 +106,7 @@ fn first_too_close(discs: &[(DVec2, f64)], grain_count: usize) -> Option<(usize,
 mod tests {
     use super::*;
 
-    /// `count` discs of many sizes on a lattice with enough room for each.
+    /// Returns `count` discs of many sizes on a lattice, none too close to another.
     fn apart(count: usize) -> Vec<(DVec2, f64)> {
         let place = |k: usize| DVec2::new((k % 100) as f64, (k / 100) as f64);
         (0..count).map(|k| (place(k), 0.5 / (1 + k % 7) as f64)).collect()
@@ -116,7 +122,7 @@ mod tests {
             let found = first_too_close(&spoilt, spoilt.len()).expect("a pair");
             assert_eq!(found.0, 10_000, "{radius}");
         }
-        // All within one cell, and slightly more than half a radius apart.
+        // All discs are in one cell, and they are slightly more than half a radius apart.
         discs.truncate(0);
         discs.extend((0..9).map(|k| (0.51 * DVec2::new((k % 3) as f64, (k / 3) as f64), 1.0)));
         assert_eq!(first_too_close(&discs, 9), None);

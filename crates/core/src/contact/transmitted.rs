@@ -1,39 +1,41 @@
-//! Impulses transmitted by pairs in a step that is taken in pieces. Each piece finds its contacts again and turns
-//! their normals.
+//! Sums of the impulses that pairs transmit in a step that is divided into shorter steps (pieces). The contacts are
+//! found again in each piece, and their normals turn from piece to piece, so the impulses must be added up.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::pair::{Contact, Impulse};
 
-/// Impulses transmitted by a pair since the step began.
+/// The impulses that one pair has transmitted since the step began.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Transmitted {
     /// The contact as it was first found in the step.
     pub contact: Contact,
-    /// The step in which it was found to touch.
+    /// Index of the step in which the pair was first found to touch.
     pub found_in: u64,
-    /// Sums along the normals and tangents of the time, N·s.
+    /// Sums of the normal and of the tangential impulses, N·s. Each impulse acts along the normal or tangent at its
+    /// own time.
     pub sums: Impulse,
-    /// Sum as a vector on grain i, N·s.
+    /// Sum of the impulses on grain i as vectors, N·s.
     pub vector: DVec2,
 }
 
 impl Transmitted {
-    /// The impulse of one contact along `normal`.
+    /// Returns the entry of one contact: its impulse, and the impulse as a vector for the given unit normal.
     pub(crate) fn of(contact: Contact, found_in: u64, normal: DVec2, impulse: Impulse) -> Self {
         let vector = impulse.normal * normal + impulse.tangential * normal.perp();
         Self { contact, found_in, sums: impulse, vector }
     }
 }
 
-/// Transmitted impulses of a step, sorted like contacts.
+/// The transmitted impulses of a step, one entry per pair, sorted by pair like the contacts.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct StepSums {
     pub(super) pairs: Vec<Transmitted>,
-    /// Index at which the next pair is looked for first, because pairs come in list order except in shocks.
+    /// Index at which the next pair is looked for first. Except in shocks, pairs are added in the order of the list,
+    /// so this index is usually right.
     #[serde(skip)]
     next: usize,
 }
@@ -44,7 +46,7 @@ impl StepSums {
         self.next = 0;
     }
 
-    /// Total impulse transmitted by a pair.
+    /// Returns the total impulse that a pair has transmitted in the step, zero if the pair is not in the list.
     pub(super) fn of(&self, pair: (u32, u32)) -> Impulse {
         self.place_of(pair).map_or_else(|_| Impulse::default(), |place| self.pairs[place].sums)
     }
@@ -53,7 +55,7 @@ impl StepSums {
         self.pairs.binary_search_by_key(&pair, |there| there.contact.pair())
     }
 
-    /// Adds to the total of a pair.
+    /// Adds the impulse of a contact to the sums of its pair.
     pub(crate) fn add(&mut self, added: Transmitted) {
         let pair = added.contact.pair();
         let at_next = self.pairs.get(self.next).map(|there| there.contact.pair());

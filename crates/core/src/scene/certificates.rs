@@ -1,5 +1,6 @@
-//! Test that the error bound a solve reports is not less than the distance from the solution. Over scenes, steppers,
-//! friction, restitution and time steps, the bound must equal the one summed here a second time from the rows' data,
+//! Test that the error bound that a solve reports is not less than the distance of its velocities from the solution.
+//! Solves that meet the tolerance are compared over scenes, steppers, friction, restitution and time steps. The test
+//! also computes the bound a second time, from the data of the contacts. The reported bound must equal this number,
 //! or exceed it if contacts violate their constraint (`solver::problem::velocity_error`).
 
 use crate::contact::ContactList;
@@ -11,20 +12,20 @@ use crate::solver::{
     velocity_distance, velocity_error,
 };
 
-/// Largest number of grains of the tested scenes. Larger scenes take longer and show nothing new.
+/// Largest number of grains of the tested scenes. Larger scenes take longer and test nothing new.
 const MOST_GRAINS: usize = 250;
 
-/// Steps after which walls driven by a force have reached the grains.
+/// Number of steps after which walls that are driven by a force have reached the grains.
 const STEPS_TO_TOUCH: u64 = 120;
 
-/// Settings for bounded friction.
+/// Solver settings for bounded friction.
 const BOUNDED: SolverSettings = SolverSettings::BOUNDED;
 
-/// Visitor that solves a problem with bounded friction.
+/// Visitor that solves a contact problem with these solver settings (bounded friction).
 struct Certified(SolverSettings);
 
-/// Result of one solve, m/s: the reported bound, the bound computed from the rows' data, and the distance from the
-/// solution if the solve is certified.
+/// Result of one solve, all in m/s: the reported error bound (`told`), the bound computed here from the data of the
+/// contacts (`found`), and the distance from the solution if the solve met its tolerance.
 struct Certificate {
     told: f64,
     found: f64,
@@ -36,7 +37,7 @@ impl ProblemVisitor for Certified {
 
     fn visit<M: Model>(self, problem: &mut StepProblem<M>, _: &ContactList) -> Certificate {
         let report = solve(problem, &mut Memory::default(), &self.0);
-        // As near to the solution as rounding allows. Its own error is subtracted from the distance.
+        // A solution as exact as rounding allows. Its own error is subtracted from the distance.
         let exact = [1e-9, 1e-7, 1e-6].into_iter().find_map(|tolerance| {
             let mut exact = problem.clone();
             let tight = SolverSettings { tolerance, ..SolverSettings::default() };
@@ -52,7 +53,10 @@ impl ProblemVisitor for Certified {
     }
 }
 
-/// Σ m_ij (σ(w + 2z) + z² + g|v| + λv), J, and the mass of all grains in contact, kg.
+/// Computes the gap between the two energies of a problem with bounded friction, Σ m_ij (σ(w + 2z) + z² + g|v| + λv)
+/// over the contacts, J, and the mass of all grains with contacts, kg. In the sum, m_ij is the effective mass, σ is
+/// the shifted normal and λ the tangential reduced impulse, w and v the normal and tangential velocities (w with its
+/// restitution term), z is the amount by which w is below 0, and g is the friction bound.
 fn gap<M: Model>(problem: &StepProblem<M>) -> (f64, f64) {
     let spins = f64::from(u8::from(M::ROTATION));
     let coordinates = |grain: u32| M::coordinates(&problem.bodies.now[grain as usize]);
@@ -81,7 +85,7 @@ fn gap<M: Model>(problem: &StepProblem<M>) -> (f64, f64) {
     (gap, masses.filter(|(_, touches)| *touches).map(|(mass, _)| mass).sum())
 }
 
-/// All settings with which each scene is run.
+/// Returns all settings with which each scene is run.
 fn variants(settings: Settings) -> impl Iterator<Item = Settings> {
     let steppers = [Stepper::Moreau, Stepper::Range];
     let numbers = [(0.0, 1.0), (0.2, 1.0), (0.9, 1.0), (0.5, 8.0)];
@@ -109,7 +113,7 @@ fn no_certificate_is_wrong() {
         for settings in variants(scene.settings()) {
             let mut scene = scene.clone();
             scene.set_settings(settings);
-            // Some steppers refuse the scene.
+            // Some steppers do not support the scene. Such a combination is skipped.
             let Ok(mut run): Result<Simulation, _> = scene.simulation() else { continue };
             let is_driven = scene.motions.iter().any(|motion| motion.drive.is_some());
             if is_driven && run.take_steps(STEPS_TO_TOUCH).is_err() {
@@ -146,8 +150,8 @@ fn no_certificate_is_wrong() {
     assert!(nearest > 0.5, "{nearest}: bounds that are twice too small would not be seen");
 }
 
-/// Visitor that solves discs pressed by walls from all sides to a tolerance in units of √(g d), and returns the
-/// residual.
+/// Visitor that solves a contact problem to this tolerance on velocities, in units of √(g d) (g: gravity, d: mean
+/// diameter). It returns true if the solve converged, and the residual.
 struct Pressed(f64);
 
 impl ProblemVisitor for Pressed {

@@ -1,4 +1,4 @@
-//! The contents of a scene.
+//! The data of a scene, as in a scene file, and its checks.
 
 use std::fmt::Arguments;
 use std::path::PathBuf;
@@ -17,74 +17,74 @@ use crate::world::{
     Parameters, Periodic, Physics, TurningGravity, World, check_name,
 };
 
-/// A scene, built-in or from a TOML file with the same field names. Plain data, checked when a simulation is made
-/// from it ([`Scene::validate`]).
+/// A scene, built-in or from a TOML file with the same field names. The fields are public. They are checked when a
+/// simulation is created ([`Scene::validate`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// Name of the scene.
     pub name: String,
-    /// The diameter d, the unit of length for relative quantities, m.
+    /// The mean diameter d, m. It is the unit of length for settings in diameters.
     pub mean_diameter: f64,
     /// Areal density σ of the discs, kg/m².
     #[serde(default = "one")]
     pub areal_density: f64,
-    /// Pairs touch below this gap, m: 0 except for rounding.
+    /// Tolerance for rounding, m: pairs touch if their gap is below it.
     #[serde(default)]
     pub gap_tolerance: f64,
     /// Simulated time of a run, s.
     pub duration_secs: f64,
-    /// The physics to compute.
+    /// The effects that the mechanics includes: axes, friction, rotation and cohesion.
     pub physics: Physics,
-    /// The field that accelerates the grains.
+    /// Gravity: the acceleration field of the grains.
     pub gravity: Gravity,
-    /// Rotation of gravity, if it turns.
+    /// Rotation of gravity over time, if gravity turns.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity_turn: Option<GravityTurn>,
     /// Periodic borders, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<Periodic>,
-    /// The stepper, with its contact law.
+    /// The stepper, which advances the state by one time step with its contact law.
     #[serde(default)]
     pub stepper: Stepper,
     /// Parameters that may change during a run.
     pub parameters: Parameters,
-    /// Solver settings of each step.
+    /// Settings of the solver of each step.
     #[serde(default)]
     pub solver: SolverSettings,
-    /// Remedies for known failures.
+    /// Remedies: optional corrections of known failures of the stepper. None by default.
     #[serde(default, skip_serializing_if = "Remedies::is_none")]
     pub remedies: Remedies,
-    /// View of the pictures. Default: chosen from the grains' start.
+    /// The rectangle that pictures show. Default: chosen from the initial positions of the grains.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub view: Option<View>,
-    /// Source of the grains, unless they are listed.
+    /// Source from which the grains are read or generated, unless the scene lists them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<GrainSource>,
-    /// Settings for recordings of its runs.
+    /// Settings for recordings of runs of this scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub data: Option<DataSettings>,
     /// Materials of grains, fixed discs and boundaries.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<Material>,
-    /// Contact laws of pairs of materials that differ from the parameters.
+    /// Contact laws of pairs of materials. Pairs that are not listed have the coefficients of the parameters.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pairs: Vec<MaterialPair>,
-    /// Fixed shapes.
+    /// Shapes, other than discs, that grains cannot move.
     #[serde(default)]
     pub boundaries: Vec<Boundary>,
-    /// Fixed discs.
+    /// Discs that grains cannot move.
     #[serde(default)]
     pub fixed_discs: Vec<Disc>,
-    /// Motions of some of these shapes and discs.
+    /// Motions of boundaries and fixed discs. Bodies without a motion stay at rest.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub motions: Vec<Motion>,
-    /// The moving discs.
+    /// The grains: discs that move.
     #[serde(default)]
     pub grains: Vec<Grain>,
 }
 
-/// A rectangle of the scene.
+/// A rectangle in the plane of the scene, which pictures show.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct View {
@@ -94,24 +94,24 @@ pub struct View {
     pub max: DVec2,
 }
 
-/// Source of a scene's grains.
+/// Source of the grains of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "from", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum GrainSource {
-    /// A CSV file of discs.
+    /// A CSV file with a list of discs.
     Csv {
-        /// Its path; in a scene file, relative to that file.
+        /// Path of the file. In a scene file it is relative to the scene file.
         path: std::path::PathBuf,
     },
-    /// A recording, or a table of discs in any of its formats.
+    /// A recording of a run, or a table of discs in one of the formats of recordings.
     Data {
-        /// Its path; in a scene file, relative to that file.
+        /// Path of the recording or the table. In a scene file it is relative to the scene file.
         path: std::path::PathBuf,
-        /// The step whose grains are taken. Default: the last.
+        /// The step of the recording from which the grains are taken. Default: the last step.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         step: Option<u64>,
     },
-    /// A new pile: grains put into a box over a rough base and left to come to rest.
+    /// A new pile: grains that are put into a box over a rough base and left to come to rest.
     #[serde(alias = "rain")]
     NewPile(NewPile),
 }
@@ -120,16 +120,17 @@ fn one() -> f64 {
     1.0
 }
 
-/// Largest distance of a disc from the origin, in its radii. Farther away, its place is rounded by more than a
-/// ten-thousandth of its radius, and soon to the place of other discs.
+/// Largest allowed distance of a disc from the origin, in radii of the disc. At a larger distance, rounding moves the
+/// disc by more than a ten-thousandth of its radius, and a little farther away it moves discs onto each other.
 const FARTHEST_IN_RADII: f64 = 1e15;
 
-/// Upper limit for the mean diameter of the grains, in mean diameters of the scene. Larger values come from an error
-/// of units, such as grains in millimetres. If the limit were smaller, a scene with grains of several sizes could not
+/// Largest allowed mean diameter of the grains, in mean diameters d of the scene. Larger values come from an error of
+/// units, such as grains in millimetres. If the limit were smaller, a scene with grains of several sizes could not
 /// choose one of the sizes as its unit of length.
 const MOST_DIAMETERS_OF_MEAN: f64 = 100.0;
 
-/// The name of the field is formatted only for an error, because a study checks each disc of each run.
+/// Checks that a value is finite and above 0. The name of the field is formatted only for an error message, because a
+/// study checks each disc of each run.
 fn positive(field: Arguments<'_>, value: f64, unit: &str) -> Result<()> {
     if value > 0.0 && value.is_finite() {
         Ok(())
@@ -148,7 +149,8 @@ fn within_reach(field: Arguments<'_>, place: DVec2, radius: f64) -> Result<()> {
 }
 
 impl Scene {
-    /// A scene of grains only, with all physics, under the paper's law. Callers change the rest.
+    /// Returns a scene that contains only grains, with all physics, the stepper `moreau` and the default solver.
+    /// Callers change the other fields.
     pub(super) fn of(
         name: &str,
         mean_diameter: f64,
@@ -182,13 +184,13 @@ impl Scene {
         }
     }
 
-    /// Its stepper, parameters, solver and remedies.
+    /// Returns the stepper, parameters, solver settings and remedies of the scene.
     pub fn settings(&self) -> Settings {
         let Self { stepper, parameters, solver, remedies, .. } = *self;
         Settings { stepper, parameters, solver, remedies }
     }
 
-    /// Replaces its stepper, parameters, solver and remedies.
+    /// Replaces the stepper, parameters, solver settings and remedies of the scene.
     pub fn set_settings(&mut self, settings: Settings) {
         let Settings { stepper, parameters, solver, remedies } = settings;
         (self.stepper, self.parameters, self.solver, self.remedies) =
@@ -198,7 +200,7 @@ impl Scene {
     /// Checks everything except the shapes of the boundaries.
     ///
     /// # Errors
-    /// Names the first field outside its range.
+    /// If a field is outside its range. The error names the first such field.
     pub fn validate(&self) -> Result<()> {
         self.physics.validate()?;
         self.settings().validate()?;
@@ -235,7 +237,7 @@ impl Scene {
         }
         let mean = 2.0 * self.grains.iter().map(|grain| grain.radius).sum::<f64>()
             / self.grains.len() as f64;
-        // `reach_in` checks the other limit: the largest grain.
+        // `reach_in` checks the other limit, which depends on the largest grain.
         let least = mean / MOST_DIAMETERS_OF_MEAN;
         if self.mean_diameter < least {
             let allowed =
@@ -283,7 +285,7 @@ impl Scene {
         self.settings().check_in(&world, self.physics)
     }
 
-    /// The initial world.
+    /// Returns the world of the scene at time 0.
     fn world(&self) -> World {
         World {
             fixed_discs: self.fixed_discs.clone(),
@@ -320,7 +322,8 @@ impl Scene {
         Ok(())
     }
 
-    /// The view of its pictures: its own, or the grains' start with a margin of the grains' height on either side.
+    /// Returns the rectangle that pictures show: the `view` of the scene, or the initial positions of the grains with
+    /// margins on both sides that equal the height of the grains.
     pub fn view(&self) -> View {
         if let Some(view) = self.view {
             return view;
@@ -340,7 +343,7 @@ impl Scene {
         self.with_fixed_discs_beside(View { min: min - room, max: max + room })
     }
 
-    /// A view that also includes the fixed discs below or above the grains' range of x.
+    /// Extends a view by the fixed discs above and below it.
     fn with_fixed_discs_beside(&self, View { mut min, mut max }: View) -> View {
         for disc in &self.fixed_discs {
             if (min.x..max.x).contains(&disc.position.x) {
@@ -351,7 +354,8 @@ impl Scene {
         View { min, max }
     }
 
-    /// Leaves out masses of grains that equal those of their materials bit by bit.
+    /// Removes the mass of each grain whose mass equals, bit by bit, the mass that follows from its material and
+    /// radius.
     pub fn without_implied_masses(mut self) -> Self {
         for grain in &mut self.grains {
             let given = grain.mass.take();
@@ -361,17 +365,17 @@ impl Scene {
         self
     }
 
-    /// The same scene with these grains, in greys by layer.
+    /// Returns this scene with other grains, whose grey levels show their initial layers.
     pub fn with_settled(mut self, grains: Vec<Grain>) -> Self {
         self.grains = grains;
         tone_in_layers(&mut self.grains, self.mean_diameter);
         self
     }
 
-    /// Creates a simulation at t = 0.
+    /// Creates a simulation of the scene at time 0.
     ///
     /// # Errors
-    /// Names the first field outside its range.
+    /// If a field is outside its range. The error names the first such field.
     pub fn simulation(&self) -> Result<Simulation> {
         self.validate()?;
         Simulation::new(self.world(), self.physics, self.settings(), self.gap_tolerance)
@@ -390,26 +394,26 @@ words! {
     }
 }
 
-/// Settings of a recording in scene files and studies.
+/// Settings of a recording, in scene files and studies.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DataSettings {
-    /// Folder of the recording; in a scene file, relative to that file.
+    /// Folder of the recording. In a scene file it is relative to the scene file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub folder: Option<PathBuf>,
-    /// Simulated time between two frames, s.
+    /// Simulated time between two frames of the recording, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub every_secs: Option<f64>,
-    /// File formats. If empty, the reader's default.
+    /// File formats of the recording. If the list is empty, the program that reads these settings uses its default.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub formats: Vec<FormatName>,
 }
 
 impl DataSettings {
-    /// Checks the time between frames; `field` is its name in messages.
+    /// Checks the time between two frames of a recording. `field` is the name of this setting in error messages.
     ///
     /// # Errors
-    /// If it is outside its range.
+    /// If the time is outside its range.
     pub fn validate(&self, field: &str) -> Result<()> {
         match self.every_secs {
             Some(secs) if !(secs > 0.0 && secs.is_finite()) => {

@@ -1,7 +1,7 @@
-//! Test that the reported velocity error of a step is near its distance to Coulomb's law, whatever solved the step:
-//! over scenes, steppers, friction, restitution, time steps, sizes and solvers. The distance is measured to the
-//! nearest of the solutions reached from several starting points. With few starting points the nearest solution may
-//! be missed.
+//! Test that the velocity error that Slump reports for a step is near the distance of the velocities from a solution
+//! under Coulomb friction. It covers scenes, steppers, friction, restitution, time steps, sizes of piles and solvers.
+//! The distance is measured to the nearest of the solutions that a search finds from several starting points. With
+//! few starting points the search may miss the nearest solution.
 
 use crate::contact::ContactList;
 use crate::scene::{Deposition, NewPile, SCENES, Scene, built_in, pile_of, settle, stability};
@@ -12,10 +12,12 @@ use crate::solver::{
 };
 use crate::world::Grain;
 
-/// Smaller distances, in √(g d), are not judged: the reported error is known to be too large there.
+/// Smallest distance from a solution, in √(g d) (g: gravity, d: mean diameter), of the solves that are tested. For
+/// smaller distances the reported error is known to be too large.
 const SMALLEST_DISTANCE: f64 = 1e-6;
 
-/// One solve: the reported error, and the actual distance in the same norm.
+/// One solve: its description, its reported velocity error (`told`), and its actual distance from a solution (`off`),
+/// both in √(g d) and in the same norm.
 #[derive(Clone, Debug)]
 struct Judged {
     what: String,
@@ -23,18 +25,19 @@ struct Judged {
     off: f64,
 }
 
-/// Visitor that solves a problem in several ways and judges each solve.
+/// Visitor that solves a contact problem with several solvers and compares the reported error of each solve with its
+/// distance from a solution.
 struct Judge<'a> {
     what: &'a str,
     how: Search,
 }
 
-/// Search for reference solutions.
+/// Settings of the search for reference solutions.
 #[derive(Clone, Copy)]
 struct Search {
     starts: u32,
     max_sweeps: u32,
-    /// Largest residual of a reference solution.
+    /// Largest residual of an accepted reference solution.
     largest_residual: f64,
 }
 
@@ -44,7 +47,7 @@ impl Search {
     }
 }
 
-/// Solver settings for good and bad solves.
+/// Returns the names and settings of the solvers of the test. Some of them solve a step well and some badly.
 fn ways() -> Vec<(&'static str, SolverSettings)> {
     let sweeps = |method, max_sweeps| SolverSettings::to_residual(method, 1e-13, max_sweeps);
     vec![
@@ -80,7 +83,8 @@ impl ProblemVisitor for Judge<'_> {
             let apart = |solution: &Solution<M>| velocity_distance(&tried, &solution.problem);
             let mut off = solutions.iter().map(apart).fold(f64::INFINITY, f64::min);
             if off > told {
-                // The nearest solution may be one that none of the starting points led to.
+                // The nearest solution may be one that no starting point led to. So search also from the velocities
+                // of this solve.
                 let from_here = search.from(&tried, 0);
                 if from_here.residual <= largest_residual {
                     off = off.min(apart(&from_here));
@@ -92,10 +96,10 @@ impl ProblemVisitor for Judge<'_> {
     }
 }
 
-/// Judges the given steps of a scene.
+/// Solves the given steps of a scene with all solvers and returns the comparisons.
 fn judge(scene: &Scene, what: &str, steps: &[u64], how: Search) -> Vec<Judged> {
     let mut judged = Vec::new();
-    // Some steppers refuse the scene.
+    // Some steppers do not support the scene. Such a combination is skipped.
     let Ok(mut run) = scene.simulation() else { return judged };
     for &step in steps {
         while run.observables().step < step {
@@ -109,8 +113,8 @@ fn judge(scene: &Scene, what: &str, steps: &[u64], how: Search) -> Vec<Judged> {
     judged
 }
 
-/// Prints a summary of solves whose distance exceeds rounding. Returns the fraction whose reported error is too
-/// small, and the median ratio of reported error to distance.
+/// Prints a summary of the solves whose distance from a solution is larger than rounding. Returns the fraction of
+/// these solves whose reported error is too small, and the median ratio of reported error to distance.
 fn tell(name: &str, judged: &[Judged]) -> [f64; 2] {
     let off = judged.iter().filter(|it| it.off > SMALLEST_DISTANCE);
     let mut ratios: Vec<(f64, &Judged)> = off.map(|it| (it.told / it.off, it)).collect();
@@ -141,7 +145,7 @@ fn tell(name: &str, judged: &[Judged]) -> [f64; 2] {
     [share, at(0.5)]
 }
 
-/// Scenes with the values of friction, restitution and time step to test.
+/// Returns the built-in scenes of at most 250 grains, with the tested values of friction, restitution and time step.
 fn small_scenes() -> Vec<(String, Scene)> {
     let mut scenes = Vec::new();
     for info in SCENES {
@@ -171,7 +175,7 @@ fn small_scenes() -> Vec<(String, Scene)> {
     scenes
 }
 
-/// Scenes in which one contact carries a large load.
+/// Returns scenes in which one contact carries a large load.
 fn hard_scenes() -> Vec<(String, Scene)> {
     let mut scenes = Vec::new();
     for (radius, friction) in [(1e-3, 0.0), (1.6e-5, 0.0), (1e-3, 0.5)] {
@@ -196,7 +200,7 @@ fn hard_scenes() -> Vec<(String, Scene)> {
     scenes
 }
 
-/// A pile that collapses or stays at rest.
+/// Returns a pile that collapses or stays at rest, depending on its Bond number.
 fn pile(grains: usize, bond: f64, time_step_secs: f64) -> Scene {
     let width = 16.0 * (grains as f64 / 138.0).sqrt();
     let deposition = Deposition::DropAndRoll;
@@ -213,7 +217,7 @@ fn pile(grains: usize, bond: f64, time_step_secs: f64) -> Scene {
     scene
 }
 
-/// Checks the reported errors, overall and for each way of solving.
+/// Checks the reported errors of all solves together, and prints a summary for each solver.
 #[track_caller]
 fn check(name: &str, judged: &[Judged], largest_median: f64) {
     let [share, median] = tell(name, judged);
@@ -253,6 +257,6 @@ fn so_it_is_of_large_piles() {
             all.extend(judged);
         }
     }
-    // For piles at rest, small errors are reported too large.
+    // For piles at rest the estimate is much larger than a small true error, so the median is not limited.
     check("large piles", &all, f64::INFINITY);
 }

@@ -1,4 +1,4 @@
-//! Scenes: bodies, physics, parameters and solver of a simulation. [`SCENES`] lists the built-in ones.
+//! Scenes: bodies, physics, parameters and solver settings of a simulation. [`SCENES`] lists the built-in scenes.
 
 #[cfg(test)]
 mod certificates;

@@ -1,4 +1,4 @@
-//! Parameters of a new pile.
+//! Parameters of a new pile: number of grains, box, seed, deposition and sizes.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::scene::sizes::Sizes;
 use crate::setting::words;
 
-/// Least jitter of the largest disc on the rain's lattice, in diameters.
+/// Room for a random displacement of the largest disc on the lattice from which the grains rain, in diameters.
 const JITTER: f64 = 0.1;
 
 words! {
@@ -20,7 +20,7 @@ words! {
     }
 }
 
-/// Parameters of a new pile.
+/// Parameters of a new pile: grains that are put into a box over a rough base and left to come to rest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct NewPile {
@@ -28,9 +28,9 @@ pub struct NewPile {
     pub grains: usize,
     /// Width of the box, in diameters.
     pub box_width_in_diameters: f64,
-    /// Seed of the random diameters and places.
+    /// Seed of the random numbers for diameters and positions.
     pub seed: u64,
-    /// Method of placing the grains.
+    /// Method by which the grains are placed.
     #[serde(skip_serializing_if = "is_default")]
     pub deposition: Deposition,
     /// Distribution of the diameters.
@@ -38,14 +38,14 @@ pub struct NewPile {
     pub sizes: Sizes,
 }
 
-/// Defaults are not written: files without the field predate other choices.
+/// True if a value is the default. Defaults are not written to files, because older files do not have the field.
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
 impl Default for NewPile {
-    /// The paper's 138 grains. The seed is one of nine tried; with it, single runs of Fig. 4 show the effects of the
-    /// means over many initial states.
+    /// The 138 grains of the paper. The seed is one of nine that were tried. With this seed, single runs of the
+    /// paper's Fig. 4 show the same effects as means over many initial states.
     fn default() -> Self {
         Self {
             grains: 138,
@@ -61,7 +61,7 @@ impl NewPile {
     /// Checks the parameters against their ranges.
     ///
     /// # Errors
-    /// Names the field, its value and its range.
+    /// If a parameter is outside its range. The error names the field, its value and the range.
     pub fn validate(&self) -> Result<()> {
         let (width, spacing) = (self.box_width_in_diameters, self.spacing());
         if !(spacing..1e6).contains(&width) {
@@ -74,12 +74,13 @@ impl NewPile {
         Ok(())
     }
 
-    /// Spacing of the rain's lattice, in diameters: room for the largest disc and its jitter.
+    /// Spacing of the lattice from which the grains rain, in diameters: the largest diameter plus room for a random
+    /// displacement.
     pub(super) fn spacing(&self) -> f64 {
         self.sizes.largest() + JITTER
     }
 
-    /// Discs side by side in a row of the rain's lattice.
+    /// Number of discs in a row of the lattice from which the grains rain.
     pub(super) fn columns(&self) -> usize {
         (self.box_width_in_diameters / self.spacing()).floor() as usize
     }

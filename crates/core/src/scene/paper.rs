@@ -1,4 +1,4 @@
-//! The paper's scenes: the pile (§3), the collision (§2.2) and the cradle (§4).
+//! The scenes of the paper: the pile (§3), the collision (§2.2) and the cradle (§4).
 
 use std::ops::RangeInclusive;
 
@@ -10,26 +10,26 @@ use crate::scene::{NewPile, Scene, View};
 use crate::solver::{Method, Ordering, SolverSettings, StopTest};
 use crate::world::{Disc, Grain, Gravity, Parameters, Physics};
 
-/// Diameter d, m.
+/// Mean diameter d of the pile, m.
 pub(super) const DIAMETER: f64 = 5e-3;
-/// Gravity g, m/s².
+/// Gravity g of the pile, m/s².
 pub(super) const GRAVITY: f64 = 9.8;
 const NAME: &str = "pile";
-/// Allowed widths of a base.
+/// Allowed widths of a rough base, in diameters.
 const BASE_WIDTHS_IN_DIAMETERS: RangeInclusive<f64> = 1.0..=1e5;
-/// Margin of the rough base beyond the box on either side, in heights of the pile: further than any grain of a
-/// collapsing pile moves in the paper's second.
+/// Width of the rough base beyond the box on either side, in heights of the pile. No grain of a collapsing pile moves
+/// farther in the one second of the paper's runs.
 const BASE_MARGIN_IN_HEIGHTS: f64 = 5.0;
-/// Largest height of a grain above the base, to which two diameters are added per grain. The loosest lattice of rain
-/// is a column with 1.3 diameters per grain.
+/// Allowed height of a grain above the base, in diameters. Two diameters per grain are added to it. The loosest
+/// initial lattice of a pile is a column with 1.3 diameters per grain, which is below this limit.
 const LEAST_ROOM_IN_DIAMETERS: f64 = 1000.0;
 
 const INITIAL_STATE: &str = include_str!("../../assets/pile_138.csv");
 
-/// The paper's pile of 138 grains, from the initial state shipped with the program.
+/// Returns the paper's pile of 138 grains, in the initial state that is shipped with the program.
 ///
 /// # Errors
-/// Never in a released program. A modified asset is reported with its line.
+/// Never in a released program. If the file of the initial state has been modified, the error names the wrong line.
 pub fn paper_pile() -> Result<Scene> {
     let lines = INITIAL_STATE.lines().filter(|line| !line.starts_with('#')).skip(1);
     let disc = |line: &str| {
@@ -43,10 +43,12 @@ pub fn paper_pile() -> Result<Scene> {
     pile_of(grains, NewPile::default().box_width_in_diameters)
 }
 
-/// A pile of the given grains, which were settled in a box `box_width_in_diameters` wide.
+/// Returns a pile of the given grains, which have come to rest in a box `box_width_in_diameters` wide. The box itself
+/// is not part of the scene.
 ///
 /// # Errors
-/// If a grain is so high that the base, as wide as a collapse may reach, would have far more discs than the pile.
+/// If a grain is too high. The base is as wide as the grains may spread, so it would have far more discs than the
+/// pile.
 pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Result<Scene> {
     let highest = DIAMETER * (LEAST_ROOM_IN_DIAMETERS + 2.0 * grains.len() as f64);
     if let Some(index) = grains.iter().position(|grain| grain.position.y > highest) {
@@ -65,8 +67,8 @@ pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Result<Sc
     Ok(Scene { fixed_discs, ..Scene::of(NAME, DIAMETER, gravity, parameters, grains) })
 }
 
-/// Fixed discs of diameter d, centres on y = 0 and spaced d, symmetric about x = 0, at least
-/// `width_in_diameters` wide.
+/// Returns a rough base: a row of fixed discs that touch each other. Their diameter is `diameter` (m), their centres
+/// are on y = 0 and symmetric about x = 0, and the row is at least `width_in_diameters` diameters wide.
 pub fn rough_base(width_in_diameters: f64, diameter: f64) -> Vec<Disc> {
     let half = (0.5 * width_in_diameters).ceil() as i64;
     (-half..=half)
@@ -74,7 +76,7 @@ pub fn rough_base(width_in_diameters: f64, diameter: f64) -> Vec<Disc> {
         .collect()
 }
 
-/// Gives a pile a rough base of this width.
+/// Replaces the base of a pile by a rough base of this width in diameters.
 ///
 /// # Errors
 /// If the width is outside its range, or the scene is not a pile.
@@ -89,20 +91,21 @@ pub fn put_on_base(scene: &mut Scene, width_in_diameters: f64) -> Result<()> {
     Ok(())
 }
 
-/// Diameter d of the collision and of the cradle, m.
+/// Diameter d of the discs of the collision and of the cradle, m.
 const LINE_DIAMETER: f64 = 0.3;
 const ON_LINE: Physics = Physics { axes: 1, friction: false, rotation: false, cohesion: true };
 
-/// The view of both scenes, from corners in diameters.
+/// Returns the view of the collision or of the cradle. The corners are given in diameters.
 fn view_on_line(min: DVec2, max: DVec2) -> Option<View> {
     Some(View { min: LINE_DIAMETER * min, max: LINE_DIAMETER * max })
 }
 
-/// Two bodies, one contact (paper §2.2): a disc dropped on another, fixed one.
+/// Returns the scene of the collision with one contact (paper §2.2): a disc falls on a fixed disc.
 ///
-/// With A the normal force that would give v̄ = 0, the contact graph has three cases: for A > 0 the disc bounces, for
-/// −C₀ < A < 0 the contact closes again, for A < −C₀ it opens. The built-in scene starts in the first case and passes
-/// through the others as the bounces decay.
+/// Let A be the normal force (N) for which the formal velocity v̄ = (v⁺ + ρ v⁻)/(1 + ρ) of the contact would be 0
+/// (v⁻, v⁺: normal velocity before and after the step, ρ: restitution), and C₀ the cohesion force (N). The contact
+/// has three cases. For A > 0 the disc bounces. For −C₀ < A < 0 the contact closes again. For A < −C₀ it opens. The
+/// built-in scene starts in the first case and passes through the other cases as the bounces decay.
 pub fn collision() -> Scene {
     let radius = 0.5 * LINE_DIAMETER;
     let gravity = Gravity::Uniform { acceleration: DVec2::new(-2.0, 0.0) };
@@ -118,20 +121,22 @@ pub fn collision() -> Scene {
     }
 }
 
-/// Initial position of k, in diameters left of i, that gives the paper's pattern of open and closed bonds. The paper
-/// does not state its value; this one was found by a search.
+/// Initial distance from disc k to disc i on its right, in diameters, in the cradle. With this distance the cradle
+/// shows the paper's pattern of open and closed bonds over the time step. The paper does not state the distance. This
+/// value was found by a search.
 const START_IN_DIAMETERS: f64 = 7.865;
 
-/// Three discs on a line, drawn towards one of them (paper §4).
+/// Returns the scene of the cradle (paper §4): three discs on a line, with an attraction towards the first.
 ///
-/// i sits at the centre of attraction, j touches it on the right, and k starts at rest on the left and falls in. The
-/// time step decides whether the shock separates i and j. At small steps the solver's remaining error also matters:
-/// an exactly solved step leaves v_ij = 0.
+/// Disc i is at the centre of attraction, and disc j touches it on the right. Disc k starts at rest on the left and
+/// falls onto disc i. The time step decides if the shock separates i and j. At small time steps the remaining error
+/// of the solver matters, too: in an exactly solved step the relative velocity of i and j after the shock is 0.
 pub fn cradle() -> Scene {
     cradle_from(START_IN_DIAMETERS)
 }
 
-/// The cradle with k starting `start_in_diameters` left of i, centre to centre.
+/// Returns the cradle in which disc k starts `start_in_diameters` diameters to the left of disc i, from centre to
+/// centre.
 pub fn cradle_from(start_in_diameters: f64) -> Scene {
     let disc = |x: f64, tone: u8| Grain {
         tone,

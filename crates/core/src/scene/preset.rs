@@ -1,15 +1,17 @@
-//! Presets: settings that are used together.
+//! Presets: groups of settings that are used together.
 
 use super::Scene;
 use crate::setting::{Group, words};
 use crate::sim::{REMEDIES, Remedies, Settings};
 use crate::solver::{Method, SolverSettings, StopTest};
 
-/// Touch tolerance, in d, so that contacts opened by the errors of a step stay in touch.
+/// Touch tolerance (largest gap at which grains touch) of the preset `robust`, in mean diameters. Contacts that the
+/// errors of a step open by less than this still touch.
 const TOUCH_TOLERANCE: f64 = 1e-3;
-/// Contacts slower than this many g·Δt do not bounce. Nearly every step then has a solution.
+/// Restitution threshold of the preset `robust`: contacts that close slower than this many g·Δt (gravity times time
+/// step) do not bounce. With this threshold nearly every step has a solution.
 const RESTITUTION_THRESHOLD: f64 = 2.0;
-/// Tolerance on the residual of each step.
+/// Tolerance on the residual of each step in the preset `robust`.
 const TOLERANCE: f64 = 1e-8;
 const MAX_SWEEPS: u32 = 5_000;
 
@@ -23,19 +25,19 @@ words! {
 }
 
 impl Preset {
-    /// Changes the settings of a scene.
+    /// Changes the settings of a scene to those of the preset.
     pub fn apply(self, scene: &mut Scene) {
         let mut settings = scene.settings();
         self.apply_to_settings(&mut settings);
         scene.set_settings(settings);
     }
 
-    /// Changes the settings that can change during a run.
+    /// Changes those settings that can change during a run to the settings of the preset.
     pub fn apply_to_settings(self, settings: &mut Settings) {
         match self {
             Self::Paper => {
                 settings.parameters.touch_tolerance = 0.0;
-                // A scene with its own solver settings demonstrates a particular scheme.
+                // A scene with solver settings of its own demonstrates a particular scheme, so these settings stay.
                 if settings.solver == SolverSettings::default() {
                     settings.solver = SolverSettings::PAPER;
                     *settings = settings.with_only_what_is_taken();

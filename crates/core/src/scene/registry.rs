@@ -1,4 +1,4 @@
-//! The built-in scenes by name.
+//! The list of the built-in scenes, and access to a scene by its name.
 
 use super::{Scene, collision, cradle, experiments, paper_pile, stability};
 use crate::error::{Error, Result};
@@ -13,30 +13,30 @@ words! {
     }
 }
 
-/// A built-in scene.
+/// Name, group and constructor of a built-in scene.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneInfo {
     /// Name on the command line.
     pub name: &'static str,
-    /// Other names: challenges that use this scene.
+    /// Further names: the names of the stability tests that use this scene.
     pub also: &'static [&'static str],
-    /// Purpose of the scene.
+    /// Group under which the scene is listed.
     pub group: SceneGroup,
-    /// Summary of one line.
+    /// Description of one line.
     pub summary: &'static str,
     /// Creates the scene.
     pub make: fn() -> Result<Scene>,
 }
 
 impl SceneInfo {
-    /// The built-in scene with this name, in upper or lower case.
+    /// Returns the built-in scene with this name, in upper or lower case.
     pub fn named(name: &str) -> Option<&'static Self> {
         let is_it = |known: &&str| known.eq_ignore_ascii_case(name);
         SCENES.iter().find(|scene| is_it(&scene.name) || scene.also.iter().any(is_it))
     }
 }
 
-/// Declares the built-in scenes by group: names, summary and constructor.
+/// Declares the built-in scenes by group, each with its names, summary and constructor.
 macro_rules! scenes {
     ($($Group:ident { $($name:literal $(| $also:literal)*, $summary:literal => $make:expr;)* })*) => {
         /// All built-in scenes.
@@ -113,7 +113,7 @@ pub(crate) fn scene_names() -> String {
     SCENES.iter().map(|scene| scene.name).collect::<Vec<_>>().join(", ")
 }
 
-/// A built-in scene by name.
+/// Returns the built-in scene with this name.
 ///
 /// ```
 /// let mut scene = slump_core::scene::built_in("pile")?;
@@ -124,7 +124,7 @@ pub(crate) fn scene_names() -> String {
 /// ```
 ///
 /// # Errors
-/// If no built-in scene has that name.
+/// If no built-in scene has this name.
 pub fn built_in(name: &str) -> Result<Scene> {
     let info = SceneInfo::named(name).ok_or_else(|| {
         Error::value("scene", name, format!("one of {} or a file.toml", scene_names()))

@@ -7,16 +7,16 @@ use rand::RngExt;
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
-/// Number of standard deviations at which normal and log-normal distributions are cut off. With a larger number, few
-/// extreme grains would decide the width of the rain's lattice.
+/// Number of standard deviations at which normal and log-normal distributions are cut off. With a larger number, a
+/// few extreme grains would decide how wide the lattice is from which the grains rain.
 const CUT: f64 = 2.5;
-/// Allowed forms, for messages.
+/// Allowed forms of a distribution, for error messages.
 const FORM: &str = "uniform:S (0 ≤ S ≤ 0.8), normal:S (0 < S ≤ 0.3), lognormal:S (0 < S ≤ 0.5), \
     bidisperse:RATIO,FRACTION (1 < RATIO ≤ 5, 0 < FRACTION < 1) or sieves:DIAMETER=FRACTION,… (2 to 50 sieves; \
     diameters > 0 that rise by at most a factor 20, mass fractions that rise from 0 to 1)";
 
-/// Distribution of the diameters of a new pile, with the mean d of the scene. It is made from text, as in
-/// `lognormal:0.2`.
+/// Distribution of the diameters of a new pile. Diameters are scaled so that their mean is the mean diameter d of the
+/// scene. A distribution is created from text such as `lognormal:0.2`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Sizes {
@@ -26,29 +26,30 @@ pub struct Sizes {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Kind {
-    /// Within d·(1 ± this number).
+    /// Uniform distribution from d·(1 − s) to d·(1 + s). The number is s.
     Uniform(f64),
-    /// Standard deviation in d, before the cut.
+    /// Normal distribution. The number is the standard deviation in mean diameters, before the tails are cut off.
     Normal(f64),
-    /// Standard deviation of the logarithm, before the cut.
+    /// Log-normal distribution. The number is the standard deviation of the logarithm, before the tails are cut off.
     LogNormal(f64),
-    /// Ratio of the large to the small diameter, and number fraction of the large grains.
+    /// Two diameters. The numbers are the ratio of the large to the small diameter, and the fraction of the grains
+    /// that are large, by number.
     Bidisperse(f64, f64),
-    /// Diameters of the openings, in any unit, and mass fractions that pass. Between two sieves the passing mass is
-    /// linear in the diameter. The mass of a disc is proportional to its area, so the number of grains per diameter is
-    /// proportional to 1/D².
+    /// Sieve curve: for each sieve the diameter of its openings, in any unit, and the mass fraction of the grains
+    /// that pass. Between two sieves the passing mass is linear in the diameter D. The mass of a disc is proportional
+    /// to its area, so the number of grains per diameter is proportional to 1/D².
     Sieves(Vec<[f64; 2]>),
 }
 
 impl Default for Sizes {
-    /// The sizes of the shipped pile.
+    /// The distribution of the diameters in the pile that is shipped with Slump.
     fn default() -> Self {
         Self { kind: Kind::Uniform(0.2), text: "uniform:0.2".into() }
     }
 }
 
 impl Sizes {
-    /// The largest diameter, d.
+    /// Returns the largest diameter, in mean diameters.
     pub(super) fn largest(&self) -> f64 {
         let largest = match &self.kind {
             Kind::Uniform(spread) => 1.0 + spread,
@@ -60,7 +61,7 @@ impl Sizes {
         largest / self.mean()
     }
 
-    /// Draws a diameter, d.
+    /// Draws a random diameter, in mean diameters.
     pub(super) fn draw(&self, random: &mut Pcg64) -> f64 {
         let diameter = match &self.kind {
             Kind::Uniform(spread) => random.random_range(1.0 - spread..=1.0 + spread),
@@ -74,9 +75,9 @@ impl Sizes {
                     rank -= count(class);
                     rank < 0.0
                 };
-                // If rounding leads beyond the last class, the diameter is the largest.
+                // If rounding leads beyond the last class, take the largest diameter.
                 let class = sieves.windows(2).find(is_in);
-                // Within a class, 1/D is uniform.
+                // Within a class (between two sieves), 1/D is distributed uniformly.
                 class.map_or(sieves[sieves.len() - 1][0], |class| {
                     let [fine, coarse] = [class[0][0], class[1][0]];
                     1.0 / (1.0 / coarse - (1.0 / fine - 1.0 / coarse) * rank / count(class))
@@ -86,7 +87,7 @@ impl Sizes {
         diameter / self.mean()
     }
 
-    /// The mean diameter before it is scaled to d.
+    /// Returns the mean diameter of the distribution before it is scaled to the mean diameter of the scene.
     fn mean(&self) -> f64 {
         match &self.kind {
             Kind::Uniform(_) | Kind::Normal(_) => 1.0,
@@ -107,7 +108,7 @@ impl Sizes {
     }
 }
 
-/// A number of the standard normal distribution between ± [`CUT`], by rejection.
+/// Returns a random number of the standard normal distribution between −[`CUT`] and +[`CUT`], by rejection sampling.
 fn cut_normal(random: &mut Pcg64) -> f64 {
     loop {
         let number = random.random_range(-CUT..=CUT);
@@ -117,7 +118,8 @@ fn cut_normal(random: &mut Pcg64) -> f64 {
     }
 }
 
-/// Number of grains between the first and the last sieve, in a unit of mass of discs with diameter 1: ∫ dM/D².
+/// Returns the number of grains between the first and the last sieve, ∫ dM/D² over the passing mass M. The unit of
+/// mass is a disc of diameter 1.
 fn count(sieves: &[[f64; 2]]) -> f64 {
     let count = |class: &[[f64; 2]]| (class[1][1] - class[0][1]) / (class[0][0] * class[1][0]);
     sieves.windows(2).map(count).sum()
@@ -130,7 +132,7 @@ impl fmt::Display for Sizes {
 }
 
 impl FromStr for Sizes {
-    /// The allowed values.
+    /// The allowed forms of a distribution.
     type Err = &'static str;
 
     fn from_str(text: &str) -> Result<Self, &'static str> {

@@ -1,12 +1,13 @@
-//! Greys of the grains of a pile.
+//! Grey levels of the grains of a pile.
 
 use crate::world::Grain;
 
-/// Height of the layers with different greys, in diameters.
+/// Height of the layers with different grey levels, in diameters.
 const LAYER_IN_DIAMETERS: f64 = 2.0;
 const LAYER_TONES: [u8; 2] = [222, 168];
 
-/// Colours grains by their initial layer, so that a picture shows where each part moved.
+/// Sets the grey levels of grains by their initial layer, so that a picture shows how far each layer has moved.
+/// `diameter` is the mean diameter, m.
 pub(crate) fn tone_in_layers(grains: &mut [Grain], diameter: f64) {
     for grain in grains {
         let layer = (grain.position.y / (LAYER_IN_DIAMETERS * diameter)).floor() as i64;

@@ -1,4 +1,4 @@
-//! The change most likely to help against an alarm, under the settings that raised it.
+//! Advice for each alarm: the change most likely to help, under the settings of the run.
 
 use crate::setting::words;
 use crate::sim::settings::{Settings, SpringDashpot, Stepper, stable_substeps};
@@ -6,12 +6,12 @@ use crate::sim::state::State;
 use crate::solver::{FrictionModel, Method, SolverSettings};
 use crate::world::{FrictionCone, Periodic, Physics, World};
 
-/// Tolerance, in any measure, that no step of a pile reaches. With a tolerance below it, the advice on an unsolved
-/// step is a larger tolerance.
+/// Tolerance (in the unit of any stop criterion) that no step of a pile reaches because of rounding. If the tolerance
+/// of the settings is smaller, the advice on an unsolved step is a larger tolerance.
 const BELOW_ROUNDING: f64 = 1e-15;
 
 words! {
-    /// The change most likely to help against an alarm.
+    /// Change of the settings or the scene that is most likely to help against the failure that an alarm reports.
     pub enum Advice {
         TimeStep = "time-step", "try a smaller time step";
         Stiffness = "stiffness", "try a larger stiffness";
@@ -40,7 +40,8 @@ words! {
     }
 }
 
-/// Advice on grains placed with overlap. Only `moreau` supports the remedy that moves them apart.
+/// Returns the advice on grains placed in overlap. Only `moreau` supports the remedy `push-out`, which moves them
+/// apart.
 pub(super) fn on_placed(settings: &Settings) -> Advice {
     match settings.stepper {
         Stepper::Moreau => Advice::PushOut,
@@ -48,7 +49,8 @@ pub(super) fn on_placed(settings: &Settings) -> Advice {
     }
 }
 
-/// Advice on a cohesion force that is 0 although Bond is not.
+/// Returns the advice on a cohesion force that is 0 although the Bond number is above 0; `None` if there is no such
+/// problem.
 pub(super) fn on_no_cohesion(
     settings: &Settings,
     world: &World,
@@ -63,7 +65,7 @@ pub(super) fn on_no_cohesion(
     }
 }
 
-/// Advice on bonds that ended because their pairs turned. `range` has no compressive cone.
+/// Returns the advice on bonds that ended because their pairs turned. `range` does not support the compressive cone.
 pub(super) fn on_turned_bonds(settings: &Settings) -> Advice {
     match settings.parameters.cone {
         FrictionCone::Compressive => Advice::BondsOfDem,
@@ -71,7 +73,7 @@ pub(super) fn on_turned_bonds(settings: &Settings) -> Advice {
     }
 }
 
-/// Advice on a state that is no longer finite.
+/// Returns the advice on a state that is no longer finite.
 pub(super) fn on_overflow(state: &State, settings: &Settings) -> Advice {
     match has_too_few_substeps(state, settings) {
         true => Advice::StableSubsteps,
@@ -79,8 +81,8 @@ pub(super) fn on_overflow(state: &State, settings: &Settings) -> Advice {
     }
 }
 
-/// Advice on bodies that overlap too deeply, with the stiffness (N/m) of the springs that yielded. Springs yield at
-/// any time step; under all other laws the contact is detected too late.
+/// Returns the advice on bodies that overlap too deeply and, if their springs are too soft, the present stiffness of
+/// the springs (N/m). Springs yield at any time step; under all other laws the contact was detected too late.
 pub(super) fn on_depth(state: &State, settings: &Settings) -> (Advice, Option<f64>) {
     if settings.stepper != Stepper::Dem {
         return (Advice::TimeStep, None);
@@ -93,14 +95,15 @@ pub(super) fn on_depth(state: &State, settings: &Settings) -> (Advice, Option<f6
     (Advice::Stiffness, Some(stiffness))
 }
 
-/// True for springs with fewer substeps than are stable.
+/// True if the stepper is `dem` and the requested number of substeps is smaller than the stable number.
 fn has_too_few_substeps(state: &State, settings: &Settings) -> bool {
     let (parameters, asked) = (&settings.parameters, settings.parameters.substeps);
     let stable = stable_substeps(&state.world, state.physics, parameters);
     settings.stepper == Stepper::Dem && asked > 0 && f64::from(asked) < stable
 }
 
-/// Advice on contacts that created energy in a solved step. Under `moreau` and `range` this also needs friction.
+/// Returns the advice on contacts that created energy in a solved step. Under `moreau` and `range` contacts can create
+/// energy only with friction.
 pub(super) fn on_created_energy(settings: &Settings) -> Advice {
     match settings.parameters.restitution > 0.0 {
         true => Advice::NoRestitution,
@@ -108,7 +111,8 @@ pub(super) fn on_created_energy(settings: &Settings) -> Advice {
     }
 }
 
-/// Advice on unsolved steps. `stalled` tells if the last of them had stalled.
+/// Returns the advice on unsolved steps. `stalled` is true if the residual of the last unsolved step had stopped
+/// decreasing.
 pub(super) fn on_unsolved(state: &State, settings: &Settings, stalled: bool) -> Advice {
     let Settings { stepper, parameters, solver, .. } = settings;
     if !stalled && solver.max_sweeps < SolverSettings::DEFAULT.max_sweeps {
@@ -121,7 +125,7 @@ pub(super) fn on_unsolved(state: &State, settings: &Settings, stalled: bool) -> 
     if stalled && may_bounce && stepper.reads("restitution-threshold") {
         return Advice::RestitutionThreshold;
     }
-    // Under the other friction models, Newton's method would solve a different law.
+    // Only under Coulomb friction: under another friction model, solver `newton` would solve a different law.
     if solver.friction_model == FrictionModel::Coulomb {
         let newton = Method::Newton.info();
         let is_driven = state.world.motions.iter().any(|motion| motion.drive.is_some());
@@ -130,9 +134,9 @@ pub(super) fn on_unsolved(state: &State, settings: &Settings, stalled: bool) -> 
         if is_taken && solver.method != Method::Newton {
             return Advice::Newton;
         }
-        // With walls driven by a force `auto` stops before the limit, so more sweeps would not help.
+        // With walls driven by a force, solver `auto` stops before the sweep limit, so more sweeps would not help.
         let gives_up = solver.method == Method::Auto;
-        // Of any contact: pairs of materials may have their own.
+        // Largest coefficients of any contact, because pairs of materials may have their own coefficients.
         let [friction, rolling] = state.largest_friction(parameters);
         let is_taken = state.physics.friction && friction > 0.0 && rolling == 0.0;
         if (stalled || gives_up) && is_taken {

@@ -1,5 +1,5 @@
-//! Alarms of a run: the kind of failure, its first step, and the change most likely to help. [`Watch`] raises alarms,
-//! and `advice` chooses the changes.
+//! Alarms (warnings) of a run: the kind of failure, the first step that showed it, and the change most likely to help.
+//! [`Watch`] raises alarms, and `advice` chooses the changes.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,29 +12,30 @@ use crate::sim::losses::{Losses, NewLosses};
 use crate::sim::state::State;
 use crate::sim::{Observables, Settings};
 
-/// Number of consecutive steps at the sweep limit that raises an alarm. With fewer, single hard steps, which do no
-/// harm, would raise it.
+/// Number of consecutive unsolved steps that raises an alarm. With a smaller number, a few hard steps, which do no
+/// harm, would raise the alarm.
 const STEPS_AT_LIMIT: u32 = 100;
-/// Overlap beyond the travel of its grains in one step that raises an alarm, in diameters of the smaller disc. A smaller
-/// value warns of errors within a solver's tolerance; with a larger one, discs that unsolved steps let sink go unnoticed
-/// for longer.
+/// Overlap that raises an alarm, in diameters of the smaller disc. The distance that the two grains travel in one step
+/// is subtracted first. A smaller value warns of errors within a solver's tolerance. With a larger value, an alarm on
+/// discs that sink into each other in unsolved steps comes later.
 const LARGEST_OVERLAP: f64 = 0.05;
-/// Largest travel of a step that excuses an overlap, in the same unit. A contact is detected one step late, so that a
-/// pile that falls overlaps by up to this much (138 grains without cohesion, Δt = 5 ms, six initial states: 0.43 to
-/// 0.56 mean diameters). With a larger value, grains pass through each other without an alarm.
+/// Upper limit for the travel of two grains that is subtracted from their overlap, in diameters of the smaller disc. A
+/// contact is detected one step late, so contacts of a falling pile overlap by up to this travel (138 grains without
+/// cohesion, Δt = 5 ms, six initial states: 0.43 to 0.56 mean diameters). With a larger value, grains pass through each
+/// other without an alarm.
 const LARGEST_TRAVEL: f64 = 0.75;
-/// Growth of an overlap that grains were placed with, in the same unit, that counts as a new overlap. Smaller values
-/// count the errors that a solver's tolerance allows.
+/// Growth of an overlap with which grains were placed that counts as a new overlap, in diameters of the smaller disc.
+/// With a smaller value, errors that a solver's tolerance allows count as new overlaps.
 const GROWTH_OF_OVERLAP: f64 = 0.01;
-/// Fraction of the largest kinetic energy that contacts may create. With smaller values, errors within a solver's
-/// tolerance raise the alarm.
+/// Energy that contacts may create without an alarm, divided by the largest kinetic energy of the run. With smaller
+/// values, errors within a solver's tolerance raise the alarm.
 const ENERGY_OF_MOTION: f64 = 0.01;
-/// Height by which contacts may lift all grains, in mean diameters. With smaller values, a stepper that pushes out
-/// overlap raises the alarm.
+/// Height by which contacts may lift all grains without an alarm, in mean diameters. With smaller values, a stepper
+/// that pushes out overlap raises the alarm.
 const ENERGY_OF_HEIGHT: f64 = 0.1;
 
 words! {
-    /// Kind of failure.
+    /// Kind of failure that an alarm reports.
     pub enum AlarmKind {
         NotFinite = "not-finite", "the state is no longer finite";
         GrainLost = "grain-lost", "a grain has gone through a wall";
@@ -50,24 +51,24 @@ words! {
     }
 }
 
-/// A failure in a run.
+/// Warning that a run has failed in some way.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Alarm {
     /// Kind of failure.
     pub kind: AlarmKind,
-    /// The first step that showed it.
+    /// First step that showed the failure.
     pub step: u64,
-    /// Simulated time of that step, s.
+    /// Simulated time at the end of the first step that showed the failure, s.
     pub time_secs: f64,
-    /// The change most likely to help.
+    /// Advice: the change of the settings or the scene that is most likely to help.
     pub advice: Advice,
-    /// The longest time step that would help, s, if it is known.
+    /// Longest time step that would avoid the failure, s; `None` if it is unknown or a shorter step would not help.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub longest_time_step_secs: Option<f64>,
-    /// The stiffness of the springs that yielded, N/m, if stiffer ones would help.
+    /// Present stiffness of the springs, N/m, if a larger stiffness would help; otherwise `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<f64>,
-    /// Number of occurrences so far, if they are counted.
+    /// Number of occurrences of the failure so far; `None` if failures of this kind are not counted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub count: Option<u64>,
 }
@@ -79,12 +80,12 @@ impl Alarm {
         Self { kind, step, time_secs, advice, longest_time_step_secs, stiffness, count }
     }
 
-    /// One sentence with the failure, its first step, and the change most likely to help. Times are in seconds.
+    /// Returns one sentence with the failure, its first step, and the change most likely to help. Times are in seconds.
     pub fn message(&self, settings: &Settings) -> String {
         self.sentence(&format!("{:.4} s", self.time_secs), &self.advice_in_words(settings))
     }
 
-    /// The sentence of [`Self::message`] with times in milliseconds, for the window.
+    /// Returns the sentence of [`Self::message`] with times in milliseconds, for the window.
     pub fn message_in_millis(&self, settings: &Settings) -> String {
         let time_step_secs = settings.parameters.time_step_secs;
         let advice = match (self.advice, self.longest_time_step_secs) {
@@ -125,39 +126,41 @@ impl Alarm {
     }
 }
 
-/// The watch over a simulation. It is part of the simulation, so that a restarted run raises the same alarms.
+/// Data with which a running simulation is checked for failures. They are saved with the simulation, so that a
+/// restarted run raises the same alarms.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Watch {
     unfinished_in_a_row: u32,
-    /// At most one alarm of each kind.
+    /// Alarms raised so far, at most one of each kind.
     pub alarms: Vec<Alarm>,
     pub losses: Losses,
-    /// True if grains were placed after the last step.
+    /// True if grains were placed (at the start, or moved by the user) and no step has been taken since.
     are_placed: bool,
-    /// Smallest overlap since grains were placed, in diameters of the smaller disc of the deepest contact.
+    /// Largest overlap of any contact, in diameters of the contact's smaller disc: the smallest value since grains were
+    /// placed.
     placed_overlap: f64,
-    /// Largest distance that each grain has moved in one step, m.
+    /// Longest distance that each grain has moved in a single step so far, m.
     travels: Vec<f64>,
     /// Number of bonds that have ended because their pairs turned.
     turned_bonds: u64,
     energy: ContactEnergy,
 }
 
-/// Energy created and dissipated by contacts.
+/// Energy created and dissipated by contacts, to detect contacts that create energy.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ContactEnergy {
-    /// Work of all contacts since the start, without the work of walls and bonds, J.
+    /// Work of all contacts since the start, J, without the work of moving walls and of bonds.
     work: f64,
-    /// Minimum of `work` so far, J.
+    /// Smallest value of `work` so far, J.
     least_work: f64,
     /// Largest kinetic energy so far, J.
     largest_kinetic_energy: f64,
 }
 
 impl Watch {
-    /// Starts to watch a state at t = 0 whose contacts have been found.
+    /// Begins the checks for a state at time 0 whose contacts have been found.
     pub(super) fn new(state: &State) -> Self {
         let losses = Losses::new(&state.world, state.candidates.features(), state.physics);
         let mut watch = Self { losses, ..Self::default() };
@@ -165,13 +168,13 @@ impl Watch {
         watch
     }
 
-    /// Treats the present positions of the grains, whose contacts have been found, as their placement.
+    /// Records that the grains were placed at their present positions. Call this after the contacts have been found.
     pub(super) fn place(&mut self, state: &State) {
         self.losses.place(&state.world.grains.positions);
         (self.are_placed, self.placed_overlap) = (true, DeepestContact::new(state, &[]).overlap);
     }
 
-    /// Forgets a grain that is removed.
+    /// Deletes the data of a grain that is removed.
     pub(super) fn remove(&mut self, grain: usize) {
         self.losses.remove(grain);
         if grain < self.travels.len() {
@@ -179,7 +182,8 @@ impl Watch {
         }
     }
 
-    /// The alarm on grains as they were placed, if there is one, before the step that follows these observables.
+    /// Returns the alarm that grains were placed in overlap, or `None`. `observables` are the measurements before the
+    /// next step.
     pub(super) fn of_placed(
         &self,
         observables: &Observables,
@@ -191,7 +195,7 @@ impl Watch {
             .then(|| Alarm::new(kind, observables, advice::on_placed(settings)))
     }
 
-    /// Before a step: raises alarms on conditions that the step cannot remedy.
+    /// Before a step: raises alarms on conditions that the step cannot improve.
     pub(super) fn look_ahead(&mut self, observables: &Observables, settings: &Settings) {
         if let Some(alarm) = self.of_placed(observables, settings) {
             self.add(alarm);
@@ -199,7 +203,7 @@ impl Watch {
         self.are_placed = false;
     }
 
-    /// After a step: examines the state, and excludes lost grains from the slump.
+    /// After a step: checks the state for failures, and excludes lost grains from the slump.
     pub(super) fn look(
         &mut self,
         state: &State,
@@ -230,7 +234,7 @@ impl Watch {
             let advice = advice::on_unsolved(state, settings, observables.stalled);
             self.raise_with(AlarmKind::SweepLimit, observables, advice);
         }
-        // Grains may have been added.
+        // Grains may have been added since the last step.
         self.travels.resize(world.grains.len(), 0.0);
         for (travel, velocity) in self.travels.iter_mut().zip(&world.grains.velocities) {
             *travel = travel.max(observables.time_step_secs * velocity.length());
@@ -240,16 +244,17 @@ impl Watch {
             placed if placed > LARGEST_OVERLAP => placed + GROWTH_OF_OVERLAP,
             _ => LARGEST_OVERLAP,
         };
-        // Grains placed with overlap fly apart and may collide hard.
+        // Grains that were placed in overlap raise no further alarm, because they fly apart and may collide hard.
         if overlap > most && !self.has(AlarmKind::PlacedInOverlap) {
-            // A contact of an earlier step deepens because this step is not solved.
+            // True if the contact was already known before this step: it deepens because the step is not solved.
             let sinks = !observables.converged && found_in < observables.step;
             self.raise_on_depth(AlarmKind::Overlap, sinks, state, settings, observables);
         }
         self.placed_overlap = self.placed_overlap.min(overlap);
     }
 
-    /// Adds the work of the contacts in a step, under a law whose contacts store no energy.
+    /// Adds the work of the contacts in a step, and raises an alarm if contacts have created energy. Only for contact
+    /// laws whose contacts store no energy.
     pub(super) fn count_work(
         &mut self,
         state: &State,
@@ -278,7 +283,7 @@ impl Watch {
         }
     }
 
-    /// Text of the advice on a state that is no longer finite.
+    /// Returns the advice on a state that is no longer finite, as text.
     pub(super) fn advice_on_overflow(&self, settings: &Settings) -> String {
         let mut alarms = self.alarms.iter().filter(|alarm| alarm.kind == AlarmKind::NotFinite);
         alarms.next().map(|alarm| alarm.advice_in_words(settings)).unwrap_or_default()
@@ -300,7 +305,8 @@ impl Watch {
             self.raise_on_depth(AlarmKind::GrainLost, sinks, state, settings, observables);
         }
         if new.left {
-            // A grain this fast can be above a fixed disc before a step and below it afterwards.
+            // With a longer time step, a grain this fast can be above a fixed disc before a step and below the disc
+            // afterwards.
             let longest = 1.0 / new.diameters_per_second;
             match observables.time_step_secs > longest {
                 true => self.raise(AlarmKind::GrainLeft, observables, Some(longest)),
@@ -309,7 +315,7 @@ impl Watch {
         }
     }
 
-    /// Raises an alarm on bodies that overlap too deeply. `sinks` is true if unsolved steps let them sink.
+    /// Raises an alarm on bodies that overlap too deeply. `sinks` is true if the reason is that steps are not solved.
     fn raise_on_depth(
         &mut self,
         kind: AlarmKind,
@@ -329,7 +335,8 @@ impl Watch {
         self.add(Alarm::new(kind, observables, advice));
     }
 
-    /// Raises an alarm whose advice is a smaller time step, with the longest (s) that would help, if it is known.
+    /// Raises an alarm whose advice is a shorter time step. `longest_time_step_secs` is the longest step that would
+    /// help, s, or `None` if it is unknown.
     pub(super) fn raise(
         &mut self,
         kind: AlarmKind,
@@ -340,8 +347,9 @@ impl Watch {
         self.add(Alarm { longest_time_step_secs, ..alarm });
     }
 
-    /// Counts bonds that ended in a step because their pairs turned. Raises an alarm once their number exceeds half
-    /// the number of contacts. In most moving cohesive piles a few bonds end this way.
+    /// Adds `more` to the number of bonds that ended because their pairs turned. Raises an alarm once this number
+    /// exceeds half the number of contacts. Fewer such bonds are normal, because a few bonds end this way in most
+    /// moving cohesive piles.
     pub(super) fn count_turned_bonds(
         &mut self,
         settings: &Settings,
@@ -359,7 +367,7 @@ impl Watch {
         }
     }
 
-    /// Adds an alarm unless there is one of its kind.
+    /// Adds an alarm unless an alarm of this kind exists.
     fn add(&mut self, alarm: Alarm) {
         if !self.has(alarm.kind) {
             self.alarms.push(alarm);
@@ -371,16 +379,18 @@ impl Watch {
     }
 }
 
-/// The contact with the largest overlap beyond the travel of its grains in one step, relative to its size.
+/// The contact with the largest relative overlap, after the travel of its two grains in one step is subtracted.
 struct DeepestContact {
-    /// Overlap beyond the travel, in diameters of the smaller disc; walls have no diameter.
+    /// Overlap minus the travel of both grains in one step, in diameters of the smaller disc. At a wall, the diameter
+    /// is that of the grain.
     overlap: f64,
-    /// The step in which it was first found.
+    /// Number of the step in which this contact was first found.
     found_in: u64,
 }
 
 impl DeepestContact {
-    /// The deepest contact of a state in which each grain moved by up to `travels` (m) in a step; no grain if it is empty.
+    /// Returns the deepest contact of a state. Each grain has moved by up to `travels` (m) in one step; an empty slice
+    /// stands for no travel.
     fn new(state: &State, travels: &[f64]) -> Self {
         let State { world, contacts, .. } = state;
         let (radii, numbering) = (&world.grains.radii, Numbering::of(world));

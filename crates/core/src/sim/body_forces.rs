@@ -1,4 +1,4 @@
-//! External forces on the grains in addition to gravity. They act until they are replaced.
+//! Body forces: external forces on the grains in addition to gravity, which act until the caller replaces them.
 
 use glam::DVec2;
 
@@ -6,16 +6,17 @@ use crate::error::Result;
 use crate::sim::simulation::Simulation;
 
 impl Simulation {
-    /// The force on each grain in addition to gravity, N; empty if none were set.
+    /// Returns the body force on each grain (in addition to gravity), N; empty if no grain has such a force.
     pub fn body_forces(&self) -> &[DVec2] {
         &self.state.body_forces
     }
 
-    /// Sets a force on each grain in addition to gravity, N. It acts from the next step on until it is replaced, and
-    /// its work is part of `gravity_work`. A grain added later has no such force.
+    /// Sets a body force on each grain in addition to gravity, N. The forces act from the next step on until they are
+    /// replaced, and their work is part of `gravity_work`. A grain added later has no body force.
     ///
     /// # Errors
-    /// Same as [`Simulation::set_positions`].
+    /// The error says why `forces` are not valid: their number differs from the number of grains, a force is not
+    /// finite, or a force acts along y in a scene with one axis. The forces are then unchanged.
     pub fn set_body_forces(&mut self, forces: &[DVec2]) -> Result<()> {
         let mut held = vec![DVec2::ZERO; self.state.world.grains.len()];
         self.replace("body_forces", &mut held, forces)?;

@@ -1,8 +1,8 @@
-//! Interactive changes of a world between two steps: adding or removing a grain, and dragging a wall.
+//! Interactive edits of a world between two steps: adding or removing a grain, and dragging a wall.
 //!
-//! All computed values stay: forces and bonds of the other contacts, and measurements. Δy_G counts an added grain
-//! from the height at which it was added. It does not count a removed grain, neither its initial height nor its
-//! present one.
+//! An edit does not change measurements, or forces and bonds of other contacts. The slump Δy_G counts an added grain
+//! from the height at which it was added. For a removed grain the slump counts neither the initial nor the present
+//! height.
 
 use std::sync::Arc;
 
@@ -16,30 +16,31 @@ use crate::sim::simulation::Simulation;
 use crate::sim::surroundings::Surroundings;
 use crate::world::{Boundary, Disc, Edge, Grain, Motion, MotionCourse};
 
-/// Smallest and largest new grain, in mean diameters. Outside this range the neighbour search and the conditioning of
-/// steps would be those of a different scene.
+/// Smallest and largest diameter of a new grain, in mean diameters. Much smaller or larger grains would change the cost
+/// of the neighbour search and the conditioning of contact problems.
 pub const NEW_GRAIN_DIAMETERS: [f64; 2] = [0.2, 5.0];
 
-/// An interactive change between two steps.
+/// Interactive change of the world between two steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Edit {
-    /// Adds a grain at rest, as the last one.
+    /// Adds a grain at rest, at the end of the list of grains.
     Add(Disc),
     /// Removes the grain with this index; the indices of later grains decrease by one.
     Remove(u32),
-    /// Drags a boundary, so that its [`place_of`] moves straight to a point (m) and stays there until it is released.
+    /// Drags a boundary: its point [`place_of`] moves straight to the target and stays there until the boundary is
+    /// released.
     Draw {
-        /// Index of the boundary.
+        /// Index of the dragged boundary.
         boundary: u32,
-        /// Target point, m.
+        /// Point to which the boundary is dragged, m.
         to: DVec2,
     },
-    /// Releases the boundary, which then stays at its place.
+    /// Releases the dragged boundary, which then stays at its place.
     LetGo,
 }
 
-/// The point of a boundary by which it is dragged, m.
+/// Returns the point of a boundary by which the user drags it, m.
 pub fn place_of(boundary: &Boundary) -> DVec2 {
     match boundary.edges().first() {
         Some(Edge::Endless { point, .. }) => *point,
@@ -48,17 +49,17 @@ pub fn place_of(boundary: &Boundary) -> DVec2 {
     }
 }
 
-/// Speed of a dragged wall, in √(g·d). At Δt = 1 ms the wall moves a fiftieth of a diameter per step, which every
-/// stepper tolerates.
+/// Speed of a dragged wall, in √(g·d). In a scene with d = 5 mm and Δt = 1 ms the wall moves a fiftieth of a diameter
+/// per step, which every stepper tolerates.
 const SPEED_OF_HAND: f64 = 0.5;
-/// Overlap that counts as rounding, in mean diameters.
+/// Largest overlap of a new grain with another body that counts as rounding, in mean diameters.
 const ROUNDING: f64 = 1e-9;
 
 impl Simulation {
-    /// Applies an edit. Its effects appear in the next step.
+    /// Applies an edit to the world. The next step is the first to show its effects.
     ///
     /// # Errors
-    /// States in one sentence why the edit is impossible. The simulation is then unchanged.
+    /// The error says in one sentence why the edit is impossible. The simulation is then unchanged.
     pub fn edit(&mut self, edit: &Edit) -> Result<()> {
         match *edit {
             Edit::Add(disc) => self.add_grain(disc, DVec2::ZERO),
@@ -80,11 +81,13 @@ impl Simulation {
         self.surroundings = Arc::new(Surroundings::of(&self.state.world, time_step_secs));
     }
 
-    /// Sets all grains' centres, m. Velocities and impulses do not change. The paths of grains restart at the new
-    /// places, so walls in between do not count as passed through.
+    /// Sets the centres of all grains, m. Velocities and impulses do not change. Walls between the old and the new
+    /// position of a grain do not count as passed through.
     ///
     /// # Errors
-    /// Names the problem if these are not valid places, one per grain. The simulation is then unchanged.
+    /// The error says why `positions` are not valid: their number differs from the number of grains, a position is not
+    /// finite, a position changes along y in a scene with one axis, or a grain is too close to another disc. The
+    /// simulation is then unchanged.
     pub fn set_positions(&mut self, positions: &[DVec2]) -> Result<()> {
         let mut world = self.state.world.clone();
         self.replace("positions", &mut world.grains.positions, positions)?;
@@ -105,10 +108,11 @@ impl Simulation {
         Ok(())
     }
 
-    /// Sets all grains' velocities, m/s.
+    /// Sets the velocities of all grains, m/s.
     ///
     /// # Errors
-    /// Same as [`Simulation::set_positions`].
+    /// The error says why `velocities` are not valid: their number differs from the number of grains, a velocity is not
+    /// finite, or a velocity changes along y in a scene with one axis. The simulation is then unchanged.
     pub fn set_velocities(&mut self, velocities: &[DVec2]) -> Result<()> {
         let mut now = self.state.world.grains.velocities.clone();
         self.replace("velocities", &mut now, velocities)?;
@@ -116,7 +120,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Replaces the vectors `there` of all grains by `vectors`.
+    /// Copies `vectors`, one vector per grain, into `there`. The error names `name` if the number of vectors is wrong,
+    /// a vector is not finite, or a vector changes its y in a scene with one axis.
     pub(super) fn replace(&self, name: &str, there: &mut [DVec2], vectors: &[DVec2]) -> Result<()> {
         let (count, on_line) = (there.len(), self.state.physics.axes == 1);
         error::check(vectors.len() == count, name, vectors.len(), format!("{count}, one a grain"))?;
@@ -130,16 +135,16 @@ impl Simulation {
         Ok(())
     }
 
-    /// Number of edits so far.
+    /// Returns the number of edits so far.
     pub fn edits(&self) -> usize {
         self.edits as usize
     }
 
-    /// Adds a grain as the last one, with the given velocity, m/s.
+    /// Adds a grain with the given velocity (m/s) at the end of the list of grains.
     ///
     /// # Errors
-    /// If there is no room for the grain, its size does not suit the scene, or a number is not finite. The simulation
-    /// is then unchanged.
+    /// Fails if there is no room for the grain, if its size does not suit the scene, or if a number is not finite. The
+    /// simulation is then unchanged.
     pub fn add_grain(&mut self, disc: Disc, velocity: DVec2) -> Result<()> {
         let Disc { mut position, radius } = disc;
         let world = &self.state.world;
@@ -179,7 +184,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Name of a body that the disc would overlap, if there is one.
+    /// Returns the name of a body that the disc would overlap, or `None` if the disc has room.
     fn in_the_way(&self, disc: Disc) -> Option<&'static str> {
         let (world, candidates) = (&self.state.world, &self.state.candidates);
         let reach = disc.radius - ROUNDING * world.mean_diameter;
@@ -200,10 +205,10 @@ impl Simulation {
         (0..candidates.features().len()).any(is_in_wall).then_some("a wall")
     }
 
-    /// Removes a grain from the world. The impulses of all other contacts stay.
+    /// Removes a grain from the world. The impulses of contacts between other bodies do not change.
     ///
     /// # Errors
-    /// If no grain has that index, or it is the only one.
+    /// Fails if no grain has this index, or if it is the only grain.
     pub fn remove_grain(&mut self, grain: usize) -> Result<()> {
         let count = self.state.world.grains.len();
         if grain >= count {
@@ -230,7 +235,7 @@ impl Simulation {
         if shape.moves_by_itself() {
             return refuse("a piston");
         }
-        // A new drag releases the previous boundary.
+        // Only one boundary is dragged at a time, so a new drag releases the previous boundary.
         if self.state.is_held {
             world.motions.pop();
         }

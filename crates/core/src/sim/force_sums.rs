@@ -1,4 +1,4 @@
-//! Impulses and stresses summed over many steps, for means between two moments.
+//! Sums of impulses and stresses over many steps, from which mean forces between two moments follow.
 
 use glam::{DMat2, DVec2};
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,7 @@ use crate::sim::moment::OtherBody;
 use crate::sim::simulation::Simulation;
 use crate::sim::state::State;
 
-/// Impulses transmitted by pairs over consecutive steps, including all shocks and pieces of steps.
+/// Impulses that pairs transmit, summed over consecutive steps, including all shocks and pieces of these steps.
 ///
 /// ```
 /// use slump_core::sim::ForceSums;
@@ -28,43 +28,44 @@ use crate::sim::state::State;
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ForceSums {
-    /// The last step and number of edits that were added; `None` before the first.
+    /// Number of the last step in these sums, and number of edits until then; `None` before the first step.
     come_to: Option<(u64, usize)>,
-    /// Total time of the steps added, s.
+    /// Total duration of the summed steps, s.
     pub secs: f64,
-    /// Pairs that transmitted an impulse, sorted like contacts.
+    /// Pairs that transmitted an impulse, in the order of the contacts.
     pub pairs: Vec<PairSum>,
-    /// Σ P ⊗ ℓ of each grain over its contacts, J·s, with ℓ from the contact point to the grain's centre.
+    /// Stress sum of each grain, J·s: Σ P ⊗ ℓ over its contacts, with the impulse P and the vector ℓ from the contact
+    /// point to the centre of the grain.
     pub stresses: Vec<DMat2>,
 }
 
-/// Sums of one pair.
+/// Sums for one pair of bodies.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PairSum {
-    /// Grain i.
+    /// Index of grain i of the pair.
     pub grain: u32,
-    /// Body j.
+    /// Body j of the pair.
     pub other: OtherBody,
-    /// Number of body j in the joint numbering, by which pairs are sorted.
+    /// Number of body j among grains, fixed discs and boundary features, by which pairs are sorted.
     number: u32,
     /// Number of steps in which the pair transmitted an impulse.
     pub steps: u64,
-    /// Impulse on grain i, N·s.
+    /// Sum of the impulses on grain i, N·s.
     pub impulse: DVec2,
-    /// Impulse on grain i along the normals of the time, N·s; negative pulls.
+    /// Sum of the normal impulses on grain i, each along the normal of its step, N·s; negative if the pair pulls.
     pub normal: f64,
-    /// Impulse on grain i along (−n_y, n_x) of the time, N·s.
+    /// Sum of the tangential impulses on grain i, each along the tangent (−n_y, n_x) of its step, N·s.
     pub tangential: f64,
-    /// Moment r × P about the origin, with r the contact point on grain i, N·m·s.
+    /// Sum of the moments r × P about the origin, N·m·s, with the impulse P and the contact point r on grain i.
     pub moment: f64,
-    /// Work of a moving surface of body j on grain i, J.
+    /// Work that the moving surface of body j does on grain i, J.
     pub work: f64,
 }
 
 impl ForceSums {
-    /// Adds the last step of a run. Call it at the start and after each step. If a step is missing, or an edit has
-    /// changed the numbers of bodies, the sums restart.
+    /// Adds the last step of a run. Call this method at the start and after each step. If a step was left out, or an
+    /// edit has changed the indices of bodies, the sums start again from zero.
     pub fn follow(&mut self, simulation: &Simulation) {
         let (step, edits) = (simulation.observables().step, simulation.edits());
         match self.come_to.replace((step, edits)) {
@@ -74,7 +75,7 @@ impl ForceSums {
         }
     }
 
-    /// Returns the sums and restarts.
+    /// Returns the sums so far, and starts new sums from zero.
     pub fn take(&mut self) -> Self {
         let fresh = Self { come_to: self.come_to, ..Self::default() };
         std::mem::replace(self, fresh)
@@ -94,7 +95,7 @@ impl ForceSums {
                 continue;
             }
             let (pair, other) = (contact.pair(), numbering.other(contact.other));
-            // Both lists have the same order, so one walk over the old list suffices.
+            // Both lists have the same order, so a single pass over the older list suffices.
             while place < known && pairs[place].key() < pair {
                 place += 1;
             }
@@ -109,7 +110,7 @@ impl ForceSums {
             sum.normal += sums.normal;
             sum.tangential += sums.tangential;
             let i = contact.grain as usize;
-            // The grain's position at the time of the forces.
+            // Position of the grain when the forces acted: at the beginning of the step.
             let centre = world.grains.positions[i] - step_secs * world.grains.velocities[i];
             sum.moment += (centre - (radii[i] + contact.gap) * contact.normal).perp_dot(vector);
             if let Some(surface) = walls.surface_at(world, &contact, centre) {

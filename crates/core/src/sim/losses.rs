@@ -1,10 +1,10 @@
-//! Lost grains: grains that passed through a wall, or left the world.
+//! Finds lost grains: grains that passed through a wall, or left the world.
 //!
-//! A wall may be thin, so the path of a centre is decisive, not its position. A centre that moves from one side of a
-//! segment to the other, or through a polygon, was at places that no disc can reach. Half-spaces and polygons push
-//! grains out again unless they are deep inside. A path is examined when it is a quarter of a radius long. A disc
-//! that goes around the end of a wall stays at its radius from that end, so no such path cuts the wall. If walls
-//! move, paths are relative to them and are examined in every step.
+//! A wall may be thin, so the path of a grain's centre decides, not its position. A centre that moves from one side of
+//! a segment to the other, or through a polygon, was at places that no disc can reach. Half-spaces and polygons push
+//! grains out again unless the grains are deep inside. A path is examined when its length has reached a quarter of the
+//! grain's radius. A disc that moves around the end of a wall keeps one radius away from that end, so such a short path
+//! does not cut the wall. If walls move, paths are measured relative to the walls and are examined in every step.
 
 use glam::DVec2;
 use parry2d_f64::shape::Segment;
@@ -13,60 +13,66 @@ use serde::{Deserialize, Serialize};
 use crate::contact::Feature;
 use crate::world::{Disc, Physics, World};
 
-/// Distance of the world's edges from the initial bounding box, in sides of the box.
+/// Distance of the world's edges from the initial bounding box of grains and fixed bodies, in longest sides of this
+/// box. A grain beyond the edges is lost.
 const ROOM_IN_SIDES: f64 = 3.0;
-/// Depth of a centre in a solid, or below everything present at the start, at which its grain is lost, in diameters
-/// of the grain. A half-space may push the grain out again, but it stays lost, because it was outside the scene.
+/// Depth at which a grain is lost, in its diameters: the depth of its centre inside a solid, or below everything that
+/// was present at the start. A half-space may push the grain out again, but the grain stays lost, because it was
+/// outside the scene.
 const LOST_DEPTH: f64 = 1.0;
-/// Length of an examined path, in radii. If longer, a path around the end of a wall might cut the wall; if shorter,
-/// every step costs as much as one in a collapse.
+/// Length of the path of a grain at which the path is examined, in radii of the grain. A longer path around the end of
+/// a wall might cut the wall. With a shorter length, paths are examined more often, and every step costs as much as a
+/// step of a collapse, in which grains move fast.
 const WAY_IN_RADII: f64 = 0.25;
 
-/// The watch over lost grains of a world.
+/// Data to find the lost grains of a world: the path of each grain since its last examination, and the world's edges.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Losses {
-    /// Start of each grain's path that has not been examined yet, m.
+    /// Beginning of each grain's path that has not been examined yet, m.
     from: Vec<DVec2>,
     pub lost: Vec<bool>,
     pub count: u32,
-    /// Initial heights y_i(0), m.
+    /// Initial heights y_i(0) of the grains, m.
     initial_heights: Vec<f64>,
     world: Edges,
-    /// True in scenes with one axis, which have no slump.
+    /// True in a scene with one axis, which has no slump.
     on_line: bool,
-    /// True after all grains have been examined once: some may have been in a wall from the start.
+    /// True after all grains have been examined once. A grain that is in a wall in the first examination was placed
+    /// there.
     begun: bool,
-    /// Two points of each wall at the last examination, m; empty unless a motion carries walls.
+    /// Two points of each wall at the last examination, m, by which paths relative to moving walls are computed. Empty
+    /// unless the scene has motions or the user drags a wall.
     frames: Vec<[DVec2; 2]>,
 }
 
-/// Edges of the world.
+/// Edges of the world. A grain beyond them has left the world.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Edges {
-    /// Corners, m. `None` if nothing is fixed, on open ground, or if the fixed bodies move: grains may then be
-    /// anywhere.
+    /// Two opposite corners of the world, m. `None` if there are no fixed bodies, if there is open ground, or if fixed
+    /// bodies move: grains may then be anywhere.
     corners: Option<[DVec2; 2]>,
-    /// The downward direction, and the lowest position in it of everything present at the start, m.
+    /// Downward direction, and the lowest position along it of all bodies at the start, m. `None` in a world without a
+    /// bottom.
     bottom: Option<(DVec2, f64)>,
 }
 
-/// Kinds of losses since the last examination.
+/// Losses found in one examination, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct NewLosses {
     /// True if a grain went through a wall.
     pub through_wall: bool,
     /// True if a grain left the world.
     pub left: bool,
-    /// Largest speed of grains that left below a fixed disc, in their own diameters per second.
+    /// Largest speed of the grains that left the world below a fixed disc, in their own diameters per second.
     pub diameters_per_second: f64,
-    /// True if a grain was placed in a wall.
+    /// True if a grain was placed inside a wall.
     pub placed: bool,
 }
 
 impl Losses {
-    /// Starts to watch a world whose boundaries are `features`.
+    /// Begins the search for lost grains in a world whose boundaries consist of `features`.
     pub(super) fn new(world: &World, features: &[Feature], physics: Physics) -> Self {
         let positions = &world.grains.positions;
         Self {
@@ -84,7 +90,8 @@ impl Losses {
         }
     }
 
-    /// Examines the paths of the grains. Walls may have moved; `features` are at their present places.
+    /// Examines the paths of the grains, and returns the losses since the last examination. `features` are the
+    /// boundaries at their present places; `walls_move` is true if they may have moved.
     pub(super) fn look(
         &mut self,
         world: &World,
@@ -108,7 +115,7 @@ impl Losses {
                 continue;
             }
             let frames = self.frames.iter().map(Some).chain(std::iter::repeat(None));
-            // Examine a path across a periodic border from both sides.
+            // A path across a periodic border is examined from both sides of the border.
             let seen_from_there = (here != from).then(|| (here, to + (here - from)));
             let ways = move || seen_from_there.into_iter().chain([(from, to)]);
             let fates = features.iter().zip(frames).flat_map(|(feature, before)| {
@@ -151,8 +158,8 @@ impl Losses {
         new
     }
 
-    /// Δy_G (paper eq. 11) of the remaining grains: both sums exclude lost grains. NaN if all are lost, because the
-    /// mean height of no grains is undefined.
+    /// Returns the slump Δy_G (paper eq. 11) of the remaining grains: both sums exclude lost grains. Returns NaN if all
+    /// grains are lost, because the mean height of no grains is undefined.
     pub(super) fn slump(&self, world: &World) -> f64 {
         if self.count as usize == self.lost.len() {
             return f64::NAN;
@@ -163,13 +170,13 @@ impl Losses {
         if self.on_line || initial == 0.0 { 0.0 } else { (initial - heights) / initial }
     }
 
-    /// True if the watch is over this number of grains.
+    /// True if these data belong to a world with `grains` grains.
     pub(super) fn is_of(&self, grains: usize) -> bool {
         [self.from.len(), self.lost.len(), self.initial_heights.len()] == [grains; 3]
             && self.lost.iter().filter(|&&lost| lost).count() == self.count as usize
     }
 
-    /// Restarts the paths of all grains at these places, m.
+    /// Starts new paths of all grains at `positions`, m.
     pub(super) fn place(&mut self, positions: &[DVec2]) {
         self.from = positions.to_vec();
     }
@@ -186,7 +193,7 @@ impl Losses {
         self.lost.push(false);
     }
 
-    /// Walls may move from now on, so the edges of the world are unknown.
+    /// Prepares for walls that move from now on: the edges of the world become unknown.
     pub(super) fn let_walls_move(&mut self, features: &[Feature]) {
         self.world = Edges::default();
         if self.frames.is_empty() {
@@ -197,7 +204,7 @@ impl Losses {
 
 impl Edges {
     fn of(world: &World, features: &[Feature]) -> Self {
-        // With moving walls the edges of the world are unknown.
+        // If walls move, the edges of the world are unknown.
         if world.motions.iter().any(|motion| motion.course.is_some() || motion.drive.is_some()) {
             return Self::default();
         }
@@ -205,7 +212,7 @@ impl Edges {
         let mut fixed: Vec<DVec2> = discs.collect();
         for feature in features {
             match feature {
-                // On open ground grains may roll any distance.
+                // On open ground grains may roll any distance, so there are no edges.
                 Feature::HalfSpace { .. } => return Self::default(),
                 Feature::Segment { shape, .. } => fixed.extend([shape.a, shape.b]),
                 Feature::ConvexPolygon { sides, .. } => {
@@ -219,12 +226,12 @@ impl Edges {
         let all = || world.grains.positions.iter().chain(&fixed).copied();
         let min = all().fold(DVec2::INFINITY, DVec2::min);
         let max = all().fold(DVec2::NEG_INFINITY, DVec2::max);
-        // Grains that wrap around reach any place in the cell.
+        // In periodic borders grains can reach any place of the cell, so the box includes the whole cell.
         let periodic = world.periodic.unwrap_or_default();
         let [low, high] = periodic.borders_or([min, max]);
         let (min, max) = (min.min(low), max.max(high));
         let side = (max - min).max_element() + world.mean_diameter;
-        // A scene with turning gravity or wrapping in its direction has no bottom.
+        // A scene has no bottom if gravity turns, or if it acts along an axis with periodic borders.
         let down = world.listed_down().unwrap_or(DVec2::ZERO);
         let down = (down * (1.0 - periodic.axes())).normalize_or_zero();
         let lowest = all().map(|place| place.dot(down)).fold(f64::NEG_INFINITY, f64::max);
@@ -234,14 +241,14 @@ impl Edges {
         }
     }
 
-    /// True if a place is beyond the corners, or more than `depth` (m) below the bottom.
+    /// True if `place` is beyond the corners, or more than `depth` (m) below the bottom.
     fn is_outside(&self, place: DVec2, depth: f64) -> bool {
         let Self { corners, bottom } = self;
         corners.is_some_and(|[min, max]| !(place.cmpge(min).all() && place.cmple(max).all()))
             || bottom.is_some_and(|(down, lowest)| place.dot(down) > lowest + depth)
     }
 
-    /// True if a grain of this radius (m) has left straight below a fixed disc, and not beside all fixed discs.
+    /// True if a grain of this radius (m) at `place` is straight below a fixed disc.
     fn is_below_a_disc(&self, world: &World, place: DVec2, radius: f64) -> bool {
         self.bottom.is_some_and(|(down, _)| {
             let is_above = |disc: &Disc| {
@@ -253,16 +260,18 @@ impl Edges {
     }
 }
 
-/// Fate of a grain at a wall, in increasing order of severity.
+/// Result of examining a grain's path at a wall, in increasing order of severity.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Fate {
     There,
-    /// Its centre is in a solid polygon. Its exit will show if it is lost.
+    /// The centre has entered a solid polygon. When it leaves the polygon, the examination shows if the grain passed
+    /// through.
     Inside,
     Lost,
 }
 
-/// Two points that move with a wall, m. For a half-space no path is examined, so both points are the same.
+/// Returns two points that move with a wall, m. For a half-space the two points are equal, because no path across it is
+/// examined.
 fn frame(feature: &Feature) -> [DVec2; 2] {
     match feature {
         Feature::HalfSpace { point, .. } => [*point; 2],
@@ -271,8 +280,8 @@ fn frame(feature: &Feature) -> [DVec2; 2] {
     }
 }
 
-/// The place that `place` would have now if it had moved with a wall from one frame to another. A grain's path across
-/// a wall is measured relative to the wall.
+/// Returns the place that `place` would have now if it had moved with a wall, m. `before` and `now` are two points of
+/// the wall, before and after the motion. A path across a moving wall is measured relative to the wall.
 fn carried(place: DVec2, before: [DVec2; 2], now: [DVec2; 2]) -> DVec2 {
     let [then, along_now] = [before, now].map(|[from, to]| to - from);
     if before == now || then == DVec2::ZERO {
@@ -283,7 +292,8 @@ fn carried(place: DVec2, before: [DVec2; 2], now: [DVec2; 2]) -> DVec2 {
     now[0] + local.x * along_now + local.y * along_now.perp()
 }
 
-/// Fate of a grain that moved from `from`, a place in no polygon, to `to`.
+/// Returns the result, at one wall, for a grain that moved from `from`, a point outside all polygons, to `to`. `deep`
+/// is the negative depth at which a grain is lost, m.
 fn fate(feature: &Feature, from: DVec2, to: DVec2, deep: f64) -> Fate {
     let if_lost = |lost: bool| if lost { Fate::Lost } else { Fate::There };
     match feature {
@@ -303,16 +313,17 @@ fn fate(feature: &Feature, from: DVec2, to: DVec2, deep: f64) -> Fate {
     }
 }
 
-/// The unit normal on the right of a segment, which points outward for a side of an anticlockwise polygon.
+/// Returns the unit normal on the right of a segment. For a side of an anticlockwise polygon this normal points
+/// outward.
 fn outward(side: &Segment) -> DVec2 {
     -(side.b - side.a).perp().normalize_or_zero()
 }
 
-/// True if the path `from` … `to` crosses a segment. A point shared by two consecutive segments belongs to one side
-/// of the path, so that nothing passes between the segments.
+/// True if the path from `from` to `to` crosses a segment. A point shared by two consecutive segments counts as on one
+/// side of the path, so that no path passes between the segments.
 fn crosses(from: DVec2, to: DVec2, wall: &Segment) -> bool {
     let is_left = |a: DVec2, b: DVec2, place: DVec2| (b - a).perp_dot(place - a) >= 0.0;
-    // Quick test: most walls are far from most paths.
+    // Quick test of bounding boxes first, because most walls are far from most paths.
     let (low, high) = (from.min(to), from.max(to));
     wall.a.min(wall.b).cmple(high).all()
         && wall.a.max(wall.b).cmpge(low).all()
@@ -320,7 +331,7 @@ fn crosses(from: DVec2, to: DVec2, wall: &Segment) -> bool {
         && is_left(from, to, wall.a) != is_left(from, to, wall.b)
 }
 
-/// True if the path `from` … `to`, with both ends outside a convex polygon, passes through the polygon.
+/// True if the path from `from` to `to`, two points outside a convex polygon, passes through the polygon.
 fn cuts(from: DVec2, to: DVec2, sides: &[Segment]) -> bool {
     let (mut enters, mut leaves) = (0f64, 1f64);
     for side in sides {

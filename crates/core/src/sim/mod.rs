@@ -1,4 +1,4 @@
-//! Time stepping, measurements of each step, and views of the state.
+//! Simulation of a world: time stepping, measurements after each step, and copies of the state for pictures and tables.
 
 mod advice;
 mod alarm;

@@ -1,4 +1,5 @@
-//! The full state at one moment, for tables and measurements: every grain, and every contact with its forces.
+//! Full state of a simulation at one moment, for tables and measurements: every grain, and every contact with its
+//! forces.
 
 use std::sync::Arc;
 
@@ -19,100 +20,102 @@ use crate::sim::state::State;
 use crate::sim::surroundings::Surroundings;
 use crate::world::{FrictionCone, Parameters, World};
 
-/// Largest relative distance of a friction force from its bound that counts as slip. If smaller, slipping contacts of
-/// solvers that end near the bound count as sticking; if larger, sticking contacts near the bound count as slipping.
+/// Relative distance from its bound below which a friction force counts as slip. With a smaller value, slipping
+/// contacts of solvers that end near the bound count as sticking; with a larger value, sticking contacts near the bound
+/// count as slipping.
 const SLIPS_WITHIN: f64 = 1e-6;
-/// Largest relative distance of a pull from the cohesion that counts as the full cohesion: rounding.
+/// Relative distance from the cohesion force below which a pull counts as the full cohesion force; it allows for
+/// rounding.
 const OPENS_WITHIN: f64 = 1e-9;
 
-/// The full state at one moment. Plain data that outlives the simulation.
+/// Full state of a simulation at one moment: plain data that outlives the simulation.
 #[derive(Clone, Debug)]
 pub struct Moment {
-    /// Measurements of the last step.
+    /// Measurements after the last step.
     pub observables: Observables,
-    /// Settings of the next step, which usually are those of the last one.
+    /// Settings of the next step, which usually are also the settings of the last step.
     pub settings: Settings,
-    /// The moving discs; grain k is `grains[k]`.
+    /// All grains. The grain with the index k is `grains[k]`.
     pub grains: Vec<GrainState>,
-    /// The contacts of the last step, sorted by (grain, other).
+    /// The contacts of the last step, sorted by the index of the grain and then by the other body.
     pub contacts: Vec<ContactState>,
     /// Boundaries and fixed discs at their present places.
     pub surroundings: Arc<Surroundings>,
-    /// The number of the first fixed disc. It follows the numbers of the grains present at the start.
+    /// Permanent number of the first fixed disc. Fixed discs are numbered after the grains of the initial state.
     pub first_fixed_id: u32,
 }
 
 impl Moment {
-    /// The permanent number of a grain, given its index in the list.
+    /// Returns the permanent number of a grain, given its present index in the list of grains.
     pub fn id(&self, grain: u32) -> u32 {
-        // Sums keep only the index of a grain that has been removed since.
+        // Sums over steps may name a grain that has been removed since. Then only its index is known.
         self.grains.get(grain as usize).map_or(grain, |state| state.id)
     }
 }
 
-/// One grain at one moment.
+/// A grain at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GrainState {
-    /// Permanent number.
+    /// Permanent number of the grain.
     pub id: u32,
-    /// Centre, m.
+    /// Centre of the grain, m.
     pub position: DVec2,
-    /// Initial position plus all displacements since, m, without the effect of periodic borders.
+    /// Initial position plus all displacements since, m. Unlike `position`, it does not jump at periodic borders.
     pub unwrapped: DVec2,
-    /// Rotation angle since the start, rad.
+    /// Angle by which the grain has turned since the start, rad.
     pub angle: f64,
-    /// Velocity of the centre, m/s.
+    /// Velocity of the grain's centre, m/s.
     pub velocity: DVec2,
-    /// Angular velocity, rad/s, positive anticlockwise.
+    /// Angular velocity of the grain, rad/s, positive anticlockwise.
     pub angular_velocity: f64,
-    /// Radius, m.
+    /// Radius of the grain, m.
     pub radius: f64,
-    /// Mass, kg.
+    /// Mass of the grain, kg.
     pub mass: f64,
     /// True if gravity acts on the grain.
     pub feels_gravity: bool,
-    /// Grey from the scene: 0 is black, 255 white.
+    /// Grey value with which the grain is drawn: 0 is black, 255 white.
     pub tone: u8,
-    /// Number of its material in the list of the surroundings.
+    /// Index of the grain's material in [`Surroundings::materials`].
     pub material: u8,
     /// True if the grain went through a wall or left the world.
     pub lost: bool,
 }
 
-/// A pair that touched in the last step or transmitted an impulse in it. Forces are means over the step, including
-/// all its shocks and pieces. Normal and gap are from the beginning of the step, or of the piece in which the pair
-/// was found. They belong to the positions at that time: grains have moved by Δt·v since.
+/// A pair that touched in the last step or transmitted an impulse in it. Forces are means over the step, including all
+/// shocks and all pieces of the step. Normal and gap belong to the positions at the beginning of the step, or of the
+/// piece in which the pair was found. Since then, grains have moved by Δt·v.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactState {
-    /// Grain i.
+    /// Index of grain i of the pair.
     pub grain: u32,
-    /// Body j.
+    /// Body j of the pair.
     pub other: OtherBody,
-    /// Normal n, from j to i.
+    /// Unit normal n, from body j to grain i.
     pub normal: DVec2,
-    /// Gap, m; negative for an overlap.
+    /// Gap between the surfaces, m; negative for an overlap.
     pub gap: f64,
-    /// Point half-way between the two surfaces, m, for the present position of grain i.
+    /// Point half-way between the two surfaces, m, computed from the present position of grain i.
     pub point: DVec2,
-    /// Vector from the centre of j, or from the touched point of a boundary, to the centre of i, m.
+    /// Vector to the centre of grain i, m: from the centre of disc j, or from the touched point of boundary j.
     pub branch: DVec2,
     /// Force on grain i, newton.
     pub force: DVec2,
-    /// Normal force N on grain i along n, newton; negative pulls. If n turns within the step, the mean of the
-    /// component along n.
+    /// Normal force N on grain i along n, newton; negative if the contact pulls. If n turns within the step, N is the
+    /// mean of the components along the normals of that time.
     pub normal_force: f64,
-    /// Tangential force T on grain i along (−n_y, n_x), newton, defined likewise. Times a grain's radius it is the
-    /// torque on that grain.
+    /// Tangential force T on grain i along (−n_y, n_x), newton; a mean like `normal_force`. T times the radius of a
+    /// grain is the torque on that grain.
     pub tangential_force: f64,
-    /// Status under the contact law.
+    /// Status under the contact law: open, sticking or slipping.
     pub status: ContactStatus,
-    /// Stretch s of its bond, m. `None` without a bond, and under laws other than `range`.
+    /// Stretch s of the pair's bond, m. `None` without a bond, and under laws other than `range`.
     pub bond_stretch: Option<f64>,
-    /// Number of steps since the pair was first found to touch without interruption.
+    /// Number of steps since the pair began to touch without interruption.
     pub age_steps: u64,
 }
 
-/// The other body of a contact.
+/// The other body of a contact: a grain or a fixed shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum OtherBody {
@@ -144,7 +147,7 @@ words! {
 }
 
 impl Simulation {
-    /// The full state at this moment.
+    /// Returns the full present state.
     pub fn moment(&self) -> Moment {
         let State { world, candidates, contacts, .. } = &self.state;
         let laws = Laws::of(self);
@@ -158,7 +161,7 @@ impl Simulation {
             let Transmitted { contact, found_in, sums, vector } = transmitted;
             let bond = index.map_or_else(Bond::default, |index| contacts.bonds()[index]);
             let is_in_touch = index.is_some_and(|index| contacts.is_in_touch(index));
-            // A bond without strength does not hold an open pair.
+            // If bonds have no strength, an open pair counts as separated.
             let is_held = is_in_touch && (contact.gap <= touch || laws.has_strength());
             if !is_held && sums == Impulse::default() {
                 return None;
@@ -170,7 +173,7 @@ impl Simulation {
             let status = laws.status(&contact, other, alive, [normal_force, tangential_force]);
             let grain = contact.grain as usize;
             let (centre, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
-            // A boundary is touched at a point.
+            // A boundary is touched at a point, so it adds no radius to the branch.
             let radius_of_other = match other {
                 Other::Grain(index) => world.grains.radii[index],
                 Other::FixedDisc(index) => world.fixed_discs[index].radius,
@@ -217,12 +220,12 @@ impl Simulation {
     }
 }
 
-/// Inputs for a contact's status.
+/// Inputs for the status of a contact.
 struct Laws<'a> {
     world: &'a World,
     candidates: &'a Candidates,
     parameters: &'a Parameters,
-    /// The laws of pairs of materials, if they have their own numbers.
+    /// Contact laws for pairs of materials; `None` if the parameters apply to all contacts.
     pairs: Option<PairLaws>,
     has_cohesion: bool,
     has_bonds: bool,
@@ -245,12 +248,12 @@ impl<'a> Laws<'a> {
         }
     }
 
-    /// True if bonds can pull, or if the law has no bonds.
+    /// True if bonds can pull, or if the contact law has no bonds.
     fn has_strength(&self) -> bool {
         !self.has_bonds || (self.has_cohesion && self.parameters.bond > 0.0)
     }
 
-    /// Status of a contact with the forces N and T.
+    /// Returns the status of a contact with the normal and tangential forces N and T.
     fn status(
         &self,
         contact: &Contact,
@@ -276,13 +279,14 @@ impl<'a> Laws<'a> {
         }
     }
 
-    /// The numbers of a contact with this effective mass, kg, if pairs of materials have their own.
+    /// Returns the friction and cohesion of a contact with this effective mass (kg) if the contact laws depend on pairs
+    /// of materials; otherwise `None`.
     fn numbers(&self, contact: &Contact, effective_mass: f64) -> Option<RowNumbers> {
         let pairs = self.pairs.as_ref()?;
         Some(pairs.numbers(self.world, self.candidates, contact, effective_mass))
     }
 
-    /// C₀, newton; 0 for a pair without a bond under a law that requires one.
+    /// Returns the cohesion force C₀, newton; 0 for a pair without a bond under a law that requires a bond.
     fn cohesion(&self, contact: &Contact, other: Other, bonded: bool) -> f64 {
         if !self.has_cohesion || (self.has_bonds && !bonded) {
             return 0.0;

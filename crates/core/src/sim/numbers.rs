@@ -1,4 +1,4 @@
-//! Derived quantities of a simulation's settings in its world.
+//! Quantities that follow from the settings and the world of a simulation, such as the number of substeps.
 
 use crate::sim::Settings;
 use crate::sim::settings::FractureWork;
@@ -6,13 +6,13 @@ use crate::sim::simulation::Simulation;
 use crate::solver::{Method, picked};
 
 impl Simulation {
-    /// Substeps of the next step: 1 if its problem is solved as a whole.
+    /// Returns the number of substeps in the next step; 1 if the step is solved as a whole.
     pub fn substeps(&self) -> u32 {
         let Settings { stepper, parameters, .. } = &self.settings;
         (stepper.info().substeps)(&self.state.world, self.state.physics, parameters)
     }
 
-    /// The solver of the next step: that of the settings, or the one that `auto` selects.
+    /// Returns the solver of the next step: the solver of the settings, or the solver that `auto` selects.
     pub fn picked_method(&self) -> Method {
         let Settings { solver, parameters, .. } = &self.settings;
         let rubs = self.state.physics.friction
@@ -24,21 +24,21 @@ impl Simulation {
         self.state.world.motions.iter().any(|motion| motion.drive.is_some())
     }
 
-    /// The longest substep, s, for which the springs of the next step are guaranteed to be stable; `None` without
-    /// springs.
+    /// Returns the longest substep, s, for which the springs of the next step are guaranteed to be stable; `None`
+    /// without springs.
     pub fn critical_time_step_secs(&self) -> Option<f64> {
         let Settings { stepper, parameters, .. } = &self.settings;
         (stepper.info().critical_time_step_secs)(&self.state.world, self.state.physics, parameters)
     }
 
-    /// Duration of a collision of two grains of the mean mass, s; `None` if contacts are not springs.
+    /// Returns the duration of a collision of two grains of the mean mass, s; `None` if contacts are not springs.
     pub fn contact_time_secs(&self) -> Option<f64> {
         let Settings { stepper, parameters, .. } = &self.settings;
         (stepper.info().contact_time_secs)(&self.state.world, self.state.physics, parameters)
     }
 
-    /// Work that slowly breaks the bond of two grains of the mean mass. `None` if the law does not define it, or
-    /// without cohesion.
+    /// Returns the work of fracture: the work needed to pull two bonded grains of the mean mass apart slowly. `None` if
+    /// the contact law does not define it, or without cohesion.
     pub fn fracture_work(&self) -> Option<FractureWork> {
         let Settings { stepper, parameters, .. } = &self.settings;
         (stepper.info().fracture_work)(&self.state.world, self.state.physics, parameters)

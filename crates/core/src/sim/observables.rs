@@ -1,4 +1,4 @@
-//! Observables of each step: their definitions, computation and plots.
+//! Observables: the measurements after each step, with their definitions, their computation and their plots.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,107 +10,110 @@ use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{Measures, Model, SolveReport};
 use crate::world::{Drive, Periodic};
 
-/// Measurements after each step. They form one row of the observables' CSV file and use the column names of
-/// recordings.
+/// Measurements after a step. They are one row of the CSV file of observables and have the column names of recordings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Observables {
-    /// Steps taken so far.
+    /// Number of steps taken so far.
     pub step: u64,
     /// Simulated time, s.
     #[serde(rename = "time")]
     pub time_secs: f64,
-    /// Δt of this step, s.
+    /// Length Δt of this step, s.
     #[serde(rename = "time_step")]
     pub time_step_secs: f64,
-    /// Sweeps of the solver. For steppers without a solver, passes over all contacts.
+    /// Number of sweeps of the solver. For steppers without a solver: number of passes over all contacts.
     pub sweeps: u32,
-    /// Number of matrices factorised by the solver.
+    /// Number of matrix factorisations by the solver.
     pub factorisations: u32,
-    /// True if the stopping test was met within the sweep limit. Always true for steppers without a solver, which do
-    /// a fixed amount of work and test nothing; `residual` shows the quality of their steps.
+    /// True if the solver met its stop criterion within the sweep limit. Always true for steppers without a solver:
+    /// they do a fixed amount of work and have no criterion, and `residual` shows how well they solve a step.
     pub converged: bool,
-    /// True if a step that did not converge had stalled: its residual had stopped decreasing, so that more sweeps do
-    /// not help. Such a step usually has no solution (`docs/accuracy-and-cost.md`).
+    /// True if the residual of an unsolved step had stopped decreasing, so that more sweeps do not help. Such a step
+    /// usually has no solution (`docs/accuracy-and-cost.md`).
     #[serde(default)]
     pub stalled: bool,
-    /// Common residual (`solver::residual`), dimensionless. For steppers without a solver it is that of the step's
-    /// problem with the summed impulses and the final velocities.
+    /// Residual of the step, dimensionless: the same measure for all solvers (`solver::residual`). For steppers without
+    /// a solver it is computed from the impulses summed over the step and the velocities at its end.
     pub residual: f64,
-    /// Residual for the friction model that was solved instead of Coulomb's law, dimensionless; `None` under
-    /// Coulomb's law.
+    /// Residual under the friction model that was solved instead of Coulomb friction, dimensionless; `None` under
+    /// Coulomb friction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model_residual: Option<f64>,
-    /// Estimated distance of the velocities from those of Coulomb's law, whatever model was solved, m/s: the
-    /// mass-weighted root mean square over the grains in contact ([`VelocityError`](crate::solver::VelocityError)).
+    /// Estimated distance of the velocities from a solution under Coulomb friction, whatever friction model was solved,
+    /// m/s: the mass-weighted root mean square over the grains in contact
+    /// ([`VelocityError`](crate::solver::VelocityError)).
     #[serde(default)]
     pub velocity_error: f64,
-    /// Number of contacts, with grains and with fixed shapes.
+    /// Number of contacts between grains and of grains with fixed shapes.
     pub contacts: u32,
-    /// Number of contacts with N > 0.
+    /// Number of contacts with a normal force N above 0.
     pub compressive_contacts: u32,
-    /// Number of contacts with N < 0.
+    /// Number of contacts with a normal force N below 0.
     pub tensile_contacts: u32,
-    /// Mean overlap δ: mean of |gap|/d over touching grain pairs.
+    /// Mean overlap δ: the mean of |gap| over touching grain pairs, in mean diameters d.
     pub mean_overlap: f64,
-    /// Largest overlap of any contact, in units of d.
+    /// Largest overlap of any contact, in mean diameters d.
     pub max_overlap: f64,
-    /// Kinetic energy, J.
+    /// Kinetic energy of all grains, J.
     pub kinetic_energy: f64,
-    /// Potential energy in the gravity field, J.
+    /// Potential energy of all grains in the gravity field, J.
     pub potential_energy: f64,
     /// Work of the normal contact forces in this step, J.
     pub normal_work: f64,
-    /// Work of the tangential contact forces and of the moments against rolling in this step, J.
+    /// Work of the tangential contact forces and of the moments of rolling friction in this step, J.
     pub tangential_work: f64,
-    /// Work of moving surfaces on grains in this step, J. It is part of the two works above; the rest of them is
-    /// the work of the contacts themselves, negative if they dissipate.
+    /// Work of moving surfaces on grains in this step, J. It is part of `normal_work` and `tangential_work`. The rest
+    /// of these two works is the work of the contacts themselves, which is negative if they dissipate energy.
     #[serde(default)]
     pub wall_work: f64,
-    /// Σ ½MV² of the walls driven by a force, along the axes of the forces, J. `None` without such walls.
+    /// Kinetic energy Σ ½MV² of the walls driven by a force, with their masses M and their speeds V along the forces,
+    /// J. `None` without such walls.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_energy: Option<f64>,
-    /// Work in this step of the forces that drive walls, minus the loss in the walls' damping, J. It changes
-    /// `drive_energy`, except for the energy transferred to grains. `None` without such walls.
+    /// Work in this step of the forces that drive walls, minus the loss in the walls' damping, J. `drive_energy`
+    /// changes by this work minus the energy transferred to grains. `None` without such walls.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_work: Option<f64>,
-    /// Work of sheared borders in this step, in addition to the other works, J: through contacts with sliding images,
-    /// and on grains that crossed. `None` without sheared borders.
+    /// Work of sheared borders in this step, J, in addition to the other works: on contacts across the border, and on
+    /// grains that crossed the border. `None` without sheared borders.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub border_work: Option<f64>,
-    /// Work in this step of gravity, of body forces, and of a spring that pulls a grain, J.
+    /// Work of gravity, of body forces, and of the spring with which the user pulls a grain, in this step, J.
     pub gravity_work: f64,
-    /// Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) (paper eq. 11), with both sums over the grains that are not lost. 0 if
-    /// Σ y_i(0) is 0, and NaN if all grains are lost.
+    /// Slump Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) with the heights y_i of the grains (paper eq. 11), dimensionless.
+    /// Both sums exclude lost grains. 0 if Σ y_i(0) is 0, and NaN if all grains are lost.
     #[serde(with = "number")]
     pub slump: f64,
-    /// Work of bonds in this step, part of `normal_work`, J: negative while they are stretched. All columns on bonds
-    /// are `None` except under the law `range`.
+    /// Work of bonds in this step, J; part of `normal_work`, and negative while bonds are being stretched. All columns
+    /// on bonds are `None` except under the law `range`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bond_work: Option<f64>,
-    /// Energy stored in existing bonds, Σ C₀ s, J.
+    /// Energy stored in the existing bonds, J: Σ C₀ s with the cohesion force C₀ and the stretch s of each bond.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bond_energy: Option<f64>,
-    /// Energy dissipated by broken bonds since the start, C₀ δ_c each, J.
+    /// Energy dissipated by bonds that broke since the start, J: C₀ δ_c for each bond with the cohesion force C₀ and
+    /// the debonding distance δ_c.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub broken_bond_energy: Option<f64>,
-    /// Grains that went through a wall or left the world since the start.
+    /// Number of grains that went through a wall or left the world since the start.
     #[serde(default)]
     pub lost_grains: u32,
 }
 
 impl Observables {
-    /// True if it has columns that only some runs have: bonds, a friction model, driven walls or sheared borders.
+    /// True if these observables have columns that only some runs have: bonds, a friction model, driven walls or
+    /// sheared borders.
     pub fn has_further_columns(&self) -> bool {
         let Self { bond_work, model_residual, drive_energy, border_work, .. } = self;
         [bond_work, model_residual, drive_energy, border_work].iter().any(|some| some.is_some())
     }
 
-    /// True if the step was solved under a friction model other than Coulomb's law.
+    /// True if the step was solved under a friction model other than Coulomb friction.
     pub fn is_of_a_model(&self) -> bool {
         self.step > 0 && self.model_residual.is_some_and(|left| left != self.residual)
     }
 
-    /// Replaces missing columns by NaN, so that rows with and without them fit in one table.
+    /// Replaces missing columns by NaN, so that rows with and without these columns fit in one table.
     pub fn with_further_columns(self) -> Self {
         let number = |value: Option<f64>| Some(value.unwrap_or(f64::NAN));
         Self {
@@ -126,7 +129,7 @@ impl Observables {
     }
 }
 
-/// The observables after a step of Δt, given those `before` it.
+/// Returns the observables after a step. `before` are the observables after the previous step.
 pub(super) fn after_step<M: Model>(
     stage: &Stage<'_, M>,
     result: StepResult,
@@ -146,8 +149,8 @@ pub(super) fn after_step<M: Model>(
     }
 }
 
-/// The observables of an initial state whose contacts have been found: energies, and contacts without impulses. The
-/// settings determine which columns exist.
+/// Returns the observables of an initial state whose contacts have been found: energies, and contacts without impulses.
+/// The settings determine which columns exist.
 pub(super) fn at_start<M: Model>(
     state: &State,
     settings: &Settings,
@@ -166,8 +169,8 @@ pub(super) fn at_start<M: Model>(
     of_state::<M>(state, result, kinetic_energy, time_step_secs, initial_heights)
 }
 
-/// The observables of a state and of the step that led to it, with the values of the beginning of a run for the rest.
-/// Every field is named, so that none is forgotten.
+/// Returns the observables of a state and of the step that led to it. Step number, time and other quantities that add
+/// up over a run have their initial values. Every field is named, so that none is forgotten.
 fn of_state<M: Model>(
     state: &State,
     result: StepResult,
@@ -212,17 +215,17 @@ fn of_state<M: Model>(
         drive_work: drive_energy.map(|_| drive_work),
         border_work: is_sheared.then_some(border_work),
         gravity_work,
-        // On a line there is no slump, and relative to a mean height of 0 it is undefined.
+        // A scene with one axis has no slump, and if the sum of initial heights is 0, the slump is undefined.
         slump: if M::AXES == 1 || initial_heights == 0.0 { 0.0 } else { dropped / initial_heights },
         bond_work: bonds.map(|bonds| bonds.work),
         bond_energy: bonds.map(|bonds| bonds.stored),
         broken_bond_energy: bonds.map(|bonds| bonds.broken),
-        // Set later by the watch over lost grains (`sim::losses`).
+        // The check for lost grains sets this number later (`sim::losses`).
         lost_grains: 0,
     }
 }
 
-/// Sum of the grains' heights, m, and their potential energy, J.
+/// Returns the sum of the grains' heights, m, and their potential energy, J.
 pub(super) fn heights(state: &State) -> [f64; 2] {
     let (grains, gravity) = (&state.world.grains, &state.world.gravity);
     let mut heights = 0.0;
@@ -236,7 +239,8 @@ pub(super) fn heights(state: &State) -> [f64; 2] {
     [heights, potential_energy]
 }
 
-/// Mean overlap of touching grain pairs, and largest overlap of all contacts, in d.
+/// Returns the mean overlap of touching grain pairs and the largest overlap of all contacts, in mean diameters. `bonds`
+/// is true under a contact law with bonds.
 pub(super) fn overlaps(state: &State, bonds: bool) -> [f64; 2] {
     let State { world, contacts, .. } = state;
     let numbering = Numbering::of(world);
@@ -249,7 +253,7 @@ pub(super) fn overlaps(state: &State, bonds: bool) -> [f64; 2] {
         }
         deepest = deepest.max((-contact.gap).positive_part());
         if let Other::Grain(_) = numbering.other(contact.other) {
-            // A bond may be stretched; its opening does not count as overlap.
+            // A bond may be stretched. A stretched pair counts as having the overlap 0.
             overlap_of_pairs +=
                 if bonds { (-contact.gap).positive_part() } else { contact.gap.abs() };
             pairs += 1;
@@ -261,28 +265,28 @@ pub(super) fn overlaps(state: &State, bonds: bool) -> [f64; 2] {
     ]
 }
 
-/// A quantity of rows that can be plotted.
+/// Quantity that can be plotted, computed from rows of a table.
 #[derive(Clone, Copy, Debug)]
 pub struct Quantity<Row: 'static> {
-    /// Name on buttons.
+    /// Name of the quantity on buttons.
     pub name: &'static str,
     /// Title of the plot.
     pub title: &'static str,
-    /// Unit, if it can take prefixes such as k.
+    /// Unit, if it can take a prefix such as k; otherwise empty, and the title contains the unit.
     pub unit: &'static str,
-    /// True if the axis is logarithmic.
+    /// True if the axis of the quantity is logarithmic.
     pub logarithmic: bool,
-    /// Value of a row.
+    /// Returns the value of the quantity in a row.
     pub value: fn(&Row) -> f64,
-    /// Names and values of additional curves, if they exist: the first is dashed, the second dotted.
+    /// Additional curves in the same plot: the first is dashed, the second dotted.
     pub beside: &'static [Beside<Row>],
 }
 
-/// Name and value of an additional curve.
+/// Name of an additional curve, and a function that returns its value in a row if the row has one.
 pub type Beside<Row> = (&'static str, fn(&Row) -> Option<f64>);
 
 impl<Row> Quantity<Row> {
-    /// No unit, a linear axis, and no additional curves.
+    /// Default values of a plotted quantity: no unit, a linear axis, and no additional curves.
     pub const PLAIN: Self = Self {
         name: "",
         title: "",
@@ -334,7 +338,7 @@ mod tests {
 
     #[test]
     fn every_column_is_plotted_or_said_not_to_be() {
-        // A step solved under a friction model: other steps have no model residual to plot.
+        // This step is solved under a friction model, because other steps have no model residual to plot.
         let plain = Observables { step: 7, model_residual: Some(0.5), ..Observables::default() };
         let columns = serde_json::to_value(plain.with_further_columns()).unwrap();
         let columns = columns.as_object().unwrap();

@@ -1,4 +1,4 @@
-//! Pulling a grain interactively: a damped spring between its centre and a point that the user moves.
+//! Interactive pull on a grain: a damped spring between the centre of the grain and a point that the user moves.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -6,19 +6,20 @@ use serde::{Deserialize, Serialize};
 use crate::solver::Model;
 use crate::world::{Parameters, World};
 
-/// Stiffness per mass of the grain, in units of g/d: a stretch of one diameter pulls with this many times the grain's
-/// weight.
+/// Stiffness of the spring divided by the mass of the grain, in units of g/d: a spring stretched by one mean diameter
+/// pulls with 40 times the weight of the grain.
 const STIFFNESS: f64 = 40.0;
-/// g used for scaling in a scene without gravity, m/s².
+/// Gravitational acceleration for the scaling of springs in a scene without gravity, m/s².
 const GRAVITY_IF_NONE: f64 = 9.8;
 
-/// Acceleration that scales the stiffness and speed of interactive pulls, m/s²: the scene's gravity, if it has any.
+/// Returns the acceleration that scales the stiffness and speed of interactive pulls, m/s²: gravity of the scene, or
+/// [`GRAVITY_IF_NONE`] without gravity.
 pub(super) fn gravity_that_scales(world: &World) -> f64 {
     or_if_none(world.gravity.magnitude())
 }
 
-/// Acceleration that scales the springs of contacts, m/s²: the scene's gravity, or that of the cohesion force in a
-/// scene without gravity. Softer springs would yield to a bond by more than a diameter.
+/// Returns the acceleration that scales the springs of contacts, m/s²: gravity of the scene or, without gravity, the
+/// acceleration that defines the cohesion force. Softer springs would let a bond stretch by more than a diameter.
 pub(super) fn acceleration_of_springs(world: &World, parameters: &Parameters) -> f64 {
     or_if_none(parameters.accelerating(world.gravity.magnitude()))
 }
@@ -30,18 +31,18 @@ fn or_if_none(acceleration: f64) -> f64 {
     }
 }
 
-/// A spring from a grain to a point.
+/// Spring with which the user pulls a grain to a point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pull {
-    /// Index of the grain.
+    /// Index of the pulled grain.
     pub grain: u32,
-    /// Position of the spring's other end, m.
+    /// Position of the spring's end that is not at the grain, m.
     pub target: DVec2,
 }
 
 impl Pull {
-    /// Velocity change of the grain by the spring in one step of `time_step_secs`, m/s. The spring is critically
-    /// damped and integrated implicitly, so no time step makes its oscillation grow.
+    /// Returns the change of the grain's velocity by the spring in one step of `time_step_secs` (s), m/s. The spring is
+    /// critically damped and integrated implicitly, so its oscillation does not grow at any time step.
     fn added_velocity(self, world: &World, time_step_secs: f64) -> DVec2 {
         let grains = &world.grains;
         let index = self.grain as usize;
@@ -54,7 +55,7 @@ impl Pull {
         time_step_secs * acceleration / (1.0 + 2.0 * turn + turn * turn)
     }
 
-    /// The push of the spring in the next `time_step_secs`, if it is not zero.
+    /// Returns the push of the spring on the grain in the next `time_step_secs` (s), or `None` if it is zero.
     pub(super) fn push(self, world: &World, axes: usize, time_step_secs: f64) -> Option<Push> {
         let mut change = self.added_velocity(world, time_step_secs);
         if axes == 1 {
@@ -64,7 +65,7 @@ impl Pull {
     }
 }
 
-/// Push on a grain in a step: velocity change (m/s) and its direction as a unit vector.
+/// Push on a grain in a step: the direction (unit vector) and the size (m/s) of its change of velocity.
 pub(crate) struct Push {
     grain: usize,
     direction: DVec2,
@@ -72,14 +73,14 @@ pub(crate) struct Push {
 }
 
 impl Push {
-    /// A push that changes the velocity of a grain by `change`, m/s; `None` if that is zero.
+    /// Returns a push that changes the velocity of a grain by `change`, m/s; `None` if `change` is zero.
     pub(super) fn of(grain: usize, change: DVec2) -> Option<Self> {
         let speed = change.length();
         (speed > 0.0).then(|| Self { grain, direction: change / speed, speed })
     }
 
     pub(super) fn apply<M: Model>(&self, bodies: &mut [M::Body<f64>]) {
-        // A normal impulse against a fixed body changes the velocity by exactly this amount.
+        // A normal impulse against a fixed body changes the velocity of the grain by exactly `speed`.
         let normal = M::normal(self.direction.to_array());
         M::push_single(&mut bodies[self.grain], normal, [self.speed, 0.0]);
     }

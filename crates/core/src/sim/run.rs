@@ -1,4 +1,4 @@
-//! Consecutive steps, changes of the grains between them, and statistics of a run.
+//! Runs of many steps, changes of the velocities between them, and statistics of a run.
 
 use std::ops::ControlFlow;
 
@@ -12,23 +12,23 @@ use crate::sim::simulation::Simulation;
 use crate::sim::state::State;
 use crate::solver::worst;
 
-/// Reason for the end of consecutive steps.
+/// Reason why a run of many steps ended.
 #[derive(Debug)]
 pub enum RunEnding {
     /// All steps were taken.
     Done,
-    /// A call after a step ended the run.
+    /// The function called after each step ended the run.
     Stopped,
-    /// The state is no longer finite, with the error.
+    /// The state is no longer finite. Contains the error of the last step.
     NotFinite(Error),
 }
 
 impl Simulation {
-    /// Takes `steps` steps. `after` is called after each step and can end the run. A state that is no longer finite
-    /// ends the run too, but is not returned as an error.
+    /// Takes up to `steps` steps. `after` is called after each step and can end the run. A state that is no longer
+    /// finite ends the run, too, and is returned as [`RunEnding::NotFinite`].
     ///
     /// # Errors
-    /// The error of `after`.
+    /// An error returned by `after`.
     pub fn run(
         &mut self,
         steps: u64,
@@ -50,7 +50,7 @@ impl Simulation {
     /// Takes `steps` steps.
     ///
     /// # Errors
-    /// If the state is no longer finite after one of them.
+    /// Fails if the state is no longer finite after a step.
     pub fn take_steps(&mut self, steps: u64) -> Result<()> {
         match self.run(steps, |_| Ok(ControlFlow::Continue(())))? {
             RunEnding::NotFinite(failure) => Err(failure),
@@ -58,7 +58,7 @@ impl Simulation {
         }
     }
 
-    /// Sets all velocities to zero and clears the contacts' impulses.
+    /// Sets all velocities to zero and clears the impulses stored in contacts.
     pub fn bring_to_rest(&mut self) {
         let State { world, contacts, .. } = &mut self.state;
         world.grains.velocities.fill(DVec2::ZERO);
@@ -67,7 +67,8 @@ impl Simulation {
         contacts.forget();
     }
 
-    /// Multiplies all velocities, as a drag during the last step would have.
+    /// Multiplies the velocities and angular velocities of all grains by `factor`, as a drag during the last step
+    /// would.
     pub fn scale_velocities(&mut self, factor: f64) {
         let grains = &mut self.state.world.grains;
         for velocity in &mut grains.velocities {
@@ -79,37 +80,37 @@ impl Simulation {
     }
 }
 
-/// Statistics over the steps of a run.
+/// Statistics over the steps of a run: numbers of steps and sweeps, largest errors, and mean and largest overlap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tally {
     /// Number of steps.
     pub steps: u64,
-    /// Number of steps whose stopping test was not met within the sweep limit.
+    /// Number of unsolved steps: the solver did not meet its stop criterion within the sweep limit.
     pub unconverged_steps: u64,
-    /// Number of these steps that had stalled, so that more sweeps do not help.
+    /// Number of unsolved steps whose residual had stopped decreasing, so that more sweeps do not help.
     #[serde(default)]
     pub stalled_steps: u64,
-    /// Total number of sweeps.
+    /// Total number of sweeps of all steps.
     pub sweeps: u64,
-    /// Largest common residual of any step.
+    /// Largest residual of any step, dimensionless.
     #[serde(with = "number")]
     pub largest_residual: f64,
     /// Largest estimated velocity error of any step, m/s.
     #[serde(with = "number", default)]
     pub largest_velocity_error: f64,
-    /// Mean over the steps of the mean overlap, in units of d.
+    /// Mean overlap of touching grain pairs, averaged over the steps, in mean diameters d.
     #[serde(with = "number")]
     pub mean_overlap: f64,
-    /// Largest overlap of any contact in any step, in units of d.
+    /// Largest overlap of any contact in any step, in mean diameters d.
     #[serde(with = "number")]
     pub max_overlap: f64,
-    /// Mean number of contacts over the steps.
+    /// Number of contacts, averaged over the steps.
     #[serde(with = "number", default)]
     pub mean_contacts: f64,
 }
 
 impl Tally {
-    /// Counts one more step, also the last one if its state is no longer finite.
+    /// Adds one step to the statistics. Also counts a last step whose state is not finite.
     pub fn add(&mut self, step: &Observables) {
         self.steps += 1;
         self.unconverged_steps += u64::from(!step.converged);

@@ -1,4 +1,4 @@
-//! A running simulation: a world and everything needed to step it.
+//! The type [`Simulation`]: a world with everything needed to advance it step by step.
 
 use std::sync::Arc;
 
@@ -23,9 +23,9 @@ use crate::{threads, with_model};
 
 /// A simulation of a world.
 ///
-/// A clone continues bitwise as the original would, and so does a simulation written to a file and read back. A file
-/// does not contain data that every step recomputes: the step's problem, and data that solvers keep from one solve to
-/// the next, on which no result depends (`tests/program/restart/` checks this for all solvers).
+/// A clone, and a simulation written to a file and read back, continue with exactly the same bits as the original. A
+/// file omits data on which no result depends: the contact problem, which every step recomputes, and data that solvers
+/// keep from one solve to the next (`tests/program/restart/` checks this for all solvers).
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(remote = "Self", deny_unknown_fields)]
 pub struct Simulation {
@@ -36,9 +36,9 @@ pub struct Simulation {
     slots: Slots,
     memory: StepperMemory,
     observables: Observables,
-    /// Initial sum of heights Σ y_i(0), m, of eq. 11.
+    /// Sum of the initial heights of all grains, Σ y_i(0), m (paper eq. 11).
     pub(super) initial_heights: f64,
-    /// The stepper of the last step. The contacts' memories belong to it.
+    /// Stepper of the last step. The data that contacts keep from step to step belong to this stepper.
     last_stepper: Option<Stepper>,
     pub(super) watch: Watch,
     pub(super) surroundings: Arc<Surroundings>,
@@ -47,11 +47,11 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// Creates a simulation of `world` at t = 0. Pairs touch below a gap of `gap_tolerance` (m, ≥ 0), which only
-    /// allows for rounding.
+    /// Creates a simulation of `world` at time 0. Pairs with a gap below `gap_tolerance` (m, ≥ 0) count as touching;
+    /// this tolerance only allows for rounding.
     ///
     /// # Errors
-    /// Names the first field that is outside its range or incompatible with others.
+    /// The error names the first field that is outside its range or incompatible with other fields.
     pub fn new(
         mut world: World,
         physics: Physics,
@@ -98,8 +98,8 @@ impl Simulation {
     /// Takes one step.
     ///
     /// # Errors
-    /// [`Error::NonFinite`] if a position, a velocity or the kinetic energy is no longer a number. The state is kept
-    /// for inspection.
+    /// [`Error::NonFinite`] if a position, a velocity or the kinetic energy is no longer finite. The simulation keeps
+    /// this state for inspection.
     pub fn step(&mut self) -> Result<&Observables> {
         self.watch.look_ahead(&self.observables, &self.settings);
         self.become_of(Some(self.settings.stepper));
@@ -113,11 +113,11 @@ impl Simulation {
         self.look()
     }
 
-    /// Takes one step and measures its parts with `clock`, which returns seconds since any moment. The step is the
-    /// same as that of [`Simulation::step`].
+    /// Takes one step exactly as [`Simulation::step`] does, and measures the computing times of its parts. `clock`
+    /// returns the seconds since any fixed moment.
     ///
     /// # Errors
-    /// Same as [`Simulation::step`].
+    /// The errors of [`Simulation::step`].
     pub fn timed_step(&mut self, clock: fn() -> f64) -> Result<StepTimes> {
         self.state.stopwatch = Stopwatch { clock: Some(clock), ..Stopwatch::default() };
         let begun = clock();
@@ -150,7 +150,7 @@ impl Simulation {
     /// ```
     ///
     /// # Errors
-    /// Same as [`Simulation::step`].
+    /// The errors of [`Simulation::step`].
     pub fn step_by(&mut self, own: &mut (impl Advance + Send)) -> Result<&Observables> {
         self.watch.look_ahead(&self.observables, &self.settings);
         self.become_of(None);
@@ -158,7 +158,7 @@ impl Simulation {
         self.look()
     }
 
-    /// Clears the contacts' memories if the stepper changes, because they belong to one stepper.
+    /// Clears the data that contacts keep from step to step if the stepper changes, because they belong to one stepper.
     fn become_of(&mut self, stepper: Option<Stepper>) {
         if self.last_stepper != stepper {
             self.state.contacts.forget();
@@ -179,7 +179,7 @@ impl Simulation {
         }
     }
 
-    /// Takes a step in `pieces` pieces of equal length.
+    /// Takes one step, divided into `pieces` pieces of equal length.
     fn take_step_of<M: Slotted>(&mut self, pieces: u32, advance: &mut impl Advance) {
         let Self {
             state, settings, slots, observables, initial_heights, last_stepper, watch, ..
@@ -197,7 +197,7 @@ impl Simulation {
             result.measures.measure_as_a_model();
         }
         let time_step_secs = settings.parameters.time_step_secs;
-        // A stepper without a solver has no tolerance that its residual could miss.
+        // Only the step of a solver can be unsolved: other steppers have no tolerance that their residual could miss.
         let is_solved = last_stepper.is_none_or(Stepper::uses_method);
         result.report.converged &= !is_solved || result.measures.residual.is_finite();
         *observables =
@@ -208,10 +208,10 @@ impl Simulation {
     }
 
     fn look(&mut self) -> Result<&Observables> {
-        // Speeds whose squares overflow count as not finite: nothing is measured of such a state.
+        // A state whose kinetic energy overflows counts as not finite, too, because nothing can be measured of it.
         let finite = self.state.is_finite() && self.observables.kinetic_energy.is_finite();
         let Self { state, settings, watch, observables, .. } = self;
-        // Springs of `dem` return stored energy, and the works of `avbd` do not balance its energy.
+        // Not for `dem`, whose springs return stored energy, nor for `avbd`, whose works do not balance its energy.
         let is_balanced = |stepper| !matches!(stepper, Stepper::Dem | Stepper::Avbd);
         if finite && self.last_stepper.is_some_and(is_balanced) {
             watch.count_work(state, settings, observables);
@@ -235,7 +235,7 @@ impl Simulation {
         })
     }
 
-    /// Finds the contacts of the present positions, and measures the state as an initial state.
+    /// Finds the contacts at the present positions and fills the observables as for an initial state.
     pub(super) fn observe_start(&mut self) {
         let Self { state, settings, slots, memory, observables, initial_heights, .. } = self;
         with_model!(state.leanest_model(&settings.parameters), M => {
@@ -244,16 +244,16 @@ impl Simulation {
         });
     }
 
-    /// Passes the first problem of the next step to `visitor`, as the solver would receive it: the problem of the
-    /// first piece if the step is divided, after its shocks if they are solved separately. This simulation does not
-    /// change.
+    /// Passes the contact problem of the next step to `visitor`, as the solver will first receive it: for the first
+    /// piece if the step is divided, and with the velocities after shocks if shocks are solved separately. Does not
+    /// change this simulation.
     pub fn next_problem<V: ProblemVisitor>(&self, visitor: V) -> V::Output {
         let (parts, mut slots, contacts) = self.prepared();
         with_model!(parts, M => visitor.visit::<M>(&mut M::slot(&mut slots).problem, &contacts))
     }
 
-    /// The problem in the slot of its model, and its contacts. Not generic, so that it is compiled only in this
-    /// crate.
+    /// Prepares the next step. Returns its model, the slots that contain its contact problem, and its contacts. Not
+    /// generic, so that it is compiled only in this crate.
     fn prepared(&self) -> (ModelParts, Slots, ContactList) {
         let Self { mut state, settings, mut slots, mut memory, .. } = self.clone();
         let parts = state.leanest_model(&settings.parameters);
@@ -266,32 +266,32 @@ impl Simulation {
         (parts, slots, state.contacts)
     }
 
-    /// The present world.
+    /// Returns the world in its present state.
     pub fn world(&self) -> &World {
         &self.state.world
     }
 
-    /// The contacts of the last step.
+    /// Returns the contacts of the last step.
     pub fn contacts(&self) -> &ContactList {
         &self.state.contacts
     }
 
-    /// The physics that this simulation computes.
+    /// Returns the physics that this simulation computes, such as friction and rotation.
     pub fn physics(&self) -> Physics {
         self.state.physics
     }
 
-    /// The settings of the next step.
+    /// Returns the settings of the next step.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// The parameters of the next step.
+    /// Returns the parameters of the next step.
     pub fn parameters(&self) -> &Parameters {
         &self.settings.parameters
     }
 
-    /// The solver settings of the next step.
+    /// Returns the solver settings of the next step.
     pub fn solver(&self) -> &SolverSettings {
         &self.settings.solver
     }
@@ -299,7 +299,7 @@ impl Simulation {
     /// Changes the settings from the next step on.
     ///
     /// # Errors
-    /// Names the first setting outside its range or incompatible with others, and changes none.
+    /// The error names the first setting that is out of range or incompatible; then no setting changes.
     pub fn change(&mut self, settings: Settings) -> Result<()> {
         settings.validate()?;
         settings.check_in(&self.state.world, self.state.physics)?;
@@ -314,8 +314,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Detects the contacts of the start as [`Self::new`] does, because steppers detect them in different orders: a run
-    /// whose settings change before its first step is that of the new settings, bit for bit.
+    /// Detects the contacts of the initial state again, because their order depends on the stepper. So a run whose
+    /// settings change before its first step equals, bit for bit, a run created with these settings.
     fn begin_again(&mut self) -> Result<()> {
         let state = &mut self.state;
         state.candidates = state.candidates.unbuilt(&state.world)?;
@@ -329,7 +329,7 @@ impl Simulation {
     /// Changes the parameters from the next step on.
     ///
     /// # Errors
-    /// Same as [`Self::change`].
+    /// The errors of [`Self::change`].
     pub fn set_parameters(&mut self, parameters: Parameters) -> Result<()> {
         self.change(Settings { parameters, ..self.settings })
     }
@@ -337,62 +337,62 @@ impl Simulation {
     /// Changes the solver settings from the next step on.
     ///
     /// # Errors
-    /// Same as [`Simulation::change`].
+    /// The errors of [`Simulation::change`].
     pub fn set_solver(&mut self, solver: SolverSettings) -> Result<()> {
         self.change(Settings { solver, ..self.settings })
     }
 
-    /// The spring that pulls a grain in the next step, if there is one.
+    /// Returns the spring with which the user pulls a grain in the next step, if there is one.
     pub fn pull(&self) -> Option<Pull> {
         self.state.pull
     }
 
-    /// Attaches a spring to a grain from the next step on, or removes it. A spring to a grain that does not exist is
-    /// ignored.
+    /// Attaches a spring to a grain from the next step on, or removes the present spring if `pull` is `None`, names no
+    /// grain of this simulation, or has a target that is not finite.
     pub fn set_pull(&mut self, pull: Option<Pull>) {
         let exists = |pull: &Pull| (pull.grain as usize) < self.state.world.grains.len();
         self.state.pull = pull.filter(|pull| exists(pull) && pull.target.is_finite());
     }
 
-    /// Measurements of the last step; before the first step, of the initial state.
+    /// Returns the measurements after the last step, or of the initial state before the first step.
     pub fn observables(&self) -> &Observables {
         &self.observables
     }
 
-    /// Alarms so far, at most one of each kind.
+    /// Returns the alarms (warnings of a failure) raised so far, at most one of each kind.
     pub fn alarms(&self) -> &[Alarm] {
         &self.watch.alarms
     }
 
-    /// The alarm that the next step raises on grains as they were placed, if there is one.
+    /// Returns the alarm that the next step will raise if grains were placed in overlap; `None` if they were not.
     pub fn alarm_on_placed(&self) -> Option<Alarm> {
         self.watch.of_placed(&self.observables, &self.settings)
     }
 
-    /// Clears the alarms, for a run that continues with other settings, because each kind is raised only once. Lost
-    /// grains stay lost.
+    /// Clears the alarms, so that a run that continues with other settings can raise them again: each kind is raised
+    /// only once. Alarms on lost grains stay.
     pub fn forget_alarms(&mut self) {
         let stays = [AlarmKind::GrainLost, AlarmKind::GrainLeft];
         self.watch.alarms.retain(|alarm| stays.contains(&alarm.kind));
     }
 
-    /// The step whose end is nearest to a simulated time (s), if Δt does not change.
+    /// Returns the number of the step that ends nearest to the simulated time `secs` (s), if Δt does not change.
     pub fn step_at(&self, secs: f64) -> u64 {
         self.steady.step_at(secs, &self.settings.parameters)
     }
 
-    /// True if a grain went through a wall or left the world.
+    /// True if this grain went through a wall or left the world.
     pub(super) fn is_lost(&self, grain: usize) -> bool {
         self.watch.losses.lost[grain]
     }
 
-    /// Simulated time, s.
+    /// Returns the simulated time, s.
     pub fn time_secs(&self) -> f64 {
         self.observables.time_secs
     }
 }
 
-/// The moment of the last change of Δt.
+/// Step and simulated time (s) of the last change of Δt.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Steady {
@@ -406,17 +406,17 @@ impl Steady {
         Self { step, time_secs }
     }
 
-    /// The step whose end is nearest to a simulated time, s.
+    /// Returns the number of the step that ends nearest to the simulated time `secs`, s.
     fn step_at(self, secs: f64, parameters: &Parameters) -> u64 {
         self.step.saturating_add(parameters.steps_in(secs - self.time_secs))
     }
 }
 
-/// Visitor of a step's problem before the problem is solved.
+/// Visitor that receives the contact problem of the next step before it is solved ([`Simulation::next_problem`]).
 pub trait ProblemVisitor {
     /// Result of the visit.
     type Output;
-    /// Visits the problem; row `k` of the problem is contact `problem.rows.contacts[k]` of `contacts`.
+    /// Receives the problem. Row `k` of the problem is contact `problem.rows.contacts[k]` of `contacts`.
     fn visit<M: Model>(self, problem: &mut StepProblem<M>, contacts: &ContactList) -> Self::Output;
 }
 
@@ -433,8 +433,8 @@ impl<'de> Deserialize<'de> for Simulation {
 }
 
 impl Simulation {
-    /// Completes a simulation read from a file after checking that its parts are compatible, because nothing checks
-    /// them later.
+    /// Checks that the parts of a simulation read from a file fit together, because no later code checks this, and
+    /// recomputes the data that a file omits.
     fn complete(mut self) -> Result<Self> {
         self.settings.validate()?;
         self.state.physics.validate()?;
@@ -472,7 +472,7 @@ mod tests {
     use crate::scene::built_in;
     use crate::sim::Stepper;
 
-    /// A clock that advances by one with each reading.
+    /// Clock for tests: each reading is 1 s later than the reading before.
     fn looks() -> f64 {
         static LOOKS: AtomicU32 = AtomicU32::new(0);
         f64::from(LOOKS.fetch_add(1, Ordering::Relaxed))

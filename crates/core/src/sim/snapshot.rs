@@ -1,4 +1,4 @@
-//! The state at one moment, for pictures and windows. Plain data that outlives the simulation.
+//! Snapshot of a simulation at one moment, for pictures and windows: plain data that outlives the simulation.
 
 use std::sync::Arc;
 
@@ -13,13 +13,13 @@ use crate::sim::state::State;
 use crate::sim::surroundings::Surroundings;
 use crate::world::Periodic;
 
-/// The state at one moment, for pictures.
+/// Snapshot of a simulation at one moment, for pictures.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Snapshot {
-    /// Measurements of the last step.
+    /// Measurements after the last step.
     pub observables: Observables,
-    /// The moving discs.
+    /// All grains.
     pub grains: Vec<GrainView>,
     /// The contacts of the last step.
     pub contacts: Vec<ContactView>,
@@ -28,7 +28,8 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// A hash of the positions and motions of all grains, bit by bit, which distinguishes states.
+    /// Returns a hash of the bits of all grains' positions, velocities, angles and angular velocities. Equal hashes
+    /// mean, with near certainty, equal states.
     pub fn state_hash(&self) -> String {
         hash_of_bits(self.grains.iter().flat_map(|grain| {
             let GrainView { position, velocity, angle, angular_velocity, .. } = *grain;
@@ -37,7 +38,7 @@ impl Snapshot {
     }
 }
 
-/// FNV-1a, 64 bits (draft-eastlake-fnv, 5), over all bits of numbers, as 16 hexadecimal digits.
+/// Returns the 64-bit FNV-1a hash (draft-eastlake-fnv, 5) of the bits of all numbers, as 16 hexadecimal digits.
 pub fn hash_of_bits(numbers: impl IntoIterator<Item = f64>) -> String {
     let bytes = numbers.into_iter().flat_map(f64::to_le_bytes);
     let hash = bytes.fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
@@ -46,55 +47,55 @@ pub fn hash_of_bits(numbers: impl IntoIterator<Item = f64>) -> String {
     format!("{hash:016x}")
 }
 
-/// One grain at one moment.
+/// A grain at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GrainView {
     /// Centre, m.
     pub position: DVec2,
-    /// Radius, m.
+    /// Radius of the grain, m.
     pub radius: f64,
-    /// Rotation angle, rad.
+    /// Angle by which the grain has turned, rad.
     pub angle: f64,
-    /// Velocity of the centre, m/s.
+    /// Velocity of the grain's centre, m/s.
     pub velocity: DVec2,
-    /// Angular velocity, rad/s.
+    /// Angular velocity of the grain, rad/s.
     pub angular_velocity: f64,
-    /// Largest overlap over its contacts, m; 0 without contacts.
+    /// Largest overlap over the contacts of the grain, m; 0 without contacts.
     pub overlap: f64,
-    /// Σ|N| over its contacts, N.
+    /// Sum of the normal forces over the contacts of the grain, Σ|N|, N.
     pub force: f64,
-    /// Number of its contacts.
+    /// Number of contacts of the grain.
     pub coordination: u32,
-    /// Grey from the scene: 0 is black, 255 white.
+    /// Grey value with which the grain is drawn: 0 is black, 255 white.
     pub tone: u8,
-    /// Number of its material in the list of the surroundings.
+    /// Index of the grain's material in [`Surroundings::materials`].
     #[serde(default, skip_serializing_if = "is_zero")]
     pub material: u8,
 }
 
-/// One contact at one moment.
+/// A contact at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactView {
-    /// Index of grain i.
+    /// Index of grain i of the contact.
     pub grain: u32,
-    /// Index of grain j; `None` for a fixed shape.
+    /// Index of grain j; `None` if the other body is a fixed shape.
     pub other_grain: Option<u32>,
     /// Centre of grain i, m.
     pub from: DVec2,
-    /// Centre of the other disc, or the touched point of another fixed shape, m.
+    /// Centre of the other disc, or the touched point of a boundary, m.
     pub to: DVec2,
-    /// Normal force N, newton; negative pulls.
+    /// Normal force N, newton; negative if the contact pulls.
     pub normal_force: f64,
     /// Tangential force T, newton.
     pub tangential_force: f64,
-    /// Gap when the contact was found, m; negative for an overlap.
+    /// Gap at the moment when the contact was found in the last step, m; negative for an overlap.
     pub gap: f64,
 }
 
 impl Simulation {
-    /// The present state, for pictures.
+    /// Returns a snapshot of the present state.
     pub fn snapshot(&self) -> Snapshot {
         let (grains, numbering) = (&self.state.world.grains, Numbering::of(&self.state.world));
         let mut views: Vec<GrainView> = (0..grains.len())
@@ -142,7 +143,7 @@ impl Simulation {
         }
     }
 
-    /// Boundaries and fixed discs at their present places.
+    /// Returns the boundaries and fixed discs at their present places.
     pub(super) fn surroundings(&self) -> Arc<Surroundings> {
         let world = &self.state.world;
         if !world.has_motion() && !world.periodic.is_some_and(Periodic::is_sheared) {
@@ -151,7 +152,8 @@ impl Simulation {
         Arc::new(Surroundings::of(world, self.parameters().time_step_secs))
     }
 
-    /// Centre of the other disc, or the nearest point of another shape, m, for the nearest image.
+    /// Returns the centre of a contact's other disc, or the nearest point of another shape, m. With periodic borders it
+    /// belongs to the image that is nearest to the grain.
     fn far_end(&self, grain: usize, other: Other) -> DVec2 {
         let State { world, candidates, .. } = &self.state;
         let centre = world.grains.positions[grain];

@@ -13,11 +13,12 @@ use crate::sim::walls::Walls;
 use crate::solver::{Model, ModelParts};
 use crate::world::{Parameters, Physics, World};
 
-/// Skin of the candidate search, in units of d. If smaller, the list is rebuilt more often; if larger, more pairs are
-/// examined in vain. It does not change any result.
+/// Skin of the neighbour search, in mean diameters: pairs with gaps below the skin are listed as candidates for
+/// contacts. With a smaller skin the list is rebuilt more often; with a larger one more pairs are examined in vain. The
+/// skin does not change any result.
 const SKIN_IN_DIAMETERS: f64 = 0.2;
 
-/// A world with the contacts of its last step.
+/// State that a step changes: a world, the contacts of its last step, and the user's forces on it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct State {
@@ -25,34 +26,35 @@ pub(crate) struct State {
     pub physics: Physics,
     pub candidates: Candidates,
     pub contacts: ContactList,
-    /// Moving walls. Each step begins by finding them.
+    /// Moving walls with their velocities. Each step recomputes them at its beginning.
     #[serde(skip)]
     pub walls: Walls,
-    /// Spring on one grain, from the next step on.
+    /// Spring with which the user pulls one grain from the next step on.
     pub pull: Option<Pull>,
-    /// Force on each grain in addition to gravity, N; empty if there is none.
+    /// Force on each grain in addition to gravity, N; empty if no grain has such a force.
     pub body_forces: Vec<DVec2>,
-    /// True if the user drags a wall. The last motion is then this drag.
+    /// True while the user drags a wall. The last entry of the world's `motions` is then this drag.
     pub is_held: bool,
-    /// Δt of the impulses in `contacts`, s.
+    /// Length of the time step to which the impulses in `contacts` belong, s.
     pub time_step_of_impulses_secs: f64,
-    /// Measures while a step is timed.
+    /// Clock for the computing times of a step's parts; it only runs during a timed step.
     #[serde(skip)]
     pub stopwatch: Stopwatch,
 }
 
 impl State {
-    /// The smallest model that computes all physics of the state.
+    /// Returns the smallest compiled model (friction, rotation, rolling friction, …) that computes all physics of this
+    /// state.
     pub(crate) fn leanest_model(&self, parameters: &Parameters) -> ModelParts {
         ModelParts::leanest(self.physics, self.world.periodic, self.largest_friction(parameters))
     }
 
-    /// The contact laws by pairs of materials; `None` if all contacts have the numbers of the parameters.
+    /// Returns the contact laws for pairs of materials; `None` if the parameters apply to all contacts.
     pub(crate) fn pair_laws(&self, parameters: &Parameters) -> Option<PairLaws> {
         PairLaws::of(&self.world, parameters, self.physics)
     }
 
-    /// The largest μ and μ_r of any contact.
+    /// Returns the largest friction coefficient μ and the largest coefficient of rolling friction μ_r of any contact.
     pub(crate) fn largest_friction(&self, parameters: &Parameters) -> [f64; 2] {
         match self.pair_laws(parameters) {
             None => [parameters.friction, parameters.rolling_friction],
@@ -63,13 +65,13 @@ impl State {
         }
     }
 
-    /// The number of substeps that the stepper takes per step.
+    /// Returns the number of substeps in which the stepper takes a step.
     pub(crate) fn substeps(&self, settings: &Settings) -> u32 {
         (settings.stepper.info().substeps)(&self.world, self.physics, &settings.parameters)
     }
 
-    /// Begins a step of length `time_step_secs`: rescales impulses so that the contacts' forces stay the same, and
-    /// sets the speeds of walls and the direction of gravity.
+    /// Begins a step of length `time_step_secs`, s. If the step length has changed, rescales the stored impulses so
+    /// that the contact forces stay the same. Also sets the velocities of walls and the direction of gravity.
     pub(crate) fn begin(&mut self, time_step_secs: f64) {
         let before = self.time_step_of_impulses_secs;
         if time_step_secs != before {
@@ -82,7 +84,7 @@ impl State {
         self.walls.begin(&self.world, &self.candidates, time_step_secs);
     }
 
-    /// Finds the contacts at the present positions and, with a look-ahead, also the pairs that may touch within the
+    /// Finds the contacts at the present positions. If `ahead` is given, also finds pairs that may touch within the
     /// step.
     pub(crate) fn detect<M: Model>(&mut self, ahead: Option<LookAhead>) {
         let begun = self.stopwatch.now();
@@ -110,28 +112,33 @@ impl State {
         });
     }
 
-    /// Speed of the fastest grain or wall of a step that has begun, m/s.
+    /// Returns the speed of the fastest grain or wall, m/s, in a step that has begun.
     pub(crate) fn fastest(&self) -> f64 {
         self.fastest_with(self.walls.fastest(&self.world, &self.candidates))
     }
 
-    /// Speed of the fastest grain or wall in the next step, if it has this length, m/s.
+    /// Returns the speed of the fastest grain or wall, m/s, in the next step if that step has the length
+    /// `time_step_secs`.
     pub(crate) fn fastest_in(&self, time_step_secs: f64) -> f64 {
         self.fastest_with(Walls::fastest_in(&self.world, &self.candidates, time_step_secs))
     }
 
-    /// Each of two grains that meet accounts for half of the relative speed of images beyond a border.
+    /// Returns the speed of the fastest grain, or `fastest_wall` if that is larger, m/s. Images of grains beyond a
+    /// sheared border slide with the border; half of this sliding speed is added for each of the two grains that meet
+    /// across it.
     fn fastest_with(&self, fastest_wall: f64) -> f64 {
         let speeds = self.world.grains.velocities.iter().map(|velocity| velocity.length());
         speeds.fold(fastest_wall, f64::max) + 0.5 * self.speed_of_border()
     }
 
-    /// Speed of images beyond a sheared border relative to their grains, m/s.
+    /// Returns the speed of images beyond a sheared border relative to the grains themselves, m/s; 0 without such a
+    /// border.
     fn speed_of_border(&self) -> f64 {
         self.world.periodic.map_or(0.0, |periodic| periodic.border_speed().abs())
     }
 
-    /// x^n = x^{n−1} + Δt v^n (paper eq. 12), and likewise the angles if grains turn.
+    /// Moves the grains by their velocities: x^n = x^{n−1} + Δt v^n (paper eq. 12), and likewise the angles if grains
+    /// turn. Also moves walls and sheared borders, and advances the direction of gravity.
     pub(crate) fn integrate<M: Model>(&mut self, time_step_secs: f64) {
         let grains = &mut self.world.grains;
         for (position, velocity) in grains.positions.iter_mut().zip(&grains.velocities) {
@@ -141,7 +148,7 @@ impl State {
                 *position += time_step_secs * *velocity;
             }
         }
-        // Grains keep turning while friction is temporarily off.
+        // Depends on the physics and not on the compiled model: grains keep turning while friction is off.
         if self.physics.rotation {
             for (angle, spin) in grains.angles.iter_mut().zip(&grains.angular_velocities) {
                 *angle += time_step_secs * spin;
@@ -159,7 +166,7 @@ impl State {
         }
     }
 
-    /// External pushes on grains in the next `secs`: a spring, and body forces.
+    /// Returns the pushes on grains in the next `secs` (s) by the user's spring and by body forces.
     pub(super) fn pushes(&self, axes: usize, secs: f64) -> Vec<Push> {
         let masses = &self.world.grains.masses;
         let spring = self.pull.and_then(|pull| pull.push(&self.world, axes, secs));
@@ -169,8 +176,8 @@ impl State {
         spring.into_iter().chain(forces).collect()
     }
 
-    /// The largest acceleration of a grain by gravity and body forces, m/s². It determines the search distance of the
-    /// next step.
+    /// Returns the largest acceleration that gravity and body forces give to any grain, m/s². The search distance of
+    /// the next step depends on it.
     pub(super) fn largest_acceleration(&self) -> f64 {
         let forces = self.body_forces.iter().zip(&self.world.grains.masses);
         let largest = forces.map(|(force, mass)| force.length() / mass).fold(0.0, f64::max);
@@ -180,14 +187,15 @@ impl State {
     /// True if all positions and velocities are finite.
     pub(crate) fn is_finite(&self) -> bool {
         let grains = &self.world.grains;
-        // A sum is finite only if every term is (an overflow near enough counts as well).
+        // A sum is finite only if all its terms are finite. A sum that overflows, although its terms are finite, counts
+        // as not finite, too.
         let total = |vectors: &[DVec2]| vectors.iter().sum::<DVec2>().is_finite();
         total(&grains.positions)
             && total(&grains.velocities)
             && grains.angular_velocities.iter().sum::<f64>().is_finite()
     }
 
-    /// Removes a grain. The impulses of all other contacts stay.
+    /// Removes a grain. The impulses of contacts between other bodies do not change.
     pub(crate) fn remove_grain(&mut self, grain: usize) -> Result<()> {
         let number = grain as u32;
         self.world.grains.remove(grain);
@@ -203,7 +211,7 @@ impl State {
         Ok(())
     }
 
-    /// Replaces the world by one with one more grain, which is the last.
+    /// Replaces the world by `world`, which has one more grain at the end of its list.
     pub(crate) fn add_last_grain(&mut self, world: World) -> Result<()> {
         let number = world.grains.len() as u32 - 1;
         self.world = world;
@@ -214,7 +222,7 @@ impl State {
         self.look_anew()
     }
 
-    /// Restarts the candidate search.
+    /// Starts the neighbour search again from the present positions.
     pub(crate) fn look_anew(&mut self) -> Result<()> {
         let skin = SKIN_IN_DIAMETERS * self.world.mean_diameter;
         let gap_tolerance = self.candidates.gap_tolerance();
@@ -223,11 +231,12 @@ impl State {
     }
 }
 
-/// Largest mean diameter, in radii of the largest grain. The skin is proportional to the mean diameter, and all discs
-/// within the skin are candidates.
+/// Largest allowed mean diameter, in radii of the largest grain. All pairs within the skin are candidates, and the skin
+/// is proportional to the mean diameter, so a larger value would allow worlds in which nearly all pairs are candidates.
 const MOST_RADII_OF_DIAMETER: f64 = 200.0;
 
-/// Reach of a world's candidate search, if its lengths leave each disc few others to touch.
+/// Returns the search distances of a world. The error names a length with which each disc would have too many
+/// neighbours.
 pub(super) fn reach_in(world: &World, gap_tolerance: f64) -> Result<Reach> {
     let diameter = world.mean_diameter;
     if !(diameter > 0.0 && diameter.is_finite()) {
@@ -239,7 +248,7 @@ pub(super) fn reach_in(world: &World, gap_tolerance: f64) -> Result<Reach> {
         return Err(Error::value("mean_diameter", diameter, allowed));
     }
     let skin = SKIN_IN_DIAMETERS * diameter;
-    // With much smaller discs, all discs within the tolerance would touch.
+    // If a disc were smaller than the tolerance, all discs within the tolerance would count as touching.
     let least_radius = world.grains.radii.iter().copied().fold(f64::INFINITY, f64::min);
     let most = (0.1 * skin).min(least_radius);
     if !(0.0..most).contains(&gap_tolerance) {

@@ -1,17 +1,17 @@
-//! Computing time of a step's parts.
+//! Computing times of the parts of a step.
 
-/// Computing time of a step, s.
+/// Computing times of the parts of one step, s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepTimes {
-    /// Detection: finding candidates and contacts.
+    /// Time of detection, s: finding candidate pairs and contacts.
     pub detection_secs: f64,
-    /// Solving the step's problems, including shocks; 0 for steppers whose substeps push by a formula.
+    /// Time of the solver, s, including the solution of shocks; 0 for steppers whose substeps need no solver.
     pub solving_secs: f64,
-    /// Total, which also includes preparation, motion and measurement.
+    /// Time of the whole step, s. It also includes preparation, motion and measurement.
     pub total_secs: f64,
 }
 
-/// Adds up the times of a step's parts if there is a clock.
+/// Clock that adds up the computing times of a step's parts. Without a clock function it measures nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stopwatch {
     pub clock: Option<fn() -> f64>,
@@ -19,7 +19,7 @@ pub(crate) struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// Seconds since any moment; constant without a clock.
+    /// Returns the seconds since an arbitrary fixed moment; constant without a clock.
     pub(crate) fn now(&self) -> f64 {
         self.clock.map_or(0.0, |clock| clock())
     }

@@ -1,4 +1,5 @@
-//! Common parts of all steppers: the stage with the step's problem, the division into pieces, and the step's result.
+//! Code that all steppers use: the stage with the contact problem, the division of a step into pieces, and the result
+//! of a step.
 
 use crate::contact::{ContactList, InTouch, LookAhead};
 use crate::sim::settings::Settings;
@@ -9,47 +10,50 @@ use crate::solver::{
 };
 use crate::world::{Parameters, World};
 
-/// Result of a step.
+/// Result of a step: solver report, measurements and works.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StepResult {
-    /// Report of the solves.
+    /// Sum of the reports of all solves in the step.
     pub report: SolveReport,
-    /// Residual, contacts and works.
+    /// Residual, number of contacts, and works of the contacts.
     pub measures: Measures,
-    /// Work of gravity, body forces and a spring that pulls, J.
+    /// Work of gravity, of body forces and of the spring with which the user pulls a grain, J.
     pub gravity_work: f64,
     /// Work of the forces that drive walls, minus the loss in the walls' damping, J.
     pub drive_work: f64,
-    /// Energies of bonds, under a law with bonds.
+    /// Energies of bonds; `None` under a contact law without bonds.
     pub bonds: Option<BondEnergies>,
-    /// Number of bonds that ended because their pairs turned, under laws whose bonds exist while their gap is
+    /// Number of bonds that ended because their pairs turned. Counted under laws whose bonds exist while the gap is
     /// negative.
     pub turned_bonds: u64,
 }
 
 /// Energies absorbed and released by bonds, J.
 ///
-/// A bond that is opened by s has absorbed C₀ s. It releases this when it closes, and dissipates it when it breaks.
-/// So its work is −Δ(C₀ s). In its last step it is −C₀ times the opening until the break, and with the impulse b m_ij
-/// of the time until then it is −b m_ij ½(v⁺ + v^n), which gives C₀δ_c in total. Any further work of a contact is the
-/// work of the grains pushing each other.
+/// A bond with the cohesion force C₀ (N) that is stretched by s (m) has absorbed the energy C₀ s. The bond releases
+/// this energy when it closes, and dissipates it when it breaks. So the work of a bond is −Δ(C₀ s). In the step in
+/// which a bond breaks, its work is −C₀ times the opening until the break. If b m_ij is the impulse of the bond until
+/// the break, with b in m/s, this work equals −b m_ij ½(v⁺ + v^n), with the opening speeds v⁺ after the shocks and v^n
+/// at the end of the step. A bond that breaks at the stretch δ_c has dissipated C₀δ_c in total. The rest of the work of
+/// a contact is done by the push between the grains.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BondEnergies {
-    /// Work in this step.
+    /// Work of all bonds in this step.
     pub work: f64,
-    /// Σ C₀ s of the existing bonds.
+    /// Energy Σ C₀ s stored in the bonds that exist after this step.
     pub stored: f64,
     /// Energy dissipated by the bonds that broke in this step.
     pub broken: f64,
 }
 
 impl StepResult {
-    /// Result of a step before anything has happened.
+    /// Returns the result of a step before any work is done.
     pub fn nothing_yet() -> Self {
         Self { report: SolveReport::nothing_yet(), ..Self::default() }
     }
 
-    /// Adds another piece of the step. Its final measurements become those of the whole step.
+    /// Adds the result of the next piece of the step. Measurements at the end of this piece replace those of earlier
+    /// pieces.
     pub fn add(&mut self, piece: Self) {
         let Self { report, measures, gravity_work, drive_work, bonds, turned_bonds } = piece;
         self.report.add(report);
@@ -66,13 +70,15 @@ impl StepResult {
     }
 }
 
-/// A stepper: one of the registry, or your own ([`Simulation::step_by`](crate::sim::Simulation::step_by)).
+/// A stepper: one from the registry, or a stepper of your own
+/// ([`Simulation::step_by`](crate::sim::Simulation::step_by)).
 pub trait Advance {
-    /// Takes the state through a step of `settings.parameters.time_step_secs`, and returns the result.
+    /// Takes one step of length `settings.parameters.time_step_secs` and returns its result.
     fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult;
 }
 
-/// Everything a stepper works on. The usual sequence is [`Stage::prepare`], [`Stage::solve`], [`Stage::move_by`].
+/// Data on which a stepper works: the state and its contact problem. A stepper usually calls [`Stage::prepare`],
+/// [`Stage::solve`] and [`Stage::move_by`], in this order.
 #[derive(Debug)]
 pub struct Stage<'a, M: Model> {
     pub(crate) state: &'a mut State,
@@ -87,28 +93,29 @@ impl<'a, M: Model> Stage<'a, M> {
         Self { state, problem, part, memory }
     }
 
-    /// The present world.
+    /// Returns the world in its present state.
     pub fn world(&self) -> &World {
         &self.state.world
     }
 
-    /// The step's contact problem, after it has been prepared.
+    /// Returns the contact problem of the step, after [`Stage::prepare`] has set it up.
     pub fn problem(&self) -> &StepProblem<M> {
         self.problem
     }
 
-    /// The step's contact problem for your own solver, whose impulses move the bodies ([`BodySystem::new`]).
+    /// Returns the contact problem of the step for a solver of your own. The impulses of that solver move the bodies
+    /// ([`BodySystem::new`]).
     pub fn system(&mut self) -> BodySystem<'_, M> {
         BodySystem::new(self.problem)
     }
 
-    /// The contacts of the step. Row k of the problem is contact `problem.rows.contacts[k]` of this list.
+    /// Returns the contacts of the step. Row k of the problem is contact `problem.rows.contacts[k]` of this list.
     pub fn contacts(&self) -> &ContactList {
         &self.state.contacts
     }
 
-    /// Begins a step and sets up its problem with the touching contacts. `rebound` returns the term that the law adds
-    /// to v_n of a contact, m/s.
+    /// Begins a step and sets up its contact problem with the touching pairs. `rebound` returns the term (m/s) that the
+    /// contact law adds to the normal velocity v_n of a contact, such as ρ v_n^{n−1} for restitution ρ.
     pub fn prepare(
         &mut self,
         settings: &Settings,
@@ -117,8 +124,8 @@ impl<'a, M: Model> Stage<'a, M> {
         self.prepare_ahead(settings, |_| None, rebound);
     }
 
-    /// Like [`prepare`](Self::prepare), for a law of finite range that depends on the gap: the contacts are the pairs
-    /// with gaps up to `range` (m) as the step begins, and all of them pull.
+    /// Like [`prepare`](Self::prepare), for a contact law whose pull has a finite range: the contacts are all pairs
+    /// with gaps up to `range` (m) at the beginning of the step, and all of them can pull.
     pub fn prepare_within(
         &mut self,
         settings: &Settings,
@@ -130,13 +137,13 @@ impl<'a, M: Model> Stage<'a, M> {
         let ahead = LookAhead { time_step_secs, distance: range, reach: range, in_touch };
         self.prepare_ahead(settings, |_| Some(ahead), rebound);
         if self.problem.rows.frictions.is_empty() {
-            // Each contact has the capture speed of the law.
+            // Without pairs of materials, all contacts have the capture speed of the common contact law.
             self.problem.rows.captures.clear();
         }
     }
 
-    /// Like [`prepare`](Self::prepare), with the contacts that may form within the step, as determined by
-    /// `look_ahead` once the step has begun.
+    /// Like [`prepare`](Self::prepare), with additional contacts for pairs that may touch within the step. `look_ahead`
+    /// returns the search distances and is called after the step has begun.
     pub(crate) fn prepare_ahead(
         &mut self,
         settings: &Settings,
@@ -184,12 +191,12 @@ impl<'a, M: Model> Stage<'a, M> {
         }
     }
 
-    /// Solves the prepared problem with the solver of the settings.
+    /// Solves the prepared problem with the solver of the settings, and returns the solver's report.
     pub fn solve(&mut self, settings: &Settings) -> SolveReport {
         self.timed(|stage| solve(stage.problem, stage.memory, &settings.solver))
     }
 
-    /// Runs `solving` and counts its time as solving time.
+    /// Runs `solving` and adds its computing time to the solving time of the step.
     pub(super) fn timed<T>(&mut self, solving: impl FnOnce(&mut Self) -> T) -> T {
         let begun = self.state.stopwatch.now();
         let outcome = solving(self);
@@ -198,7 +205,8 @@ impl<'a, M: Model> Stage<'a, M> {
         outcome
     }
 
-    /// Moves the grains for Δt with the solution of the problem.
+    /// Moves the grains by Δt with the velocities of the solved problem, and stores the impulses. `report` becomes part
+    /// of the result.
     pub fn move_by(&mut self, report: SolveReport, settings: &Settings) -> StepResult {
         let Self { state, problem, .. } = self;
         let measures = measure(problem);
@@ -215,9 +223,9 @@ impl<'a, M: Model> Stage<'a, M> {
         StepResult { report, measures, gravity_work, drive_work, ..StepResult::nothing_yet() }
     }
 
-    /// Divides a step into pieces of equal length and takes them one after the other. `piece` receives the settings
-    /// of a piece and adds its result to that of the whole step. A state that is no longer finite ends the step
-    /// early.
+    /// Divides a step into `count` pieces of equal length and takes them one after the other. The closure `piece`
+    /// receives the settings of one piece and adds its result to the result of the whole step. If the state is no
+    /// longer finite, the step ends early.
     pub fn in_pieces(
         &mut self,
         count: u32,

@@ -1,63 +1,63 @@
-//! Boundaries and fixed discs at one moment, for pictures and windows.
+//! Boundaries, fixed discs and their motions at one moment, for pictures and windows.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::world::{Boundary, Disc, Gravity, Material, Periodic, World};
 
-/// The part of a picture that grains do not change.
+/// All parts of a picture other than grains: fixed shapes and their motions, periodic borders, gravity and materials.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Surroundings {
     /// Fixed discs.
     pub fixed_discs: Vec<Disc>,
-    /// Other fixed shapes.
+    /// Fixed shapes other than discs.
     pub boundaries: Vec<Boundary>,
-    /// The centre of attraction, m, if the scene has one.
+    /// Centre of attraction, m; `None` if gravity is uniform.
     pub centre_of_attraction: Option<DVec2>,
-    /// Periodic borders, if there are any.
+    /// Periodic borders; `None` if the scene has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<Periodic>,
-    /// The diameter d, the unit of length for relative quantities, m.
+    /// Mean diameter d of the grains, m, the unit of length for relative quantities.
     pub mean_diameter: f64,
-    /// The scene's g, m/s².
+    /// Gravitational acceleration g of the scene, m/s².
     pub gravity_magnitude: f64,
-    /// The scene's materials.
+    /// Materials of the scene.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<Material>,
-    /// Motions of some of these bodies.
+    /// Motions of boundaries and fixed discs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub moving: Vec<MotionView>,
 }
 
-/// Motion or drive of boundaries and fixed discs at one moment.
+/// Motion of boundaries and fixed discs at one moment: velocity, rotation and driving force.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MotionView {
-    /// Indices of the boundaries.
+    /// Indices of the boundaries that move.
     pub boundaries: Vec<usize>,
-    /// Indices of the fixed discs.
+    /// Indices of the fixed discs that move.
     pub fixed_discs: Vec<usize>,
-    /// Velocity, m/s; zero if the bodies turn.
+    /// Velocity of the bodies, m/s; zero if they turn about a pivot.
     pub velocity: DVec2,
-    /// Angular velocity, rad/s, positive anticlockwise.
+    /// Angular velocity of the bodies, rad/s, positive anticlockwise.
     pub angular_velocity: f64,
-    /// Rotation since the start, rad.
+    /// Angle by which the bodies have turned since the start, rad.
     #[serde(default)]
     pub turned: f64,
-    /// Pivot, m.
+    /// Pivot about which the bodies turn, m.
     pub pivot: DVec2,
-    /// Speed of the surface along itself, m/s, along the outward normal turned by +90°.
+    /// Speed of the surface along itself, as of a conveyor belt, m/s; positive along the outward normal turned by +90°.
     pub surface_speed: f64,
-    /// True if a force drives the bodies, even if it is zero at the moment.
+    /// True if the bodies are driven by a force, even if that force is zero at this moment.
     #[serde(default)]
     pub is_driven: bool,
-    /// Driving force, N.
+    /// Driving force on the bodies, N.
     pub force: DVec2,
 }
 
 impl MotionView {
-    /// All motions of a world, in a step of length `time_step_secs`.
+    /// Returns all motions of a world, with velocities for a step of length `time_step_secs`, s.
     fn all(world: &World, time_step_secs: f64) -> Vec<Self> {
         let by_themselves = world.boundaries.iter().enumerate().filter_map(|(index, boundary)| {
             let velocity = boundary.velocity_in(time_step_secs)?.velocity;
@@ -83,14 +83,14 @@ impl MotionView {
         by_themselves.chain(by_motions).collect()
     }
 
-    /// The velocity of a point of the bodies, m/s.
+    /// Returns the velocity of the bodies at the point `place` (m), m/s.
     pub fn velocity_at(&self, place: DVec2) -> DVec2 {
         self.velocity + self.angular_velocity * (place - self.pivot).perp()
     }
 }
 
 impl Surroundings {
-    /// The present surroundings of a world, with velocities for a step of length `time_step_secs`.
+    /// Returns the present surroundings of a world, with velocities for a step of length `time_step_secs`, s.
     pub(super) fn of(world: &World, time_step_secs: f64) -> Self {
         Self {
             fixed_discs: world.fixed_discs.clone(),

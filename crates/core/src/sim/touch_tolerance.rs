@@ -1,20 +1,21 @@
-//! The gap up to which bonds exist under the stepper `moreau`.
+//! Touch tolerance: the gap up to which bonds exist under the stepper `moreau`.
 
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 
-/// The gap up to which contacts pull, m. 0 if the tolerance does not exceed the gap of touching pairs, and for
-/// steppers that do not read it.
+/// Returns the touch tolerance τ, m: the gap up to which contacts pull. Returns 0 if the tolerance is not larger than
+/// the gap up to which pairs touch, and for steppers that do not read this setting.
 ///
-/// Within it a contact has the law of a touching contact, but its grains may approach each other as far as the gap
-/// allows:
+/// A contact with a gap up to τ obeys the law of a touching contact, but its grains may approach each other until the
+/// gap is closed. With the normal impulse P, the cohesion force C₀ and the normal velocity v_n, the law is
 ///
 /// > 0 ≤ P + C₀Δt ⟂ v_n + gap/Δt ≥ 0.
 ///
-/// Gaps of half the tolerance, but at most [`TOUCH_IN_DIAMETERS`], count as rounding, and grains with such gaps
-/// touch: without this allowance a pyramid of logs falls. So a contact pulls by C₀ until its gap is closed, and
-/// breaking a bond takes the work C₀ (τ + the opening of the pair within a step). A pair that turns opens by ½ω²Δt²·L
-/// per step (`sim::turned_bonds`); below the tolerance the next step closes this gap.
+/// Gaps up to τ/2, but at most [`TOUCH_IN_DIAMETERS`] diameters, count as rounding, and grains with such gaps touch.
+/// Without this allowance a pyramid of logs falls. So a contact pulls with C₀ until its gap is closed, and breaking a
+/// bond takes the work C₀ (τ + the opening of the pair within one step). A pair of grains with the distance L between
+/// their centres that turns with the angular velocity ω opens by ½ω²Δt²·L per step (`sim::turned_bonds`). If this
+/// opening stays below τ, the next step closes it.
 pub(in crate::sim) fn touch_tolerance(state: &State, settings: &Settings) -> f64 {
     let tolerance = settings.parameters.touch_tolerance * state.world.mean_diameter;
     let is_read = settings.stepper.reads("touch-tolerance");

@@ -1,35 +1,37 @@
-//! Moving walls: boundaries and fixed discs with a motion (`world::motion`), and pistons.
+//! Velocities of moving walls: boundaries and fixed discs with a motion (`world::motion`), and pistons.
 //!
-//! In a step each has one rigid velocity: the mean of its course over Δt, or in its last step the remaining travel
-//! divided by Δt. A body driven by a force begins with its present speed, and the step computes its new speed
-//! (`solver::problem::walls`). Contacts use this velocity at the touched point, and the body moves with it together
-//! with the grains.
+//! In a step each moving body has one rigid velocity: the mean velocity of its prescribed course over Δt or, in the
+//! last step of the course, the remaining travel divided by Δt. A body driven by a force begins with its present speed,
+//! and the step computes its new speed (`solver::problem::walls`). Contacts use this velocity at the touched point, and
+//! the body moves with it when the grains move.
 //!
-//! **Walls that turn.** With R the rotation of a step by α = ωΔt about p, the point of the wall at c has the mean
-//! velocity V(c) = (R − 1)(c − p)/Δt, of which −½ω²Δt(c − p) points inward. A step takes the normal n and the tangent
-//! t from its beginning, but the normal turns with the wall. Let c be the centre of a disc that slides with u along a
-//! flat wall. The gap grows by Δt cos α (v_n − V_n) with
+//! **Walls that turn.** A wall turns about the pivot p with the angular velocity ω, by the angle α = ωΔt in a step. Let
+//! R be this rotation. The point c of the wall has the mean velocity V(c) = (R − 1)(c − p)/Δt, of which the part
+//! −½ω²Δt(c − p) points inward. A step takes the normal n and the tangent t from its beginning, but the normal turns
+//! with the wall. Let c be the centre of a disc of radius r that slides along a flat wall with the speed u. The gap
+//! grows by Δt cos α (v_n − V_n) with
 //!
 //! > V_n = n·V(c) − u tan α,  V_t = t·V(c) − rω.
 //!
-//! So a disc that sticks (v_t = V_t, spin ω) moves with the wall, and its gap stays constant, whatever Δt is. The
-//! touched point of the wall would not be suitable as c: the gap of a disc that sticks would grow by ½ω²Δt·r per
-//! second. The code uses sin α instead of tan α, which differs by α³/2.
+//! So a disc that sticks (v_t = V_t, angular velocity ω) moves with the wall, and its gap stays constant at any Δt. The
+//! touched point of the wall would not be suitable as c: the gap of a disc that sticks would then grow by ½ω²Δt·r per
+//! second. The code uses sin α instead of tan α; the two differ by α³/2.
 //!
-//! Around a fixed disc with centre q the normal turns with the grain:
+//! Around a fixed disc with the centre q the normal turns with the grain:
 //!
 //! > V_n = n·V(c) − u tan ½α.
 //!
-//! This is the velocity of q along n if the grain stays at its place. Otherwise the error is that of a disc that does
-//! not turn, whose normals stay those of the beginning of the step. A surface speed also moves the grain around the
-//! disc. With ρ the radius of the disc, L = |c − q| and β = (ω + surface speed/ρ)Δt, and w = u + L sin α/Δt relative
-//! to q,
+//! This V_n is the velocity of q along n if the grain stays at its place. If the grain moves, the error is as large as
+//! at a fixed disc that does not turn, because normals stay as they were at the beginning of the step. A surface speed
+//! also moves the grain around the disc. With the disc's radius ρ, the distance L = |c − q|, the angle β = (ω + surface
+//! speed/ρ)Δt, and the sliding speed relative to q, w = u + L sin α/Δt,
 //!
 //! > V_n = n·V(q) − w tan ½β = n·V(c) − u tan ½β − (tan ½β − tan ½α) L sin α/Δt.
 //!
-//! u is the value at the beginning of the step. A grain at rest relative to the wall has had the mean velocity V⁻ of
-//! the step before, with (1 − R⁻¹)/Δt instead of (R − 1)/Δt, so u is relative to that velocity. Along n the grain has
-//! had n·V⁻(c) and the other terms with + instead of −. Restitution and shocks are relative to this velocity.
+//! The speed u is taken at the beginning of the step. A grain at rest relative to the wall has had the mean velocity V⁻
+//! of the wall in the previous step, with (1 − R⁻¹)/Δt instead of (R − 1)/Δt, so u is relative to V⁻. Along n the grain
+//! has had the velocity n·V⁻(c) and the other terms of V_n with + instead of −. Restitution and shocks are relative to
+//! this velocity.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -39,20 +41,20 @@ use crate::contact::{Candidates, Contact, Numbering, Other};
 use crate::solver::{DrivenBy, DrivenWall, Surface};
 use crate::world::{Boundary, Carry, RigidVelocity, World};
 
-/// Index of no wall.
+/// Marks a body that no moving wall carries.
 const NONE: u32 = u32::MAX;
 
-/// The moving bodies of the present step. Memory is kept between steps.
+/// Moving bodies of the present step. The vectors keep their memory between steps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Walls {
     moving: Vec<Wall>,
-    /// Δt, s.
+    /// Length of the step, or of its substeps, s.
     secs: f64,
-    /// The wall of each boundary, of each fixed disc, and of each feature, or [`NONE`].
+    /// Index in `moving` for each boundary, each fixed disc, and each feature (part of a boundary), or [`NONE`].
     of_boundary: Vec<u32>,
     of_disc: Vec<u32>,
     of_feature: Vec<u32>,
-    /// For each feature: true if it is a half-space, and true if it moves only along its normal.
+    /// Two flags for each feature: true if it is a half-space, and true if it moves only along its normal.
     shapes: Vec<(bool, bool)>,
 }
 
@@ -60,34 +62,34 @@ pub(crate) struct Walls {
 struct Wall {
     mover: Mover,
     velocity: RigidVelocity,
-    /// The velocity with which the step begins.
+    /// Velocity of the wall at the beginning of the step.
     before: RigidVelocity,
-    /// Additional speed along the tangent, m/s.
+    /// Additional speed of the surface along its tangent, m/s, as of a conveyor belt.
     surface_speed: f64,
     driver: Option<Driver>,
 }
 
-/// The drive of a wall by a force.
+/// Drive that moves a wall by a force.
 #[derive(Clone, Copy, Debug)]
 struct Driver {
-    /// Its index among all drives.
+    /// Index of the drive among all drives.
     number: u32,
     axis: DVec2,
-    /// The additional velocity of the wall by its course, m/s.
+    /// Velocity that the wall's prescribed course adds to the velocity along the drive, m/s.
     course: DVec2,
 }
 
 /// Source of a wall's motion.
 #[derive(Clone, Copy, Debug)]
 enum Mover {
-    /// The boundary with this index.
+    /// The boundary with this index moves by itself, as a piston.
     Boundary(usize),
-    /// The motion with this index.
+    /// The motion with this index in the world's list moves the wall.
     Motion(usize),
 }
 
 impl Walls {
-    /// Begins a step of length `time_step_secs`.
+    /// Begins a step of length `time_step_secs` (s): computes the velocities of all moving walls.
     pub(crate) fn begin(&mut self, world: &World, candidates: &Candidates, time_step_secs: f64) {
         self.moving.clear();
         self.secs = time_step_secs;
@@ -152,12 +154,12 @@ impl Walls {
         !self.moving.is_empty()
     }
 
-    /// Declares that contacts are detected in each of `substeps` substeps.
+    /// Divides the step length by the number of substeps, for a stepper that detects contacts in each substep.
     pub(crate) fn divide(&mut self, substeps: u32) {
         self.secs /= f64::from(substeps);
     }
 
-    /// Speed of the fastest shape, m/s. For a turning half-space, its speed at the farthest grain.
+    /// Returns the speed of the fastest wall, m/s. The speed of a turning half-space is taken at the farthest grain.
     pub(crate) fn fastest(&self, world: &World, candidates: &Candidates) -> f64 {
         let turns = |number: u32| {
             self.moving.get(number as usize).map(|wall| wall.velocity).filter(|it| it.spin != 0.0)
@@ -185,13 +187,14 @@ impl Walls {
         of_discs.chain(of_features).fold(fastest, f64::max)
     }
 
-    /// Motion of the surface of a contact's other body, if it moves.
+    /// Returns the motion of the surface that a contact's grain touches; `None` if the other body does not move as a
+    /// wall.
     #[inline]
     pub(crate) fn surface(&self, world: &World, contact: &Contact) -> Option<Surface> {
         self.surface_at(world, contact, world.grains.positions[contact.grain as usize])
     }
 
-    /// Like [`surface`](Self::surface), for a contact whose grain was at another place, m.
+    /// Like [`surface`](Self::surface), with the grain's centre at `centre`, m, instead of its present position.
     pub(crate) fn surface_at(
         &self,
         world: &World,
@@ -229,7 +232,7 @@ impl Walls {
         Some(Surface { velocity, before, round, spin, is_half_space, is_pushed, driven })
     }
 
-    /// The walls driven by a force, at the beginning of a step of length `time_step_secs`.
+    /// Returns the walls driven by a force, with their speeds at the beginning of a step of length `time_step_secs`, s.
     pub(crate) fn driven<'a>(
         &'a self,
         world: &'a World,
@@ -245,8 +248,9 @@ impl Walls {
         })
     }
 
-    /// Stores the new speeds of driven walls after a step. Returns the work of the forces and of the damping, J:
-    /// Δt (F − cV) ½(V + V⁻), with ΔtF = V_free/r − MV⁻ and cΔt = 1/r − M (`solver::problem::walls`).
+    /// Stores the speeds V of driven walls at the end of a step. Returns the work of the driving forces F and of the
+    /// damping c V, J: Δt (F − cV) ½(V + V⁻), with the speed V⁻ at the beginning of the step, the wall's mass M, ΔtF =
+    /// V_free/r − MV⁻ and cΔt = 1/r − M (`solver::problem::walls` defines V_free and r).
     pub(crate) fn take_driven(&mut self, world: &mut World, driven: &[DrivenWall]) -> f64 {
         let mut work = 0.0;
         for found in driven {
@@ -266,14 +270,15 @@ impl Walls {
         work
     }
 
-    /// Velocity of the surface of a contact's other body along n and t, m/s.
+    /// Returns the velocity of the surface that a contact's grain touches, along the normal n and the tangent t, m/s;
+    /// zero if the other body does not move as a wall.
     #[inline]
     pub(crate) fn velocity(&self, world: &World, contact: &Contact) -> [f64; 2] {
         let surface = self.surface(world, contact);
         surface.map_or([0.0; 2], |surface| surface.along(contact.normal))
     }
 
-    /// Moves the walls for `secs`, and advances all clocks.
+    /// Moves the walls for `secs` (s), and advances the clocks of all motions.
     pub(crate) fn advance(&self, world: &mut World, candidates: &mut Candidates, secs: f64) {
         let carries: Vec<Carry> =
             self.moving.iter().map(|wall| wall.velocity.carry(secs)).collect();
@@ -304,7 +309,7 @@ impl Walls {
         candidates.follow(world, |boundary| of(&self.of_boundary, boundary), longest);
     }
 
-    /// Speed of the fastest wall in the next step, if it has this length, m/s.
+    /// Returns the speed of the fastest wall in the next step, m/s, if that step lasts `secs`.
     pub(crate) fn fastest_in(world: &World, candidates: &Candidates, secs: f64) -> f64 {
         let mut walls = Self::default();
         walls.begin(world, candidates, secs);
@@ -312,19 +317,19 @@ impl Walls {
     }
 }
 
-/// A grain that touches a wall.
+/// Grain that touches a wall: position, size and velocity.
 struct TouchedPlace<'a> {
     centre: DVec2,
     radius: f64,
     velocity: DVec2,
     contact: &'a Contact,
-    /// The radius of the fixed disc that it touches, m; `None` for a boundary.
+    /// Radius of the fixed disc that the grain touches, m; `None` if it touches a boundary.
     round_disc: Option<f64>,
 }
 
 impl Wall {
-    /// Rate at which the normal of a grain at rest relative to the surface turns, rad/s. It includes the surface
-    /// speed around a fixed disc of radius `round_disc`, m.
+    /// Returns the rate at which the contact normal turns for a grain at rest relative to the surface, rad/s. Around a
+    /// fixed disc of radius `round_disc` (m) this rate includes the surface speed.
     fn spin_of_normal(&self, round_disc: Option<f64>) -> f64 {
         match round_disc {
             Some(radius) if self.surface_speed != 0.0 => {
@@ -334,7 +339,8 @@ impl Wall {
         }
     }
 
-    /// The velocities (m/s) of the surface if it turns: in the step, and at its beginning (see the module).
+    /// Returns the velocities of a turning wall's surface at the contact, m/s: the mean over the step, and the velocity
+    /// at its beginning. The head of this file derives them.
     fn velocities_at(&self, touching: &TouchedPlace<'_>, spin: f64, secs: f64) -> [DVec2; 2] {
         let TouchedPlace { centre, radius, velocity, contact, round_disc } = *touching;
         let (normal, tangent) = (contact.normal, contact.normal.perp());
@@ -357,7 +363,7 @@ impl Wall {
         [along(there, -turning, now.spin), along(there_before, turning, before.spin)]
     }
 
-    /// True if it moves a boundary only along its normal.
+    /// True if this wall moves the boundary only along the boundary's normal.
     fn pushes(&self, world: &World, boundary: &Boundary) -> bool {
         self.surface_speed == 0.0
             && match self.mover {

@@ -1,23 +1,26 @@
 //! Motion of a body in a scene, and its response to the two impulses of a contact.
 //!
-//! The sweep works with **reduced impulses** λ = P/m_ij (m/s): the change of the contact's relative normal velocity
-//! that the impulse makes. Spin is stored as s = r·ω (m/s). With these and I = ½mr² of a solid disc, an update needs no
-//! radius, and of the masses only the ratio g_i = m_ij/m_i = m_j/(m_i + m_j) of i; that of j is 1 − g_i:
+//! A contact of bodies i and j has the unit normal n and the unit tangent t. Sweeps work with **reduced impulses**
+//! λ = P/m_ij (m/s), impulse divided by effective mass: λ_n is the change of the contact's normal velocity that the
+//! normal impulse makes. Spin is stored as s = r·ω, radius times angular velocity (m/s). With these variables and
+//! I = ½mr² of a solid disc, the update of a contact needs no radius, and only one ratio of masses,
+//! g_i = m_ij/m_i = m_j/(m_i + m_j) (for body j it is 1 − g_i):
 //!
 //! > v_n = n·(v_i − v_j),  v_t = t·(v_i − v_j) − s_i − s_j,
 //! > Δv_i = g_i (λ_n n + λ_t t),  Δv_j = −(1 − g_i)(λ_n n + λ_t t),
 //! > Δs_i = −(r_i²/I_i) m_ij λ_t = −2 g_i λ_t,  Δs_j = −2 (1 − g_i) λ_t,
 //!
-//! so that λ_n changes v_n by λ_n, and λ_t changes v_t by λ_t (1 + 2) = 3 λ_t: m_n/m_t = 3, or 1 without rotation.
-//! Against a fixed body g_i = 1.
+//! so that λ_n changes v_n by λ_n, and λ_t changes v_t by λ_t (1 + 2) = 3 λ_t. The ratio m_n/m_t of the effective
+//! masses along n and t is 3, or 1 without rotation. Against a fixed body g_i = 1.
 //!
-//! **Between borders that shear** (`world::periodic`) the image of j that is nearest to i moves with v_j + (w, 0), and
-//! the laws ask for the velocity relative to that image:
+//! **Between borders that shear** (`world::periodic`) the image of j that is nearest to i moves with the velocity
+//! v_j + (w, 0). The contact laws use the velocity of i relative to that image:
 //!
 //! > v_n = n·(v_i − v_j) − n_x w,  v_t = t·(v_i − v_j) + n_y w − s_i − s_j.
 //!
-//! w is known at the beginning of the step and is stored with the normal. Every function that computes a relative
-//! velocity gets it with the normal, and methods need no change. Impulses act on j itself, as in any other pair.
+//! The slide velocity w is known at the beginning of the step and is stored with the normal. Every function that
+//! computes a relative velocity receives w with the normal, so methods need no change. Impulses act on j itself, as in
+//! any other pair.
 
 use std::fmt::Debug;
 
@@ -26,47 +29,51 @@ use glam::DVec2;
 use crate::contact::{Contact, Lanes};
 use crate::world::World;
 
-/// The mechanics that a step computes: motion of bodies, friction and rotation. All of this is fixed at compile time,
-/// so a leaner model has no branches for the parts that it leaves out.
+/// The mechanics that a step computes: axes, friction, rotation and rolling. All of this is fixed at compile time, so a
+/// smaller model has no branches for the mechanics that it leaves out.
 ///
-/// Cohesion and the friction cone are not part of the model: in shifted impulses they are numbers (`contact::law`).
+/// Cohesion and the friction cone are not part of the model, because they only change numbers of the contact law
+/// (`contact::law`).
 pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
-    /// A body as the sweep stores it; with several lanes, one body per lane.
+    /// The velocity of a body as a sweep stores it; with several SIMD lanes, one body per lane.
     type Body<T: Lanes>: Copy + Send + Sync + Debug + 'static;
-    /// A contact's normal as the sweep stores it.
+    /// The unit normal of a contact as a sweep stores it.
     type Normal<T: Lanes>: Copy + Send + Sync + Debug + 'static;
-    /// Number of axes.
+    /// Number of space dimensions.
     const AXES: usize;
-    /// True if contacts carry tangential impulses.
+    /// True if contacts transmit tangential impulses.
     const FRICTION: bool;
     /// True if grains turn.
     const ROTATION: bool;
     /// True if contacts may resist rolling (`problem::rolling`).
     const ROLLING: bool = false;
-    /// True if images of grains slide relative to the grains themselves.
+    /// True if images of grains beyond a sheared periodic border move relative to the grains themselves.
     const SLIDES: bool = false;
-    /// m_n / m_t, the same for every contact of solid discs.
+    /// The ratio m_n / m_t of a contact's effective masses along normal and tangent, the same for every contact of
+    /// solid discs.
     const TANGENTIAL_COMPLIANCE: f64;
 
-    /// Degrees of freedom of a body.
+    /// Number of degrees of freedom of a body.
     const DEGREES: usize;
-    /// Inertia of each degree of freedom divided by the body's mass: with s = rω, ½Iω² = ½(m/2)s².
+    /// Inertia of each degree of freedom divided by the body's mass. The coordinate of rotation is s = rω, so
+    /// ½Iω² = ½(m/2)s².
     const INERTIA_OVER_MASS: [f64; 3];
 
-    /// Packs grain `index` of a world.
+    /// Returns the velocity of grain `index` of a world.
     fn body(world: &World, index: usize) -> Self::Body<f64>;
-    /// Writes a body's velocity back to grain `index`.
+    /// Writes a body's velocity back to grain `index` of a world.
     fn store(body: &Self::Body<f64>, world: &mut World, index: usize);
-    /// The body after gravity has acted for `time_step_secs` at its present position.
+    /// Returns the velocity of grain `index` after gravity has acted for `time_step_secs` at the grain's present
+    /// position.
     fn accelerated(
         body: &Self::Body<f64>,
         world: &World,
         index: usize,
         time_step_secs: f64,
     ) -> Self::Body<f64>;
-    /// Packs a normal from its x and y components.
+    /// Returns a unit normal in the form that a sweep stores, from its x and y components.
     fn normal<T: Lanes>(normal: [T; 2]) -> Self::Normal<T>;
-    /// Packs the normal of a contact in a world, with the slide velocity of its image.
+    /// Returns the unit normal of a contact in a world, with the slide velocity of the periodic image of body j.
     #[inline(always)]
     fn normal_of(world: &World, contact: &Contact) -> Self::Normal<f64> {
         let normal = Self::normal(contact.normal.to_array());
@@ -76,39 +83,42 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
             false => normal,
         }
     }
-    /// Adds a slide velocity, m/s along x, to the packed normal of a pair, if images slide in this model.
+    /// Adds the slide velocity of the periodic image of body j, m/s along x, to a stored normal, if images slide in
+    /// this model.
     #[inline(always)]
     fn sliding(normal: Self::Normal<f64>, _slide: f64) -> Self::Normal<f64> {
         normal
     }
-    /// Slide velocity of the image of a packed normal, m/s along x.
+    /// Returns the slide velocity of the periodic image of body j, which is stored with the normal, m/s along x.
     #[inline(always)]
     fn slide(_normal: Self::Normal<f64>) -> f64 {
         0.0
     }
-    /// The slide velocity's contribution to the relative velocity of i and j along n and t, m/s; it is subtracted.
+    /// Returns the contributions of the slide velocity to v_n and v_t of a contact, m/s, which must be subtracted.
     #[inline(always)]
     fn slide_along(normal: Self::Normal<f64>) -> [f64; 2] {
         let [x, y] = Self::components(normal);
         let slide = Self::slide(normal);
         [x * slide, -y * slide]
     }
-    /// The x and y components of a packed normal; 0 along axes that the model does not have.
+    /// Returns the x and y components of a stored unit normal; 0 along axes that the model does not have.
     fn components<T: Lanes>(normal: Self::Normal<T>) -> [T; 2];
-    /// Converts (v_n, v_t) relative to body j to (v_n, v_t) relative to the image of j that a packed normal belongs to.
+    /// Converts the velocity (v_n, v_t) relative to body j to (v_n, v_t) relative to the periodic image of body j whose
+    /// slide velocity is stored with the normal.
     #[inline(always)]
     fn relative_to_image<T: Lanes>(_normal: Self::Normal<T>, velocity: [T; 2]) -> [T; 2] {
         velocity
     }
-    /// (v_n, v_t) of body i relative to body j, m/s.
+    /// Returns the velocity (v_n, v_t) of body i relative to body j at their contact, m/s.
     fn relative_velocity<T: Lanes>(
         normal: Self::Normal<T>,
         i: &Self::Body<T>,
         j: &Self::Body<T>,
     ) -> [T; 2];
-    /// (v_n, v_t) of body i relative to a body at rest, m/s.
+    /// Returns the velocity (v_n, v_t) of body i relative to a body at rest at their contact, m/s.
     fn velocity<T: Lanes>(normal: Self::Normal<T>, i: &Self::Body<T>) -> [T; 2];
-    /// Applies λ_n and λ_t (m/s) to bodies i and j; `share` is g_i.
+    /// Applies the impulses λ_n and λ_t of a contact, divided by its effective mass (m/s), to bodies i and j. `share`
+    /// is the mass ratio g_i = m_j/(m_i + m_j).
     fn push_pair<T: Lanes>(
         i: &mut Self::Body<T>,
         j: &mut Self::Body<T>,
@@ -116,25 +126,28 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
         reduced_impulse: [T; 2],
         share: T,
     );
-    /// Applies λ_n and λ_t (m/s) to body i, which touches a fixed body.
+    /// Applies the impulses λ_n and λ_t of a contact, divided by its effective mass (m/s), to body i, which touches a
+    /// fixed body.
     fn push_single<T: Lanes>(
         i: &mut Self::Body<T>,
         normal: Self::Normal<T>,
         reduced_impulse: [T; 2],
     );
-    /// Kinetic energy, J, of a body of `mass` (kg).
+    /// Returns the kinetic energy, J, of a body of `mass` (kg).
     fn kinetic_energy(body: &Self::Body<f64>, mass: f64) -> f64;
-    /// Velocity of a body, one entry per degree of freedom; further entries are not used.
+    /// Returns the velocity of a body as numbers, m/s, one per degree of freedom; further entries are not used.
     fn coordinates<T: Lanes>(body: &Self::Body<T>) -> [T; 3];
-    /// The body with these coordinates.
+    /// Returns the body whose velocity has these coordinates, m/s.
     fn from_coordinates<T: Lanes>(coordinates: [T; 3]) -> Self::Body<T>;
-    /// Sets the coordinates of a body; entries that are not degrees of freedom of the model stay unchanged.
+    /// Sets the velocity coordinates of a body, m/s. Entries that are not degrees of freedom of the model stay
+    /// unchanged.
     fn set(body: &mut Self::Body<f64>, coordinates: [f64; 3]);
-    /// Derivatives of (v_n, v_t) by the coordinates of i, then of j: v_n = Σ \[body\]\[0\]·coordinates,
-    /// v_t = Σ \[body\]\[1\]·coordinates.
+    /// Returns the derivatives of a contact's (v_n, v_t) by the velocity coordinates of body i, then of body j:
+    /// v_n = Σ \[body\]\[0\]·coordinates, v_t = Σ \[body\]\[1\]·coordinates.
     fn gradients(normal: Self::Normal<f64>) -> [[[f64; 3]; 2]; 2];
-    /// Work of the gravity impulse M(`free` − `before`) in a step that ends as `after`, J: the
-    /// impulse times the mean velocity (see `solver::measure`).
+    /// Returns the work of gravity on a body in a step, J: the impulse of gravity, `mass` × (`free` − `before`), times
+    /// the mean of the velocities `before` and `after` the step (see `solver::measure`). `free` is the velocity without
+    /// contacts.
     fn work_of_gravity(
         before: &Self::Body<f64>,
         after: &Self::Body<f64>,
@@ -143,14 +156,14 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     ) -> f64;
 }
 
-/// A body on the x axis.
+/// The velocity of a body on the x axis.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LineBody<T = f64> {
     /// Velocity along x, m/s.
     pub velocity: T,
 }
 
-/// One axis, without friction and rotation.
+/// Model with one axis, without friction and rotation.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Line;
 
@@ -246,46 +259,47 @@ impl Model for Line {
     }
 }
 
-/// A body in the plane, aligned so that it never straddles two cache lines.
+/// The velocity of a body in the plane, aligned so that it never straddles two cache lines.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
 pub struct PlaneBody<T = f64> {
     /// Velocity, m/s.
     pub velocity: [T; 2],
-    /// s = r·ω, m/s.
+    /// Spin s = r·ω, radius times angular velocity, m/s.
     pub spin: T,
 }
 
-/// Two axes, without friction and rotation.
+/// Model with two axes, without friction and rotation.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SmoothPlane;
 
-/// Two axes and friction, without rotation.
+/// Model with two axes and friction, without rotation.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Plane;
 
-/// Two axes, friction and rotation.
+/// Model with two axes, friction and rotation.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SpinningPlane;
 
-/// Two axes, friction, rotation, and contacts that resist rolling. Friction may be 0.
+/// Model with two axes, friction, rotation, and contacts that resist rolling. The friction coefficient may be 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RollingPlane;
 
-/// Two axes, friction, rotation, and images that slide. Friction and rolling resistance may be 0.
+/// Model with two axes, friction, rotation, and sheared periodic borders, beyond which the images of grains slide.
+/// Friction and rolling resistance may be 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShearedPlane;
 
-/// A normal with the slide velocity of the image of j.
+/// The unit normal of a contact, with the slide velocity of the periodic image of body j.
 #[derive(Clone, Copy, Debug)]
 pub struct SlidingNormal<T> {
-    /// n, from j to i.
+    /// Unit normal n, from body j to body i.
     pub normal: [T; 2],
-    /// w, m/s along x; 0 if the pair meets inside the cell.
+    /// Slide velocity w of the periodic image of body j, m/s along x; 0 if the pair meets inside the periodic cell.
     pub slide: T,
 }
 
-/// Implements [`Model`] for a kind of motion in the plane; `own` contains the items that only this kind has.
+/// Implements [`Model`] for a kind of motion in the plane. `own` contains the items that only this model has.
 macro_rules! plane_model {
     ($name:ident, $normal:ty, |$of:ident| $packed:expr, $along_axes:expr, friction: $friction:literal, rotation: $rotation:literal, own: { $($own:item)* }) => {
         impl Model for $name {

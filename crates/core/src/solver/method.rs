@@ -1,9 +1,9 @@
-//! The list of methods, and the properties of each.
+//! The list of methods that find the impulses of a step, and the properties of each method.
 
 use crate::setting::words;
 
 words! {
-    /// A method, by the name that command line, scene files and panels use.
+    /// A method that finds the impulses of a step, with its name on the command line, in scene files and in panels.
     pub enum Method {
         Nsgs = "nsgs", "non-linear Gauss-Seidel: one contact after the other, exact for each";
         NsgsParallel = "nsgs-parallel",
@@ -22,7 +22,7 @@ words! {
 }
 
 words! {
-    /// The order of a sweep.
+    /// The order in which a sweep visits the contacts.
     #[derive(Default)]
     pub enum Ordering {
         #[default]
@@ -34,46 +34,47 @@ words! {
     }
 }
 
-/// Properties of a method.
+/// Properties of a method that finds the impulses of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct MethodInfo {
     /// The method.
     pub method: Method,
-    /// Its name on the command line.
+    /// Name of the method on the command line.
     pub name: &'static str,
-    /// How it works, one line.
+    /// Description of how the method works, one line.
     pub summary: &'static str,
-    /// The laws that its converged result satisfies, one line.
+    /// The contact and friction laws that a converged result of the method satisfies, one line.
     pub solves: &'static str,
-    /// The publication or other source that it is taken from.
+    /// The publication or other source of the method.
     pub source: &'static str,
-    /// The order in which it visits the contacts.
+    /// The order in which the method visits the contacts.
     pub order: MethodOrder,
-    /// True if it also solves the models of friction other than Coulomb's law.
+    /// True if the method also supports friction models other than Coulomb's law.
     pub takes_models: bool,
-    /// True if it supports walls that a force drives.
+    /// True if the method supports walls that a force drives.
     pub takes_drives: bool,
-    /// True if it supports periodic borders that shear, whose images of grains slide.
+    /// True if the method supports periodic borders that shear, beyond which the images of grains move relative to the
+    /// grains.
     pub takes_shear: bool,
-    /// True if it supports pairs of materials with their own contact laws.
+    /// True if the method supports pairs of materials with their own contact laws.
     pub takes_pairs: bool,
-    /// True if it supports rolling friction.
+    /// True if the method supports rolling friction.
     pub takes_rolling: bool,
 }
 
 /// The order in which a method visits the contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MethodOrder {
-    /// The order of the settings.
+    /// The order that the settings name (`--ordering`).
     OfSettings,
-    /// This order, regardless of the settings.
+    /// A fixed order, regardless of the settings.
     Always(Ordering),
     /// No order: the method updates all contacts at once.
     AllAtOnce,
 }
 
 impl MethodOrder {
-    /// The order of the rows if the settings ask for `asked`.
+    /// Returns the order in which a problem's rows are sorted for the method if the settings name the order `asked`.
     pub(crate) fn of_rows(self, asked: Ordering) -> Ordering {
         match self {
             Self::Always(needed) => needed,
@@ -82,12 +83,15 @@ impl MethodOrder {
     }
 }
 
-/// Laws satisfied by every method that converges to a zero of the common natural map.
+/// Description of the laws that every method satisfies that converges to a zero of the natural map, the measure of
+/// error common to all methods.
 const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
-/// Laws satisfied at a fixed point of the iteration that recomputes the friction bound from its own impulses.
+/// Description of the laws that hold at a fixed point of an iteration that recomputes the friction bounds from its own
+/// impulses.
 const BOUND_BY_BOUND: &str = "the same, the bound of friction taken anew every iteration";
 
-/// A method that supports shear and pairs of materials, but neither models of friction nor driven walls nor rolling friction.
+/// Returns the properties of a method that supports shear and pairs of materials, but neither friction models other
+/// than Coulomb's law nor driven walls nor rolling friction.
 const fn known(
     method: Method,
     order: MethodOrder,
@@ -109,7 +113,7 @@ const fn known(
     }
 }
 
-/// All methods, in the order in which they are shown, which is the order of [`Method`].
+/// The properties of all methods, in the order of [`Method`], in which they are also shown.
 pub const METHODS: [MethodInfo; Method::ALL.len()] = {
     use MethodOrder::{AllAtOnce, Always, OfSettings};
     [
@@ -202,12 +206,12 @@ pub const METHODS: [MethodInfo; Method::ALL.len()] = {
 };
 
 impl Method {
-    /// The properties of this method.
+    /// Returns the properties of this method.
     pub const fn info(self) -> &'static MethodInfo {
         &METHODS[self as usize]
     }
 
-    /// Returns true if the method sweeps in the order that the settings give.
+    /// Returns true if the method sweeps in the order that the settings name.
     pub fn sweeps_in_order(self) -> bool {
         self.info().order == MethodOrder::OfSettings
     }

@@ -1,13 +1,16 @@
-//! One step's contact problem, the methods that solve it, and the residual that judges them all.
+//! The contact problem of one time step, the methods that solve it, and the residual that measures the error of every
+//! method.
 //!
-//! * `kinematics`, `model`: how bodies move, and the variants that a step is compiled for.
-//! * `problem/`: the problem's data, its set-up and its residual.
-//! * `method`, `settings`: the list of methods, and how accurately a step is to be solved.
-//! * `methods/`: one file or folder per method. `solve` picks from them.
-//! * `solutions`: search for several solutions of one step from several starts.
+//! * `kinematics`, `model`: the motion of bodies, and the models (variants of the mechanics) that a step is compiled
+//!   for.
+//! * `problem/`: the data of a problem, its set-up and its residual.
+//! * `method`, `settings`: the list of methods, and the accuracy to which a step is to be solved.
+//! * `methods/`: one file or folder per method.
+//! * `solve`: calls the method that the settings name.
+//! * `solutions`: search for several solutions of one step from several initial impulses.
 //! * `onlooker`: progress reports of long solves.
 //! * `linear/`: the sparse factorisations that some methods use.
-//! * `delassus/`: problems given by the Delassus operator alone.
+//! * `delassus/`: contact problems that are given by the Delassus operator, without bodies.
 
 mod delassus;
 mod kinematics;

@@ -1,4 +1,5 @@
-//! Chooses the model that a step is compiled for, and keeps the problems of each model.
+//! Choice of the model (the variant of the mechanics) that a step is compiled for, and storage for the problems of each
+//! model.
 
 use super::kinematics::{
     Line, Model, Plane, RollingPlane, ShearedPlane, SmoothPlane, SpinningPlane,
@@ -7,24 +8,26 @@ use super::methods::Memory;
 use super::problem::StepProblem;
 use crate::world::{FrictionCone, Parameters, Periodic, Physics};
 
-/// The parts of mechanics that a model computes.
+/// The parts of mechanics that a [`Model`] computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ModelParts {
-    /// Number of axes, 1 or 2.
+    /// Number of space dimensions, 1 or 2.
     pub axes: u8,
-    /// True if the periodic borders shear.
+    /// True if the periodic borders shear: the images of grains beyond a border then move relative to the grains.
     pub sheared: bool,
     /// True if contacts carry tangential impulses.
     pub friction: bool,
-    /// True if grains turn; without friction nothing turns them.
+    /// True if grains turn. Without friction no contact makes a grain turn.
     pub rotation: bool,
     /// True if contacts resist rolling.
     pub rolling: bool,
 }
 
 impl ModelParts {
-    /// The leanest model that computes everything the scene has (`physics`) and the parameters switch on: without
-    /// friction if the largest μ and μ_r, `[friction, rolling]`, are 0. It gives the same impulses as a fuller model.
+    /// Returns the smallest set of parts that computes everything that the scene has (`physics`, `periodic`) and the
+    /// parameters switch on. `[friction, rolling]` are the largest friction coefficient μ and the largest coefficient
+    /// of rolling friction μ_r of all contacts; a coefficient of 0 switches its part off. A larger set of parts gives
+    /// the same impulses.
     pub(crate) fn leanest(
         physics: Physics,
         periodic: Option<Periodic>,
@@ -40,8 +43,8 @@ impl ModelParts {
     }
 }
 
-/// Evaluates an expression with the [`Model`] that computes exactly these [`ModelParts`] bound to a type name of your
-/// choice: `with_model!(parts, M => work::<M>())`.
+/// Evaluates an expression for the [`Model`] that computes exactly the given [`ModelParts`]. Inside the expression a
+/// type name of your choice stands for the model: `with_model!(parts, M => work::<M>())`.
 #[macro_export]
 macro_rules! with_model {
     ($parts:expr, $M:ident => $work:expr) => {
@@ -64,23 +67,23 @@ macro_rules! with_model {
     };
 }
 
-/// The friction cone in use. Without cohesion both cones are the same, so it is then the shifted one.
+/// Returns the friction cone in use. Without cohesion both cones are the same, and the shifted cone is returned.
 pub(crate) fn cone_of(physics: Physics, parameters: &Parameters) -> FrictionCone {
     if physics.cohesion && parameters.bond > 0.0 { parameters.cone } else { FrictionCone::Shifted }
 }
 
-/// A problem, and the memory of the methods that solve it.
+/// The contact problem of a scene's present step under one model, and the memory of the methods that solve it.
 #[derive(Clone, Debug, Default)]
 pub struct Slot<M: Model> {
-    /// The problem.
+    /// The contact problem.
     pub problem: StepProblem<M>,
-    /// Room for a subset of its rows, to be solved separately.
+    /// Work space for a subset of the problem's rows that is solved separately.
     pub part: StepProblem<M>,
-    /// Memory of the methods.
+    /// Data that the methods keep from one solve to the next.
     pub memory: Memory,
 }
 
-/// One slot per model; slots of models that a scene never uses hold no memory.
+/// One [`Slot`] per model. The slots of models that a scene does not use allocate no memory.
 #[derive(Clone, Debug, Default)]
 pub struct Slots {
     line: Slot<Line>,
@@ -91,9 +94,9 @@ pub struct Slots {
     sheared_plane: Slot<ShearedPlane>,
 }
 
-/// A model whose problems have a slot.
+/// A model that has a slot in [`Slots`].
 pub trait Slotted: Model {
-    /// Its slot.
+    /// Returns the slot of this model.
     fn slot(slots: &mut Slots) -> &mut Slot<Self>;
 }
 

@@ -1,15 +1,16 @@
-//! Progress reports of long solves to an onlooker, which may end them. A process has at most one onlooker; the command
-//! line sets it for a single solve. A solve that the onlooker ends has not converged; no other result depends on it.
+//! Progress reports of long solves to an onlooker: a callback that receives the progress and may end the solve. A
+//! process has at most one onlooker; the command line sets it for a single solve. A solve that the onlooker ends has
+//! not converged. The onlooker has no other effect on results.
 
 use std::ops::ControlFlow;
 use std::sync::OnceLock;
 
-/// Progress of a solve.
+/// Progress of a solve that is not finished.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolveProgress {
-    /// Sweeps so far, or iterations if the method has no sweeps.
+    /// Number of sweeps so far, or of iterations if the method has no sweeps.
     pub sweeps: u32,
-    /// The residual, dimensionless, after each doubling of the number of sweeps; `None` in between.
+    /// The residual of the contact laws, dimensionless, after each doubling of the number of sweeps; `None` in between.
     pub residual: Option<f64>,
 }
 
@@ -17,13 +18,13 @@ type Onlooker = Box<dyn Fn(SolveProgress) -> ControlFlow<()> + Send + Sync>;
 
 static ONLOOKER: OnceLock<Onlooker> = OnceLock::new();
 
-/// Reports every later solve of this process to `onlooker` after each sweep, and ends a solve if the onlooker breaks.
-/// Only the first call sets the onlooker.
+/// Sets the onlooker of this process. Every later solve reports its progress to `onlooker` after each sweep, and ends
+/// if `onlooker` returns `Break`. Only the first call has an effect.
 pub fn look_on(onlooker: impl Fn(SolveProgress) -> ControlFlow<()> + Send + Sync + 'static) {
     ONLOOKER.get_or_init(|| Box::new(onlooker));
 }
 
-/// Returns true if the onlooker ends a solve that has got this far.
+/// Reports `progress` to the onlooker, if there is one, and returns true if the onlooker ends the solve.
 pub fn is_ended(progress: SolveProgress) -> bool {
     ONLOOKER.get().is_some_and(|onlooker| onlooker(progress).is_break())
 }

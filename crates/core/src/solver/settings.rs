@@ -1,12 +1,13 @@
-//! How accurately a step is to be solved, and under which model of friction.
+//! Settings of the solver: method, stopping test, tolerance, limits and friction model.
 
 use super::method::{METHODS, Method, Ordering};
 use crate::error::{Error, Result};
 use crate::setting::{Group, settings, words};
 
 words! {
-    /// The quantity that the solver's tolerance refers to. P are the normal and tangential impulses, ΔP their change in
-    /// a sweep, or in an iteration of a method without sweeps. `impulse-per-mass` is tested after every sweep.
+    /// The stopping test: the quantity that the solver's tolerance limits. P is the vector of the normal and tangential
+    /// impulses of all contacts (N·s), and ΔP its change in a sweep, or in an iteration of a method without sweeps.
+    /// `impulse-per-mass` is tested after every sweep.
     #[derive(Default)]
     pub enum StopTest {
         RelativeChange = "relative-change", "‖ΔP‖ of a sweep over ‖P‖";
@@ -19,8 +20,9 @@ words! {
 }
 
 words! {
-    /// The friction law that a step is solved under. Every model except Coulomb's law is made convex by numbers that
-    /// stay fixed while a step is solved (`problem::friction`), so that the velocities of a solve are unique.
+    /// The friction law that a step is solved under. Coulomb's law is not convex. Each other model replaces friction
+    /// bounds or sliding speeds by numbers that stay fixed while a step is solved (`problem::friction`), so that the
+    /// problem is convex and the velocities of a solve are unique.
     #[derive(Default)]
     pub enum FrictionModel {
         #[default]
@@ -37,27 +39,30 @@ words! {
 }
 
 impl StopTest {
-    /// Returns true if the test measures how good a solution is, rather than how much a sweep changes it.
+    /// Returns true if the test measures the error of the present impulses, and false if it measures their change in a
+    /// sweep.
     pub(crate) fn judges_solutions(self) -> bool {
         matches!(self, Self::Residual | Self::VelocityError)
     }
 }
 
 impl FrictionModel {
-    /// Returns true if the model has lagged numbers that a further solve of the same step recomputes.
+    /// Returns true if the model has numbers that are estimated before a solve, and that a further solve of the same
+    /// step recomputes.
     pub fn is_taken_anew(self) -> bool {
         matches!(self, Self::Tresca | Self::Desaxce)
     }
 
-    /// Returns true if the model allows the impulses of a cone. The cone is always the shifted one: the compressive
-    /// cone with cohesion is not convex, and its convex hull is the shifted cone.
+    /// Returns true if the model allows each contact the impulses of a cone. The cone is always the shifted cone: with
+    /// cohesion the compressive cone is not convex, and its convex hull is the shifted cone.
     pub(crate) fn is_on_cone(self) -> bool {
         matches!(self, Self::Associated | Self::Desaxce)
     }
 }
 
 settings! {
-    /// Method, stopping test and limits. This is plain data, which is checked when a simulation takes it.
+    /// Settings of the solver: method, stopping test, limits and friction model. This is plain data, which is checked
+    /// when a simulation is given it.
     ///
     /// By default each step is solved under Coulomb's law to an estimated velocity error of 1e-4 √(g d), which is too
     /// small to affect the slump of a pile. A flowing step of thousands of grains ends with a larger error, which is
@@ -76,7 +81,7 @@ settings! {
             limits", {
             control: shown("Stops on", "The quantity that the tolerance limits."),
         }
-        /// In the unit of `stop`.
+        /// Tolerance of each step, in the unit of the stopping test `stop`.
         tolerance: f64 = 1e-4, "tolerance" ("X"), "Tolerance of each step, in the unit of the stopping test", {
             allowed: "a finite number > 0",
             holds: |value| value > 0.0 && value.is_finite(),
@@ -88,7 +93,8 @@ settings! {
                 ..Control::PLAIN
             }),
         }
-        /// A step that needs more sweeps, or iterations of a method without sweeps, is reported as not converged.
+        /// Maximum number of sweeps per step, or of iterations of a method without sweeps. A step that needs more is
+        /// reported as not converged.
         max_sweeps: u32 = 5_000, "max-sweeps", "Most sweeps per step; a step that needs more is reported as unsolved; the solver auto may stop earlier", {
             allowed: "at least 1",
             holds: |value| value > 0,
@@ -128,25 +134,27 @@ settings! {
     }
 }
 
-/// Settings that are newer than the first scene files are written only if they differ from their defaults.
+/// Returns true if a setting has its default value. Settings that are newer than the first scene files are written to a
+/// file only if they differ from their defaults.
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
 impl SolverSettings {
-    /// Gauss–Seidel sweeps to a relative change of the impulses, the scheme of most programs of the field.
+    /// Settings for Gauss–Seidel sweeps until the impulses change by less than 1e-6 of their norm per sweep, the scheme
+    /// of most programs of the field.
     pub const SWEEPS: Self =
         Self { stop: StopTest::RelativeChange, ..Self::to_residual(Method::Nsgs, 1e-6, 5_000) };
 
     /// The default settings with bounded friction (Tresca), a convex problem that can be solved at any size.
     pub const BOUNDED: Self = Self { friction_model: FrictionModel::Tresca, ..Self::DEFAULT };
 
-    /// The scheme of the paper: [`Self::SWEEPS`], to the relative change at which the paper's verdicts no longer depend
-    /// on the solver.
+    /// The scheme of the paper (A. Abramian, L. Staron, 2020): [`Self::SWEEPS`] with a tolerance of 1e-7, at which the
+    /// conclusions of the paper no longer depend on the solver.
     pub const PAPER: Self = Self { tolerance: 1e-7, ..Self::SWEEPS };
 
-    /// Settings that solve to a given residual under Coulomb's law, regardless of the step's own settings. The solve
-    /// starts from the present impulses.
+    /// Returns settings for a solve under Coulomb's law to a given residual (`tolerance`), regardless of the settings
+    /// of the simulation. The solve starts from the present impulses of the problem.
     pub const fn to_residual(method: Method, tolerance: f64, max_sweeps: u32) -> Self {
         Self {
             method,
@@ -160,7 +168,7 @@ impl SolverSettings {
         }
     }
 
-    /// Checks the numbers against their ranges, and that the method supports the model of friction.
+    /// Checks that each number is within its range, and that the method supports the friction model.
     ///
     /// # Errors
     /// Names the field, its value and the allowed values.
@@ -179,17 +187,18 @@ impl SolverSettings {
         Ok(())
     }
 
-    /// Returns true if steps are solved under a model of friction other than Coulomb's law.
+    /// Returns true if steps are solved under a friction model other than Coulomb's law.
     pub(crate) fn solves_models(&self) -> bool {
         self.friction_model != FrictionModel::Coulomb
     }
 
-    /// These settings with Coulomb's law.
+    /// Returns these settings with Coulomb's law as the friction model.
     pub(crate) fn without_model(self) -> Self {
         Self { friction_model: FrictionModel::Coulomb, ..self }
     }
 
-    /// These settings with another method; with Coulomb's law if that method supports no other model of friction.
+    /// Returns these settings with another method. The friction model becomes Coulomb's law if the new method supports
+    /// no other model.
     pub fn by(self, method: Method) -> Self {
         let by_it = Self { method, ..self };
         if method.info().takes_models { by_it } else { by_it.without_model() }

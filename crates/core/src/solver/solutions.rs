@@ -1,9 +1,9 @@
-//! The solutions of one step under Coulomb's law.
+//! Search for several solutions of one step under Coulomb's law.
 //!
-//! The law is not convex, so a step of a flowing pile can have several solutions, and the start of a method decides
-//! which of them it finds. Here conjugate gradients start from several impulses: those of the step before, zero, and
-//! random ones that the law allows. Newton's method then continues from their result, and its result is kept if its
-//! residual is smaller.
+//! Coulomb's law is not convex, so a step of a flowing pile can have several solutions, and the initial impulses decide
+//! which solution a method finds. This search starts conjugate gradients from several sets of initial impulses: the
+//! impulses of the previous step, zero, and random impulses that the law allows. Newton's method then continues from
+//! the result of the conjugate gradients. The result of Newton's method is kept if its residual is smaller.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -15,41 +15,42 @@ use super::problem::{StepProblem, measure, residual};
 use super::settings::SolverSettings;
 use super::solve::solve;
 
-/// Maximum number of sweeps of Newton's method at the end of each search.
+/// Maximum number of sweeps of the solve by Newton's method that ends each search.
 const NEWTON_STEPS: u32 = 400;
 
-/// Searches end with Newton's method only up to this number of contacts.
+/// Maximum number of contacts of a problem on which a search ends with Newton's method.
 const CONTACTS_FOR_NEWTON: usize = 10_000;
 
-/// Settings of a search for solutions.
+/// Settings of a search for several solutions of one step.
 #[derive(Clone, Copy, Debug)]
 pub struct SolutionSearch {
-    /// Number of starts: first the impulses of the step before, then zero, then random ones.
+    /// Number of searches. Search 0 starts from the impulses of the previous step, search 1 from zero impulses, and
+    /// further searches start from random impulses.
     pub starts: u32,
-    /// Seed of the random starts.
+    /// Seed of the random initial impulses.
     pub seed: u64,
-    /// Maximum number of sweeps from each start.
+    /// Maximum number of sweeps of each search.
     pub max_sweeps: u32,
-    /// The residual at which a search ends.
+    /// The residual, dimensionless, at which a search ends.
     pub tolerance: f64,
 }
 
-/// A solution that one or more starts lead to.
+/// A solution of a step, found by one or more searches.
 #[derive(Clone, Debug)]
 pub struct Solution<M: Model> {
-    /// The problem, solved under Coulomb's law.
+    /// The problem with the impulses and velocities of this solution under Coulomb's law.
     pub problem: StepProblem<M>,
-    /// The common residual.
+    /// Residual of the contact laws, dimensionless ([`residual`](super::residual)).
     pub residual: f64,
-    /// Estimated distance of its velocities from those of an exact solution, m/s.
+    /// Estimated distance of the solution's velocities from the velocities of an exact solution, m/s.
     pub velocity_error: f64,
-    /// Numbers of the starts that lead there, from 0.
+    /// Numbers of the searches that found this solution, counted from 0.
     pub starts: Vec<u32>,
 }
 
 impl SolutionSearch {
-    /// Searches for solutions. Two results count as one solution if their distance is at most the sum of their velocity
-    /// errors.
+    /// Runs all searches and returns the distinct solutions. Two results count as one solution if the distance between
+    /// their velocities is at most the sum of their velocity errors.
     pub fn find<M: Model>(&self, problem: &StepProblem<M>) -> Vec<Solution<M>> {
         let mut found: Vec<Solution<M>> = Vec::new();
         for start in 0..self.starts {
@@ -70,7 +71,7 @@ impl SolutionSearch {
         found
     }
 
-    /// Searches from one start.
+    /// Runs search number `start` on a copy of the problem and returns its result, which may have missed the tolerance.
     pub fn from<M: Model>(&self, problem: &StepProblem<M>, start: u32) -> Solution<M> {
         let mut found = problem.clone();
         found.take_coulombs_law();
@@ -93,7 +94,7 @@ impl SolutionSearch {
         Solution { problem: found, residual: left, velocity_error, starts: vec![start] }
     }
 
-    /// Gives a problem the impulses of a start.
+    /// Writes the initial impulses of search number `start` to a problem. Search 0 keeps the present impulses.
     fn begin<M: Model>(&self, problem: &mut StepProblem<M>, start: u32) {
         if start == 0 {
             return;
@@ -119,14 +120,15 @@ impl SolutionSearch {
     }
 }
 
-/// Distance between the velocities of two solutions of one problem, m/s: the root mean square over the grains with
-/// contacts, weighted by mass. Spins count with the radius of gyration.
+/// Returns the distance between the velocities of two solutions of one problem, m/s: the root mean square over the
+/// grains with contacts, weighted by mass. The spin of a grain counts as angular velocity times radius of gyration.
 pub fn velocity_distance<M: Model>(one: &StepProblem<M>, other: &StepProblem<M>) -> f64 {
     distance_to_velocities(one, &velocities(other))
 }
 
-/// Distance from velocities that [`velocities`] has copied, m/s, measured as in [`velocity_distance`]. The rows may
-/// meanwhile have been sorted for another method.
+/// Returns the distance between the velocities of a problem and the velocities `others`, a copy made by [`velocities`],
+/// in m/s, measured as in [`velocity_distance`]. The contacts of the problem may have been sorted in another order
+/// since the copy was made.
 pub fn distance_to_velocities<M: Model>(problem: &StepProblem<M>, others: &[[f64; 3]]) -> f64 {
     let grains = problem.bodies.now.iter().zip(others).zip(&problem.bodies.masses);
     let squares = grains.map(|((one, other), mass)| {
@@ -138,7 +140,8 @@ pub fn distance_to_velocities<M: Model>(problem: &StepProblem<M>, others: &[[f64
     if mass > 0.0 { (squares / mass).sqrt() } else { 0.0 }
 }
 
-/// Velocities of all grains in the coordinates of the model, m/s; spins are r·ω.
+/// Returns the velocities of all grains, m/s: first the components along the axes of the model, then, if grains turn,
+/// the spin r·ω (radius times angular velocity).
 pub fn velocities<M: Model>(problem: &StepProblem<M>) -> Vec<[f64; 3]> {
     problem.bodies.now.iter().map(M::coordinates).collect()
 }

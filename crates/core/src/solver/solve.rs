@@ -1,12 +1,12 @@
-//! Solves a step's problem.
+//! Solves the contact problem of a step.
 
 use super::kinematics::Model;
 use super::methods::{Memory, SolveReport, solve_by_method};
 use super::problem::{StepProblem, is_solved};
 use super::settings::SolverSettings;
 
-/// Solves a prepared problem with the method of the settings: moves `problem.bodies` and fills in
-/// the rows' impulses.
+/// Solves a prepared contact problem with the method of the settings. Changes the velocities in `problem.bodies` and
+/// the impulses of `problem.rows`.
 ///
 /// ```
 /// use slump_core::contact::ContactList;
@@ -30,7 +30,7 @@ use super::settings::SolverSettings;
 /// assert!(simulation.next_problem(Left(Method::Newton)) < 1e-3);
 /// # Ok::<(), slump_core::error::Error>(())
 /// ```
-// Compiled once, in this crate, for every model: callers do not compile it again.
+// `inline(never)`: the function is compiled once per model, in this crate, and callers do not compile it again.
 #[inline(never)]
 pub fn solve<M: Model>(
     problem: &mut StepProblem<M>,

@@ -1,5 +1,5 @@
 //! Shapes that grains cannot move: their geometry, motion and outline. `contact::features` computes how a disc
-//! touches them.
+//! touches these shapes.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -17,67 +17,67 @@ pub struct Disc {
     pub radius: f64,
 }
 
-/// A shape, other than a disc, that grains cannot move. All lengths in m.
+/// A shape, other than a disc, that grains cannot move. All lengths are in m.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "shape", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Boundary {
-    /// All points p with (p − point)·normal < 0. The normal need not have length 1.
+    /// A half-space: all points p with (p − point)·normal < 0.
     HalfSpace {
         /// A point of the surface.
         point: DVec2,
-        /// Points out of the solid.
+        /// Normal that points out of the solid. It need not have length 1.
         normal: DVec2,
     },
-    /// A half-space that moves along its normal, regardless of resistance, and then stops. Short for a half-space
-    /// with such a [`Motion`](super::Motion).
+    /// A half-space that moves along its normal with a given speed and then stops. Forces of grains do not slow it
+    /// down. It is an abbreviation for a half-space with a straight [`Motion`](super::Motion).
     Piston {
         /// A point of the surface.
         point: DVec2,
-        /// Points out of the solid.
+        /// Normal that points out of the solid. It need not have length 1.
         normal: DVec2,
         /// Speed, m/s; positive towards the grains.
         speed: f64,
-        /// Remaining distance, m.
+        /// Remaining distance before the piston stops, m.
         travel: f64,
     },
-    /// A thin wall from one point to another, solid from both sides.
+    /// A thin wall from one point to another. Grains can touch it from both sides.
     Segment {
-        /// One end.
+        /// One end of the wall.
         from: DVec2,
-        /// The other end.
+        /// The other end of the wall.
         to: DVec2,
     },
-    /// Segments end to end, solid from both sides.
+    /// A chain of thin walls, end to end. Grains can touch it from both sides.
     Polyline {
-        /// At least two points.
+        /// The corners in order, at least two points.
         points: Vec<DVec2>,
     },
     /// A solid convex polygon.
     ConvexPolygon {
-        /// At least three corners, anticlockwise.
+        /// At least three corners, in anticlockwise order.
         points: Vec<DVec2>,
     },
 }
 
-/// A piece of a boundary's outline, for drawing. All lengths in m.
+/// A part of the outline of a boundary, for drawing. All lengths are in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Edge {
     /// An infinite line.
     Endless {
         /// A point of the line.
         point: DVec2,
-        /// Points out of the solid. Need not have length 1.
+        /// Normal that points out of the solid. It need not have length 1.
         normal: DVec2,
     },
-    /// A wall between two points, open on both sides.
+    /// A thin wall between two points, with grains on both sides.
     Wall([DVec2; 2]),
-    /// A side of a solid, which lies on the side's left.
+    /// A side of a solid, from the first to the second point. The solid is on the left.
     Side([DVec2; 2]),
 }
 
-// No `_` arms here: a new shape must be considered in each match.
+// The matches below have no `_` arm, so that a new shape must be considered in each.
 impl Boundary {
-    /// Pieces of the outline.
+    /// Returns the parts of the outline.
     pub fn edges(&self) -> Vec<Edge> {
         match self {
             Self::HalfSpace { point, normal } | Self::Piston { point, normal, .. } => {
@@ -94,7 +94,7 @@ impl Boundary {
         }
     }
 
-    /// Name of the shape in scene files.
+    /// Returns the name of the shape in scene files.
     pub const fn word(&self) -> &'static str {
         match self {
             Self::HalfSpace { .. } => "half-space",
@@ -105,7 +105,7 @@ impl Boundary {
         }
     }
 
-    /// True if the surface is perpendicular to the x axis, as scenes with one axis need.
+    /// True if the surface is perpendicular to the x axis, which scenes on a line require.
     pub fn is_across_line(&self) -> bool {
         match self {
             Self::HalfSpace { normal, .. } | Self::Piston { normal, .. } => normal.y == 0.0,
@@ -113,12 +113,13 @@ impl Boundary {
         }
     }
 
-    /// True if it moves without its own [`Motion`](super::Motion).
+    /// True if the shape moves without a [`Motion`](super::Motion) in the scene, as a piston does.
     pub(crate) fn moves_by_itself(&self) -> bool {
         matches!(self, Self::Piston { .. })
     }
 
-    /// Velocity of a shape that moves by itself, in the next `secs`; `None` for other shapes.
+    /// Returns the mean velocity, in the next `secs` seconds, of a shape that moves by itself. `None` for other
+    /// shapes.
     pub(crate) fn velocity_in(&self, secs: f64) -> Option<RigidVelocity> {
         match *self {
             Self::Piston { normal, speed, travel, .. } => {
@@ -152,7 +153,7 @@ impl Boundary {
         }
     }
 
-    /// True if motion in `direction` is along the surface normal, so that the surface does not rub.
+    /// True if a motion in `direction` is along the surface normal, so that the surface does not rub against grains.
     pub(crate) fn is_pushed_along(&self, direction: DVec2) -> bool {
         match self {
             Self::HalfSpace { normal, .. } | Self::Piston { normal, .. } => {
@@ -162,7 +163,7 @@ impl Boundary {
         }
     }
 
-    /// True if its surface is an infinite line.
+    /// True if the surface is an infinite line.
     pub(crate) fn is_half_space(&self) -> bool {
         matches!(self, Self::HalfSpace { .. } | Self::Piston { .. })
     }

@@ -1,4 +1,4 @@
-//! The moving discs.
+//! The grains: discs that move.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::materials::{Material, number_of};
 use crate::error::{self, Error, Result};
 
-/// One disc of a scene. Plain data, checked with the scene.
+/// One disc of a scene. The fields are public, and their values are checked together with the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Grain {
@@ -23,13 +23,13 @@ pub struct Grain {
     /// True if gravity acts on this disc.
     #[serde(default = "yes")]
     pub feels_gravity: bool,
-    /// Grey of the disc in pictures in the style of the paper: 0 is black, 255 white.
+    /// Grey level of the disc in pictures in the style of the paper: 0 is black, 255 is white.
     #[serde(default = "light_grey")]
     pub tone: u8,
-    /// Name of its material. Default: the first material of the scene.
+    /// Name of the material of the disc. Default: the first material of the scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub material: Option<String>,
-    /// Mass, kg. Default: areal density × πr².
+    /// Mass, kg. Default: areal density times the area πr² (r: radius).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass: Option<f64>,
 }
@@ -43,10 +43,10 @@ fn light_grey() -> u8 {
 }
 
 impl Grain {
-    /// The grey of a grain without a colour in its scene.
+    /// Grey level of a grain whose scene gives no grey level.
     pub(crate) const DEFAULT_TONE: u8 = 205;
 
-    /// A disc at rest that feels gravity.
+    /// Returns a disc at rest on which gravity acts. `position` and `radius` in m.
     pub fn at_rest(position: DVec2, radius: f64) -> Self {
         Self {
             position,
@@ -60,8 +60,9 @@ impl Grain {
         }
     }
 
-    /// The number of its material, and its mass, kg: its own, or πr² times the areal density of its material, or
-    /// `density`, kg/m².
+    /// Returns the index of the material and the mass (kg) of the disc. The mass is the value given for the disc, or
+    /// else the area πr² times the areal density (kg/m²). The areal density is that of the material if the material
+    /// has one, and otherwise `density`.
     pub(crate) fn material_and_mass(&self, density: f64, materials: &[Material]) -> (usize, f64) {
         let number = self.material.as_ref().and_then(|name| number_of(materials, name));
         let number = number.unwrap_or(0);
@@ -72,13 +73,14 @@ impl Grain {
     }
 }
 
-/// The discs of a world. Each list has one entry per disc.
+/// The discs of a world, as lists with one entry per disc.
 ///
-/// The lists are separate because the passes over all grains (prediction, integration, detection) need few of them
-/// each. The sweep needs a body's whole motion at random indices and works on a packed copy (`solver::problem`).
+/// The lists are separate because each pass over all grains (prediction, integration, detection) needs only a few of
+/// them. A sweep over the contacts needs all velocities of a body at random indices, so it works on a packed copy
+/// (`solver::problem`).
 ///
-/// Plain data, checked when a simulation takes it over. A running simulation shows its own data but lends no mutable
-/// access.
+/// The fields are public, and a simulation checks them when it takes over the world. The data of a running simulation
+/// can be read but not changed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Grains {
@@ -86,40 +88,41 @@ pub struct Grains {
     pub positions: Vec<DVec2>,
     /// Velocities of the centres, m/s.
     pub velocities: Vec<DVec2>,
-    /// Rotation angles since the start, rad.
+    /// Angles of rotation since the start of the run, rad.
     pub angles: Vec<f64>,
     /// Angular velocities, rad/s.
     pub angular_velocities: Vec<f64>,
     /// Radii, m.
     pub radii: Vec<f64>,
-    /// Masses, kg: areal density × πr², unless the scene gives them.
+    /// Masses, kg. Default: areal density times the area πr² (r: radius).
     pub masses: Vec<f64>,
-    /// True if gravity acts on the disc.
+    /// For each disc, true if gravity acts on it.
     pub feels_gravity: Vec<bool>,
-    /// Greys for pictures in the style of the paper.
+    /// Grey levels for pictures in the style of the paper: 0 is black, 255 is white.
     pub tones: Vec<u8>,
-    /// The number of each disc's material; empty in a world without materials.
+    /// Index of the material of each disc. Empty in a world without materials.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<u8>,
-    /// Displacement that periodic borders have subtracted from each centre since the start, m. Added to the centre,
-    /// it gives the unwrapped position.
+    /// For each disc, the displacement that periodic borders have subtracted from its centre since the start, m. The
+    /// centre plus this displacement is the unwrapped position.
     pub brought_back: Vec<DVec2>,
-    /// Permanent numbers: a grain's index in the scene. Grains added later have numbers above those of all other
-    /// bodies.
+    /// Permanent number of each grain: its index in the scene. Grains that are added later have numbers above the
+    /// numbers of all other bodies.
     pub ids: Vec<u32>,
     /// Number of grains at the start.
     pub count_at_start: u32,
-    /// Number of grains added since.
+    /// Number of grains added since the start.
     pub added: u32,
 }
 
 impl Grains {
-    /// Builds the lists from `grains`. `areal_density` in kg/m².
+    /// Builds the lists from `grains`. `areal_density` (kg/m²) determines the masses that are not given.
     pub fn new(grains: &[Grain], areal_density: f64) -> Self {
         Self::of_materials(grains, areal_density, &[])
     }
 
-    /// Builds the lists from `grains` of these materials. `density` in kg/m², for materials without their own.
+    /// Builds the lists from `grains` with these materials. `density` (kg/m²) is the areal density of materials that
+    /// do not have a density.
     pub(crate) fn of_materials(grains: &[Grain], density: f64, materials: &[Material]) -> Self {
         let mut lists = Self::default();
         let ids = grains.iter().zip(0..);
@@ -128,7 +131,8 @@ impl Grains {
         lists
     }
 
-    /// Appends a grain of one of `materials` with number `id`. `density` as in [`Self::of_materials`].
+    /// Appends a grain with the permanent number `id`. `density` (kg/m²) is the areal density if its material does
+    /// not have a density.
     pub(crate) fn push(&mut self, grain: &Grain, density: f64, materials: &[Material], id: u32) {
         let (material, mass) = grain.material_and_mass(density, materials);
         if !materials.is_empty() {
@@ -170,7 +174,7 @@ impl Grains {
         }
     }
 
-    /// Removes a grain; the grains after it move up.
+    /// Removes the grain at `index`. The grains after it get an index that is smaller by one.
     pub(crate) fn remove(&mut self, index: usize) {
         self.positions.remove(index);
         self.velocities.remove(index);
@@ -187,7 +191,7 @@ impl Grains {
         self.ids.remove(index);
     }
 
-    /// The number of a grain's material; 0 in a world without materials.
+    /// Returns the index of a grain's material; 0 in a world without materials.
     pub fn material(&self, index: usize) -> u8 {
         self.materials.get(index).copied().unwrap_or(0)
     }
@@ -202,12 +206,12 @@ impl Grains {
         self.positions.is_empty()
     }
 
-    /// Moment of inertia of a solid disc, ½mr², kg·m².
+    /// Returns the moment of inertia of a solid disc, ½mr², kg·m² (m: mass, r: radius).
     pub fn inertia(&self, index: usize) -> f64 {
         0.5 * self.masses[index] * self.radii[index] * self.radii[index]
     }
 
-    /// Grain `index` as a scene would describe it now, except its material and mass.
+    /// Returns the present data of the grain `index` in the form of a scene, without material and mass.
     pub fn grain(&self, index: usize) -> Grain {
         Grain {
             position: self.positions[index],

@@ -1,4 +1,4 @@
-//! The acceleration field of the grains, and its rotation, as in a tilted box.
+//! The gravity of a scene (the acceleration field of the grains), and its rotation in time, as in a tilted box.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -9,7 +9,8 @@ use crate::world::motion::{at_time, direction};
 use crate::world::motion_check::check_table;
 use crate::world::{Physics, World};
 
-/// An acceleration field. Single grains can ignore it (`feels_gravity`).
+/// Gravity: an acceleration field. Single grains can ignore it
+/// ([`Grain::feels_gravity`](super::Grain::feels_gravity)).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Gravity {
@@ -18,17 +19,17 @@ pub enum Gravity {
         /// Acceleration, m/s².
         acceleration: DVec2,
     },
-    /// Constant magnitude, towards a point (paper §4); zero at the point itself.
+    /// Acceleration of constant magnitude towards a point (paper §4). It is zero at the point itself.
     Attraction {
         /// The centre of attraction, m.
         centre: DVec2,
-        /// Magnitude, m/s².
+        /// Magnitude of the acceleration, m/s².
         magnitude: f64,
     },
 }
 
 impl Gravity {
-    /// The acceleration at a position, m/s².
+    /// Returns the acceleration at a position (m), m/s².
     pub fn acceleration(&self, position: DVec2) -> DVec2 {
         match *self {
             Self::Uniform { acceleration } => acceleration,
@@ -38,7 +39,7 @@ impl Gravity {
         }
     }
 
-    /// The x component of the acceleration in a scene with the x axis only, m/s².
+    /// Returns the x component of the acceleration, m/s², in a scene on a line (x axis only).
     pub(crate) fn acceleration_on_line(&self, x: f64) -> f64 {
         match *self {
             Self::Uniform { acceleration } => acceleration.x,
@@ -49,7 +50,7 @@ impl Gravity {
         }
     }
 
-    /// Potential energy per mass at a position, J/kg.
+    /// Returns the potential energy per mass at a position (m), J/kg.
     pub(crate) fn potential(&self, position: DVec2) -> f64 {
         match *self {
             Self::Uniform { acceleration } => -acceleration.dot(position),
@@ -57,7 +58,7 @@ impl Gravity {
         }
     }
 
-    /// g, the magnitude that the Bond number refers to, m/s².
+    /// Magnitude g of the acceleration, m/s². The Bond number refers to it.
     pub fn magnitude(&self) -> f64 {
         match *self {
             Self::Uniform { acceleration } => acceleration.length(),
@@ -66,11 +67,11 @@ impl Gravity {
     }
 }
 
-/// Rotation of uniform gravity over time, starting from its listed direction.
+/// Rotation of uniform gravity over time. At the angle 0 gravity has the direction given in the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GravityTurn {
-    /// The angle over time.
+    /// The angle of rotation over time.
     pub course: TurnCourse,
     /// Time since the rotation began, s.
     #[serde(default, skip_serializing_if = "is_zero")]
@@ -81,34 +82,36 @@ pub struct GravityTurn {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum TurnCourse {
-    /// Constant rate.
+    /// Rotation at a constant rate.
     Rate {
-        /// Rate, rad/s.
+        /// Angular velocity, rad/s.
         rate: f64,
     },
-    /// Piecewise linear between the rows of a table; constant before the first and after the last.
+    /// Angles from a table, linear between its rows. The angle is constant before the first and after the last row.
     Table {
         /// Times in increasing order, s.
         times_secs: Vec<f64>,
-        /// One angle per time, rad.
+        /// Angle at each time, rad.
         angles: Vec<f64>,
     },
 }
 
-/// Turning gravity of a world. [`World::gravity`](super::World::gravity) is its value in the last step.
+/// Gravity of a world whose direction changes. [`World::gravity`](super::World::gravity) is its value in the last
+/// step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TurningGravity {
-    /// The acceleration at an angle of 0, m/s².
+    /// The acceleration at an angle of 0, m/s², as given in the scene.
     pub listed: DVec2,
-    /// The rotation from there.
+    /// Rotation over time, starting from the direction of `listed`.
     pub turn: GravityTurn,
-    /// Additional tilt, constant until it is changed, rad.
+    /// Additional angle by which gravity is turned, rad. It stays constant until a setting changes it.
     pub tilt: f64,
 }
 
 impl TurningGravity {
-    /// Makes the turning gravity from `gravity` and `turn`. Only uniform gravity turns; otherwise `None`.
+    /// Creates turning gravity from `gravity` and `turn`. Returns `None` without `turn`, or if `gravity` is not
+    /// uniform.
     pub(crate) fn of(gravity: Gravity, turn: Option<&GravityTurn>) -> Option<Self> {
         match gravity {
             Gravity::Uniform { acceleration } => {
@@ -118,8 +121,8 @@ impl TurningGravity {
         }
     }
 
-    /// The gravity of the next `secs`, evaluated at their middle, so that the error of a step's impulse is of order
-    /// Δt³.
+    /// Returns the gravity for the next `secs` seconds. The angle is taken at the middle of this time, so the error
+    /// of the impulse of one step is of order Δt³ (Δt: time step).
     pub(crate) fn in_next(&self, secs: f64) -> Gravity {
         let angle = self.turn.angle(self.turn.elapsed_secs + 0.5 * secs) + self.tilt;
         Gravity::Uniform { acceleration: direction(angle).rotate(self.listed) }
@@ -130,7 +133,7 @@ impl GravityTurn {
     pub(super) const NONE: Self =
         Self { course: TurnCourse::Rate { rate: 0.0 }, elapsed_secs: 0.0 };
 
-    /// True if the gravity does not turn by itself.
+    /// True if gravity does not turn by itself (its rotation rate is 0).
     pub fn is_none(&self) -> bool {
         self.course == Self::NONE.course
     }
@@ -166,8 +169,8 @@ impl GravityTurn {
 }
 
 impl World {
-    /// Tilts uniform gravity by an angle (rad, positive anticlockwise) relative to its listed direction and its own
-    /// rotation.
+    /// Tilts uniform gravity by an angle (rad, positive anticlockwise), in addition to its rotation over time. The
+    /// angle is measured from the direction given in the scene.
     pub(crate) fn tilt(&mut self, angle: f64) {
         if angle != 0.0
             && self.gravity_turn.is_none()
@@ -179,13 +182,13 @@ impl World {
             && turning.tilt != angle
         {
             turning.tilt = angle;
-            // Shown to anyone who looks at the state before the next step.
+            // Updates `gravity` for code that reads the state before the next step.
             self.gravity = turning.in_next(0.0);
         }
     }
 
-    /// The direction in which grains that leave the scene are lost: that of listed gravity. `None` if gravity turns
-    /// by itself or is not uniform.
+    /// Returns the direction, as a unit vector, of the gravity given in the scene. Grains that leave the scene in
+    /// this direction count as lost. `None` if gravity turns by itself, is not uniform, or is zero.
     pub(crate) fn listed_down(&self) -> Option<DVec2> {
         let listed = match (&self.gravity_turn, self.gravity) {
             (Some(turning), _) if turning.turn.is_none() => turning.listed,

@@ -5,27 +5,28 @@ use serde::{Deserialize, Serialize};
 use super::{Parameters, Physics};
 use crate::error::{self, Error, Result};
 
-/// Upper limit for the number of materials: the number of a material is stored in one byte per grain.
+/// Largest allowed number of materials. The index of a material is stored in one byte per grain.
 const MOST_MATERIALS: usize = 100;
 
-/// A material of a scene. Grains, fixed discs and boundaries that name no material consist of the first one.
+/// A material of a scene. Grains, fixed discs and boundaries for which no material is given consist of the first
+/// material.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
-    /// Its name.
+    /// Name of the material.
     pub name: String,
-    /// Areal density of its grains, kg/m². Default: that of the scene.
+    /// Areal density of the grains of this material, kg/m². Default: the areal density of the scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub areal_density: Option<f64>,
-    /// Numbers of the boundaries that consist of it.
+    /// Indices of the boundaries that consist of this material.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub boundaries: Vec<usize>,
-    /// Numbers of the fixed discs that consist of it.
+    /// Indices of the fixed discs that consist of this material.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fixed_discs: Vec<usize>,
 }
 
-/// The contact law of a pair of materials. The parameters of the scene replace the numbers that it leaves out.
+/// The contact law of a pair of materials. A missing coefficient is taken from the parameters of the scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialPair {
@@ -34,45 +35,48 @@ pub struct MaterialPair {
     /// Friction coefficient μ.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<f64>,
-    /// Rolling friction μ_r.
+    /// Coefficient of rolling friction μ_r.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rolling_friction: Option<f64>,
-    /// Restitution ρ, 0 … 1.
+    /// Coefficient of restitution ρ, from 0 to 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub restitution: Option<f64>,
-    /// Bond number of C₀ = Bond · m_ij · a, as in [`Parameters`].
+    /// Bond number, which gives the cohesion force C₀ = Bond · m_ij · a, as in [`Parameters`] (m_ij: effective mass,
+    /// a: acceleration of cohesion).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bond: Option<f64>,
-    /// C₀ itself, N: the same force for all masses, with and without gravity.
+    /// Cohesion force C₀, N. It replaces the Bond number: the force is the same for all masses, with and without
+    /// gravity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cohesion_force: Option<f64>,
 }
 
-/// Cohesion of a pair of materials.
+/// Cohesion of a pair of materials: a Bond number or a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Cohesion {
-    /// C₀ = Bond · m_ij · a, with this Bond.
+    /// Bond number, which gives the cohesion force C₀ = Bond · m_ij · a (m_ij: effective mass, a: acceleration of
+    /// cohesion).
     Bond(f64),
-    /// C₀ in N.
+    /// Cohesion force C₀, N.
     Force(f64),
 }
 
-/// The numbers of the contact law of one pair of materials.
+/// The coefficients of the contact law of one pair of materials.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PairNumbers {
     /// Friction coefficient μ.
     pub friction: f64,
-    /// Rolling friction μ_r.
+    /// Coefficient of rolling friction μ_r.
     pub rolling_friction: f64,
-    /// Restitution ρ.
+    /// Coefficient of restitution ρ.
     pub restitution: f64,
-    /// Cohesion C₀.
+    /// Cohesion, as a Bond number or a force.
     pub cohesion: Cohesion,
 }
 
 impl PairNumbers {
-    /// The numbers of `pair`, or those of the parameters if the pair leaves them out. `physics` may exclude friction,
-    /// rotation and cohesion.
+    /// Returns the coefficients of `pair`. Coefficients that the pair does not give are taken from the parameters.
+    /// Friction, rolling friction and cohesion are 0 if `physics` excludes friction, rotation or cohesion.
     pub(crate) fn new(
         pair: Option<&MaterialPair>,
         parameters: &Parameters,
@@ -99,13 +103,13 @@ impl PairNumbers {
     }
 }
 
-/// The number of the material of that name.
+/// Returns the index of the material with this name.
 pub(super) fn number_of(materials: &[Material], name: &str) -> Option<usize> {
     materials.iter().position(|material| material.name == name)
 }
 
-/// The numbers of the materials of `count` boundaries or fixed discs, which materials list by `listed`. Bodies that no
-/// material lists have number 0.
+/// Returns the index of the material of each of `count` bodies: of the boundaries or of the fixed discs, depending on
+/// which list of a material `listed` returns. Bodies that no material lists have the index 0.
 pub fn materials_of(
     materials: &[Material],
     listed: fn(&Material) -> &Vec<usize>,
@@ -118,7 +122,8 @@ pub fn materials_of(
     numbers
 }
 
-/// Checks the name of a material that a body or a pair uses.
+/// Checks that the scene lists the material that a body or a pair names. `field` returns the name of the setting in
+/// error messages.
 pub(crate) fn check_name(
     field: impl FnOnce() -> String,
     name: &str,
@@ -135,7 +140,7 @@ pub(crate) fn check_name(
     Err(Error::value(field(), name, allowed))
 }
 
-/// Checks the materials and the pairs of a world with this many boundaries and fixed discs.
+/// Checks the materials and the pairs of materials of a world with this many boundaries and fixed discs.
 pub(super) fn check_materials(
     materials: &[Material],
     pairs: &[MaterialPair],
@@ -168,7 +173,8 @@ pub(super) fn check_materials(
     Ok(())
 }
 
-/// Checks that each body that a material lists is one of `count`, and that no other entry lists it.
+/// Checks that each body that a material lists is one of the `count` existing bodies, and that no body is listed
+/// twice.
 fn check_bodies(
     list: &str,
     materials: &[Material],
@@ -188,7 +194,7 @@ fn check_bodies(
 }
 
 impl MaterialPair {
-    /// True if it is the pair of these two materials, in either order.
+    /// True if this is the pair of these two materials, in either order.
     pub(crate) fn is_between(&self, [one, other]: &[String; 2]) -> bool {
         let [first, second] = &self.between;
         (first, second) == (one, other) || (first, second) == (other, one)

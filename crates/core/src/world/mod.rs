@@ -1,4 +1,4 @@
-//! Bodies, boundaries, gravity and parameters: plain data, in SI units and f64.
+//! Data of a scene in SI units: grains, fixed discs, boundaries, gravity, materials and parameters.
 
 mod boundary;
 mod grains;
@@ -30,22 +30,22 @@ use self::materials::check_materials;
 use self::motion_check::check_motions;
 use crate::error::{Error, Result};
 
-/// Everything that a step reads and moves. Plain data, checked when a simulation takes it over. A running simulation
-/// shows its own data but lends no mutable access.
+/// The world: all data that a step reads and moves. The fields are public, and a simulation checks them when it takes
+/// over the world. The data of a running simulation can be read but not changed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct World {
-    /// The moving discs.
+    /// The grains: discs that move.
     pub grains: Grains,
     /// Discs that grains cannot move, such as the rough base of the pile.
     pub fixed_discs: Vec<Disc>,
-    /// Other shapes that grains cannot move.
+    /// Shapes, other than discs, that grains cannot move.
     pub boundaries: Vec<Boundary>,
-    /// Motions of some fixed discs and boundaries.
+    /// Motions of fixed discs and boundaries. Bodies without a motion stay at rest.
     pub motions: Vec<Motion>,
-    /// The field that accelerates the grains.
+    /// Gravity: the acceleration field of the grains.
     pub gravity: Gravity,
-    /// How gravity turns, if it does. Then `gravity` is its value in the last step.
+    /// Rotation of gravity over time, if gravity turns. Then `gravity` is the value in the last step.
     pub gravity_turn: Option<TurningGravity>,
     /// Periodic borders, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -53,15 +53,15 @@ pub struct World {
     /// The materials of grains, fixed discs and boundaries.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<Material>,
-    /// Contact laws of pairs of materials that differ from the parameters.
+    /// Contact laws of pairs of materials. Pairs that are not listed have the coefficients of the parameters.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pairs: Vec<MaterialPair>,
-    /// The diameter d, the unit of length for relative quantities, m.
+    /// The mean diameter d, m. It is the unit of length for settings in diameters.
     pub mean_diameter: f64,
 }
 
 impl World {
-    /// A world of grains in a field, without other bodies. `mean_diameter` is d, m.
+    /// Returns a world that contains only grains, in a gravity field. `mean_diameter` is the unit of length d, m.
     pub fn of(grains: Grains, gravity: Gravity, mean_diameter: f64) -> Self {
         Self {
             grains,
@@ -77,7 +77,7 @@ impl World {
         }
     }
 
-    /// Checks the grains and motions, the rotation of gravity, and the borders.
+    /// Checks the grains, materials and motions, the rotation of gravity, and the periodic borders.
     pub(crate) fn validate(&self, physics: Physics) -> Result<()> {
         self.grains.validate()?;
         if let Some(TurningGravity { turn, .. }) = &self.gravity_turn {
@@ -105,8 +105,8 @@ impl World {
         !self.motions.is_empty() || self.boundaries.iter().any(Boundary::moves_by_itself)
     }
 
-    /// The shortest equivalent of the vector `offset` between two places, m: across periodic borders if there are
-    /// any.
+    /// Returns the shortest vector between two points that is equivalent to their `offset` (m), possibly across
+    /// periodic borders.
     #[inline(always)]
     pub(crate) fn shortest(&self, offset: DVec2) -> DVec2 {
         match self.periodic {
@@ -115,16 +115,16 @@ impl World {
         }
     }
 
-    /// Speed along x of the image of grain `j` nearest to grain `i`, relative to grain `j`, m/s; 0 without sheared
-    /// borders.
+    /// Returns the speed along x, m/s, of the periodic image of grain `j` that is nearest to grain `i`, relative to
+    /// grain `j` itself. 0 without sheared borders.
     #[inline]
     pub(crate) fn speed_of_image(&self, i: usize, j: usize) -> f64 {
         let places = &self.grains.positions;
         self.periodic.map_or(0.0, |periodic| periodic.speed_of_image(places[i] - places[j]))
     }
 
-    /// Brings all discs back into the periodic cell, if there is one. Returns the work done on grains, J: crossing a
-    /// sheared border changes a grain's velocity.
+    /// Moves all discs that have left the periodic cell back into it. Returns the work done on the grains, J, because
+    /// crossing a sheared border changes the velocity of a grain.
     pub(crate) fn wrap(&mut self) -> f64 {
         let Some(periodic) = self.periodic else { return 0.0 };
         let mut work = 0.0;

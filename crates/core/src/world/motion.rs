@@ -1,4 +1,4 @@
-//! Prescribed and driven motion of fixed discs and boundaries, and surface speeds such as a conveyor belt's.
+//! Prescribed and force-driven motion of fixed discs and boundaries, and surface speeds, as of a conveyor belt.
 
 use std::f64::consts::TAU;
 
@@ -9,61 +9,63 @@ use crate::number::Parts;
 use crate::number::is_zero;
 use crate::world::Periodic;
 
-/// Boundaries and fixed discs that move together.
+/// A motion: boundaries and fixed discs that move together as one rigid body.
 ///
-/// It carries its own state: `elapsed_secs` grows and the remaining travel shrinks as the bodies move.
+/// The motion stores its own progress: as the bodies move, `elapsed_secs` grows and the remaining `travel` of the
+/// course shrinks.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Motion {
-    /// Indices of the boundaries, from 0.
+    /// Indices of the boundaries that move, counted from 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub boundaries: Vec<usize>,
-    /// Indices of the fixed discs, from 0.
+    /// Indices of the fixed discs that move, counted from 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fixed_discs: Vec<usize>,
-    /// Prescribed course. Without it the bodies stay at their places.
+    /// Prescribed course. Without a course only the drive, if there is one, moves the bodies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub course: Option<MotionCourse>,
-    /// Additional motion by a force, if any.
+    /// Force or pressure that moves the bodies, in addition to the course.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive: Option<Drive>,
-    /// Speed of the surface along itself, m/s, with the shape at rest, as for a conveyor belt. Positive along the
-    /// outward normal turned by +90°, which is anticlockwise around a disc or a polygon.
+    /// Speed of the surface along itself, m/s. The shape itself stays at rest, as with a conveyor belt. A positive
+    /// speed is along the outward normal turned by +90°, which is anticlockwise around a disc or a polygon.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub surface_speed: f64,
     /// Time since the motion began, s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub elapsed_secs: f64,
-    /// Rotation since then, rad, positive anticlockwise.
+    /// Angle of rotation since the motion began, rad, positive anticlockwise.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub turned: f64,
 }
 
-/// Prescribed course over time, relative to the listed places.
+/// Prescribed course over time, relative to the positions given in the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum MotionCourse {
     /// Straight line at constant speed.
     Straight {
-        /// Direction of the motion, of any length.
+        /// Direction of the motion. Its length does not matter.
         direction: DVec2,
-        /// Speed along it, m/s.
+        /// Speed along the given direction, m/s.
         speed: f64,
-        /// Remaining distance, m; unlimited if not given.
+        /// Remaining distance, m. Unlimited if it is missing.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         travel: Option<f64>,
     },
-    /// Rotation about a pivot at constant rate.
+    /// Rotation about a pivot at constant angular velocity.
     Rotation {
-        /// Pivot, m.
+        /// Position of the pivot, m.
         pivot: DVec2,
-        /// Rate, rad/s, positive anticlockwise.
+        /// Angular velocity, rad/s, positive anticlockwise.
         rate: f64,
-        /// Remaining angle, rad; unlimited if not given.
+        /// Remaining angle, rad. Unlimited if it is missing.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         travel: Option<f64>,
     },
-    /// Oscillation: amplitude · (sin(2π·frequency·t + phase) − sin(phase)).
+    /// Oscillation along a line. The displacement at time t is amplitude · (sin(2π·frequency·t + phase) −
+    /// sin(phase)).
     Sine {
         /// Amplitude, m.
         amplitude: DVec2,
@@ -73,9 +75,9 @@ pub enum MotionCourse {
         #[serde(default, skip_serializing_if = "is_zero")]
         phase: f64,
     },
-    /// Oscillation about a pivot, with the angle of [`MotionCourse::Sine`].
+    /// Oscillation about a pivot. The angle depends on time like the displacement of [`MotionCourse::Sine`].
     Swing {
-        /// Pivot, m.
+        /// Position of the pivot, m.
         pivot: DVec2,
         /// Amplitude, rad.
         amplitude: f64,
@@ -85,33 +87,36 @@ pub enum MotionCourse {
         #[serde(default, skip_serializing_if = "is_zero")]
         phase: f64,
     },
-    /// Displacement, piecewise linear between the rows of a table; constant before the first and after the last.
+    /// Displacements from a table, linear between its rows. The displacement is constant before the first and after
+    /// the last row.
     Table {
         /// Times in increasing order, s.
         times_secs: Vec<f64>,
-        /// One displacement per time, m. Only their differences matter.
+        /// Displacement at each time, m. Only the differences between displacements matter.
         offsets: Vec<DVec2>,
     },
-    /// Rotation about a pivot, with the angle piecewise linear between the rows of a table.
+    /// Rotation about a pivot, with angles from a table, linear between its rows.
     AngleTable {
-        /// Pivot, m.
+        /// Position of the pivot, m.
         pivot: DVec2,
         /// Times in increasing order, s.
         times_secs: Vec<f64>,
-        /// One angle per time, rad.
+        /// Angle at each time, rad. Only the differences between angles matter.
         angles: Vec<f64>,
     },
 }
 
 impl Motion {
-    /// Mean velocity prescribed by the course for the next `secs`.
+    /// Returns the mean velocity that the course prescribes for the next `secs` seconds.
     pub(crate) fn velocity_in(&self, secs: f64) -> RigidVelocity {
         let course = self.course.as_ref();
         course.map_or(RigidVelocity::NONE, |course| course.velocity_in(self.elapsed_secs, secs))
     }
 
-    /// The velocity from which the course passes smoothly to that of the next `secs`: for a sine, the mean over the
-    /// `secs` before. Other courses change velocity only by jumps, and a jump of a wall's velocity strikes the grains.
+    /// Returns the velocity that the bodies have just before a step of `secs` seconds. A sine or a swing moves
+    /// smoothly, so for these courses it is the mean velocity over the `secs` seconds before the step. The velocity
+    /// of other courses changes only by jumps, and after a jump the wall must strike the grains with its new
+    /// velocity. So for these courses it is the velocity of the step itself.
     pub(crate) fn velocity_before(&self, secs: f64) -> RigidVelocity {
         match &self.course {
             Some(course @ (MotionCourse::Sine { .. } | MotionCourse::Swing { .. })) => {
@@ -121,24 +126,27 @@ impl Motion {
         }
     }
 
-    /// A vector, of any length, along which the bodies move in a step, if they move straight.
+    /// Returns a vector of any length along which the bodies move in a step, or `None` if they do not move along a
+    /// line. `velocity` is the velocity of the step.
     pub(crate) fn direction(&self, velocity: &RigidVelocity) -> Option<DVec2> {
         match (&self.course, &self.drive) {
             (None, Some(drive)) => Some(drive.direction),
             (Some(MotionCourse::Straight { direction, .. }), None) => Some(*direction),
             (Some(MotionCourse::Sine { amplitude, .. }), None) => Some(*amplitude),
-            // Motion across the drive rubs, even while the drive is at rest.
+            // The course moves the bodies across the force of the drive, so their surface rubs against grains even
+            // while the force does not move it.
             (Some(_), Some(_)) => None,
             _ => (velocity.spin == 0.0).then_some(velocity.velocity),
         }
     }
 
-    /// True if the bodies turn about a pivot.
+    /// True if the course turns the bodies about a pivot.
     pub(super) fn turns(&self) -> bool {
         self.course.as_ref().is_some_and(|course| course.pivot().is_some())
     }
 
-    /// True if a straight course or a force moves the bodies along an axis: 0 is x, 1 is y.
+    /// True if a straight course or a drive moves the bodies along an axis. The index of the axis is 0 for x and 1
+    /// for y.
     pub(super) fn goes_along(&self, axis: usize) -> bool {
         self.drive.as_ref().is_some_and(|drive| drive.direction[axis] != 0.0)
             || match &self.course {
@@ -151,7 +159,7 @@ impl Motion {
             }
     }
 
-    /// Advances the state by `secs`, in which the bodies moved by `carry`.
+    /// Advances the stored progress by `secs` seconds, in which the bodies moved by the displacement `carry`.
     pub(crate) fn advance(&mut self, secs: f64, carry: &Carry) {
         self.elapsed_secs += secs;
         self.turned += carry.angle;
@@ -169,7 +177,7 @@ impl Motion {
 }
 
 impl MotionCourse {
-    /// The pivot, m, of a course that turns.
+    /// Returns the pivot of a course that turns, m. `None` for other courses.
     pub(super) fn pivot(&self) -> Option<DVec2> {
         match self {
             Self::Rotation { pivot, .. }
@@ -179,7 +187,7 @@ impl MotionCourse {
         }
     }
 
-    /// The mean velocity from time `elapsed` over the next `secs`.
+    /// Returns the mean velocity during the `secs` seconds that follow the time `elapsed` (s).
     fn velocity_in(&self, elapsed: f64, secs: f64) -> RigidVelocity {
         let times = [elapsed, elapsed + secs];
         match self {
@@ -209,25 +217,27 @@ impl MotionCourse {
     }
 }
 
-/// A speed, reduced so that it covers no more than the remaining travel in `secs`. Units follow those of the travel.
+/// Returns the speed, reduced so that in `secs` seconds it covers at most the remaining travel `left`. The travel is
+/// in m for a speed in m/s, and in rad for a speed in rad/s.
 pub(super) fn within(speed: f64, left: Option<f64>, secs: f64) -> f64 {
     left.map_or(speed, |left| speed.signum() * speed.abs().min(left / secs))
 }
 
-/// The unit vector at an angle (rad), with the same bits on every machine.
+/// Returns the unit vector at an angle (rad), with the same bits on every machine.
 pub(crate) fn direction(angle: f64) -> DVec2 {
     let (sin, cos) = libm::sincos(angle);
     DVec2::new(cos, sin)
 }
 
-/// The mean rate of sin(2πft + φ) between two times, 1/s.
+/// Returns the mean rate of change of sin(2πft + φ) between two times, 1/s, with the frequency f (Hz) and the phase φ
+/// (rad). The two times (s) are `secs` apart.
 fn sine_rate(frequency_hz: f64, phase: f64, times: [f64; 2], secs: f64) -> f64 {
     let [from, to] = times.map(|time| libm::sin(TAU * frequency_hz * time + phase));
     (to - from) / secs
 }
 
-/// The value of a table at a time: linear between rows, constant beyond them. The times increase, and there is at
-/// least one.
+/// Returns the value of a table at a time (s): linear between the rows, constant before the first and after the last
+/// row. The times increase, and there is at least one row.
 pub(super) fn at_time<T>(times_secs: &[f64], values: &[T], time: f64) -> T
 where
     T: Copy + std::ops::Add<Output = T> + std::ops::Sub<Output = T>,
@@ -241,22 +251,22 @@ where
     values[before] + part * (values[next] - values[before])
 }
 
-/// A force or pressure that moves the bodies of a motion along an axis, with their mass and damping. Weight does not
-/// act on it.
+/// A drive: a force or pressure that moves the bodies of a motion along a line, with the mass and damping of these
+/// bodies. Gravity does not act on them.
 ///
-/// It carries its own state: `speed` is the speed at the end of the last step.
+/// The drive stores its own state: `speed` is the speed at the end of the last step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drive {
-    /// Direction, of any length.
+    /// Direction in which the force acts. Its length does not matter.
     pub direction: DVec2,
-    /// Force along the direction, N.
+    /// Force along the direction of the drive, N.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force: Option<f64>,
-    /// Alternative to `force`: N along the direction per m of `width`.
+    /// Pressure, N/m: force along the direction per metre of `width`. An alternative to `force`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure: Option<f64>,
-    /// Width that the pressure acts on, m. Default: the period across the direction, if borders are periodic.
+    /// Width on which the pressure acts, m. Default: the size of the periodic cell across the direction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub width: Option<f64>,
     /// Total mass of the bodies of the motion, kg.
@@ -264,25 +274,26 @@ pub struct Drive {
     /// Damping force per speed, kg/s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub damping: f64,
-    /// Speed along the direction, m/s.
+    /// Speed along the direction of the drive, m/s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub speed: f64,
 }
 
 impl Drive {
-    /// Unit vector of the direction.
+    /// Returns the direction of the drive as a unit vector.
     pub fn axis(&self) -> DVec2 {
         self.direction.normalize_or_zero()
     }
 
-    /// The force along the axis, N.
+    /// Returns the force of the drive along its direction, N. If the drive has a pressure without a `width`, the
+    /// force depends on the periodic cell.
     pub fn force_in(&self, periodic: Option<Periodic>) -> f64 {
         let width = self.width.or_else(|| self.period_across(periodic));
         self.force.unwrap_or_else(|| self.pressure.unwrap_or(0.0) * width.unwrap_or(0.0))
     }
 
-    /// The period, m, along the axis perpendicular to the direction, if those borders wrap and the direction is along
-    /// an axis.
+    /// Returns the period of the cell perpendicular to the direction of the drive, m. `None` if the borders there are
+    /// not periodic or if the direction is not along the x or y axis.
     pub(super) fn period_across(&self, periodic: Option<Periodic>) -> Option<f64> {
         let [width, height] = periodic?.periods();
         let DVec2 { x, y } = self.direction;
@@ -295,7 +306,7 @@ impl Drive {
         }
     }
 
-    /// Kinetic energy ½mv², J.
+    /// Kinetic energy ½mv² of the driven bodies, J (m: mass, v: speed).
     pub fn kinetic_energy(&self) -> f64 {
         0.5 * self.mass * self.speed * self.speed
     }
@@ -304,24 +315,24 @@ impl Drive {
 /// Velocity of a rigid body during a step: a translation, or a rotation about a pivot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RigidVelocity {
-    /// Translation velocity, m/s; zero if the body turns.
+    /// Velocity of the translation, m/s; zero if the body rotates.
     pub velocity: DVec2,
     /// Angular velocity, rad/s, positive anticlockwise.
     pub spin: f64,
-    /// Pivot, m.
+    /// Pivot of the rotation, m.
     pub pivot: DVec2,
 }
 
-/// Displacement of a rigid body.
+/// Displacement of a rigid body in a step: a translation, or a rotation about a pivot.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Carry {
-    /// Translation, m; zero if the body turns.
+    /// Translation, m; zero if the body rotates.
     pub by: DVec2,
     /// Rotation angle, rad.
     pub angle: f64,
-    /// Pivot, m.
+    /// Pivot of the rotation, m.
     pub pivot: DVec2,
-    /// (cos, sin) of the angle.
+    /// Cosine and sine of the rotation angle.
     turn: DVec2,
 }
 
@@ -336,26 +347,28 @@ impl RigidVelocity {
         Self { spin, pivot, ..Self::NONE }
     }
 
-    /// The velocity of a point of the body, m/s.
+    /// Returns the velocity of the point of the body at `place`, m/s.
     #[inline]
     pub(crate) fn at(&self, place: DVec2) -> DVec2 {
         if self.spin == 0.0 { self.velocity } else { self.spin * (place - self.pivot).perp() }
     }
 
-    /// The mean velocity, m/s, in the next `secs` of the body's point now at `place`: (R − 1)(c − p)/Δt, with R the
-    /// rotation of the step.
+    /// Returns the mean velocity, m/s, in the next `secs` seconds, of the point c of the body that is now at `place`:
+    /// (R − 1)(c − p)/Δt, with the pivot p, the time Δt = `secs` and the rotation R during this time.
     #[inline]
     pub(crate) fn mean_from(&self, place: DVec2, secs: f64) -> DVec2 {
         self.mean(place, secs, -1.0)
     }
 
-    /// The mean velocity, m/s, in the last `secs` of the body's point now at `place`: (1 − R⁻¹)(c − p)/Δt.
+    /// Returns the mean velocity, m/s, in the last `secs` seconds, of the point c of the body that is now at `place`:
+    /// (1 − R⁻¹)(c − p)/Δt, with the pivot p, the time Δt = `secs` and the rotation R during this time.
     #[inline]
     pub(crate) fn mean_until(&self, place: DVec2, secs: f64) -> DVec2 {
         self.mean(place, secs, 1.0)
     }
 
-    /// The mean velocity of a point, with `sign` for the component towards or away from the pivot.
+    /// Returns the mean velocity of a point, m/s. `sign` is −1 for the next and +1 for the last `secs` seconds. It
+    /// determines if the component along the radius points towards the pivot or away from it.
     fn mean(&self, place: DVec2, secs: f64, sign: f64) -> DVec2 {
         if self.spin == 0.0 {
             return self.velocity;
@@ -377,7 +390,7 @@ impl RigidVelocity {
 }
 
 impl Carry {
-    /// The new position of a point of the body.
+    /// Returns the new position (m) of the point of the body that was at `place`.
     pub(crate) fn place(&self, place: DVec2) -> DVec2 {
         if self.angle == 0.0 {
             place + self.by
@@ -386,17 +399,17 @@ impl Carry {
         }
     }
 
-    /// A direction of the body after the displacement.
+    /// Returns the new direction of a vector that is fixed to the body.
     pub(crate) fn turned(&self, direction: DVec2) -> DVec2 {
         if self.angle == 0.0 { direction } else { self.turn.rotate(direction) }
     }
 
-    /// Longest displacement, m, of any point within `reach` of the pivot.
+    /// Returns an upper bound for the displacement, m, of any point within `reach` (m) of the pivot.
     pub(crate) fn longest_way(&self, reach: f64) -> f64 {
         self.by.length() + self.angle.abs() * reach
     }
 
-    /// True if the displacement is not zero.
+    /// True if the displacement (translation or rotation) is not zero.
     pub(crate) fn goes(&self) -> bool {
         self.by != DVec2::ZERO || self.angle != 0.0
     }
@@ -416,7 +429,7 @@ mod tests {
         assert_eq!(at_time(&[1.0], &[7.0], 2.0), 7.0);
     }
 
-    /// The displacements of steps of any length add up to the course's.
+    /// Checks that the displacements of steps of different lengths add up to the displacement of the course.
     #[test]
     fn steps_add_up_to_the_course() {
         let pivot = DVec2::new(1.0, -2.0);

@@ -1,4 +1,4 @@
-//! Checks of a scene's motions and drives.
+//! Checks of the motions and drives of a scene. A drive is a force or pressure that moves boundaries.
 
 use std::fmt::Display;
 
@@ -7,7 +7,8 @@ use glam::DVec2;
 use super::{Boundary, Drive, Motion, MotionCourse, Periodic};
 use crate::error::{self, Error, Result};
 
-/// Checks motions against the scene's boundaries, number of fixed discs, number of axes and periodic borders.
+/// Checks motions against the boundaries of a scene, its number of fixed discs, its number of axes and its periodic
+/// borders.
 pub(super) fn check_motions(
     motions: &[Motion],
     boundaries: &[Boundary],
@@ -50,9 +51,9 @@ pub(super) fn check_motions(
     Ok(())
 }
 
-/// Checks that the drive of a motion suits its course.
+/// Checks that a motion's force (drive) is compatible with its prescribed course.
 fn check_drive(motion: &Motion, field: &str, periodic: Option<Periodic>) -> Result<()> {
-    /// Largest cosine of two directions that count as perpendicular, which allows for rounding.
+    /// Largest cosine of the angle between two directions that count as perpendicular. It allows for rounding.
     const PERPENDICULAR: f64 = 1e-9;
     let Some(drive) = &motion.drive else { return Ok(()) };
     drive.check(&format!("{field}.drive"), periodic)?;
@@ -148,7 +149,8 @@ pub(super) fn check_table(
 }
 
 impl Drive {
-    /// Checks the numbers of a drive; `field` is its name in messages.
+    /// Checks the numbers of a drive (a force or pressure that moves boundaries). `field` is the name of the drive in
+    /// error messages.
     fn check(&self, field: &str, periodic: Option<Periodic>) -> Result<()> {
         let refuse = |name: &str, found: String, allowed: &str| {
             Err(Error::value(format!("{field}.{name}"), found, allowed))

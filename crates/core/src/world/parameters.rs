@@ -1,11 +1,11 @@
-//! Parameters of the contact laws and the time step. They may change between any two steps.
+//! The parameters of the contact laws, and the time step. They may change between any two steps.
 
 use crate::error::{Error, Result};
 use crate::number::is_zero;
 use crate::setting::{settings, words};
 
 words! {
-    /// The part of the normal force that bounds friction (the paper allows both readings).
+    /// The part of the normal force that bounds the friction force T (the paper allows both readings).
     #[derive(Default)]
     pub enum FrictionCone {
         #[default]
@@ -14,27 +14,30 @@ words! {
     }
 }
 
-/// Default of δ_c, in mean diameters.
+/// Default of the debonding distance δ_c (opening at which a bond of the law `range` breaks), in mean diameters.
 pub const DEBONDING_DISTANCE: f64 = 0.01;
 
-/// Default of the touch tolerance, in mean diameters. The smallest at which discs written as touching do touch and a
-/// pyramid of logs in equilibrium stands.
+/// Default of the touch tolerance (largest gap at which grains touch), in mean diameters. With a smaller tolerance,
+/// discs that a scene file places in contact would not touch because of rounding, and a pyramid of logs in
+/// equilibrium would not stand.
 const TOUCH_TOLERANCE: f64 = 1e-5;
 
-/// Limit for substeps. With more, a single step of a pile would take many seconds.
+/// Largest allowed number of substeps per step. With more, a single step of a pile would take many seconds.
 pub(crate) const MAX_SUBSTEPS: u32 = 100_000;
 
-/// Limit for the steps of a run. More steps take months even in the smallest scene.
+/// Largest allowed number of steps of a run. More steps take months even in the smallest scene.
 const MOST_STEPS: f64 = 1e12;
-/// Time steps below this are named as the cause of too many steps.
+/// If a run has too many steps, the error message names the time step as the cause if it is below this value.
 const SMALL_TIME_STEP_SECS: f64 = 1e-7;
 
 settings! {
-    /// Parameters that may change between any two steps. Plain data, checked when a simulation takes them over.
+    /// Parameters that may change between any two steps. The fields are public, and a simulation checks them when it
+    /// takes them over.
     ///
-    /// The default is the paper's scheme at Δt = 1e-3 s, without cohesion, restitution or friction.
+    /// The default is the paper's scheme at a time step of 1e-3 s, without cohesion, restitution or friction.
     pub struct Parameters, changes ParameterChanges, heading "Physics" {
-        /// Bond number: C₀ = Bond · m_ij · a (paper eq. 10), where a is [`Parameters::cohesion_acceleration`].
+        /// The cohesion force is C₀ = Bond · m_ij · a (paper eq. 10), with the effective mass m_ij and the
+        /// acceleration a of [`Parameters::cohesion_acceleration`].
         bond: f64 = 0.0, "bond" ("BOND"), "Bond number: cohesion force divided by the effective weight of a \
             contact, at least 0; pairs of materials may have their own", {
             allowed: "a finite number ≥ 0",
@@ -71,7 +74,7 @@ settings! {
                 logarithmic: true,
             }),
         }
-        /// Restitution ρ, 0 … 1.
+        /// Restitution ρ, from 0 to 1.
         restitution: f64 = 0.0, "rho" ("RHO"), "Restitution, 0 to 1; pairs of materials may have \
             their own", {
             allowed: "between 0 and 1",
@@ -103,8 +106,9 @@ settings! {
             "Part of the normal force that bounds friction", {
             needs: Needs::Friction,
         }
-        /// Rolling friction μ_r: the moment M of a contact obeys |M| ≤ μ_r R N, with 1/R = 1/r_i + 1/r_j and the part
-        /// of N that bounds friction.
+        /// The moment M (N·m) of a contact obeys |M| ≤ μ_r R N, with the coefficient of rolling friction μ_r, the
+        /// reduced radius R (m) of the two bodies from 1/R = 1/r_i + 1/r_j, and that part N (N) of the normal force
+        /// that bounds friction.
         #[serde(default, skip_serializing_if = "is_zero")]
         rolling_friction: f64 = 0.0, "rolling-friction" ("MU_R"),
             "Rolling friction of moreau, at least 0: the largest moment against rolling, divided by the reduced radius \
@@ -122,10 +126,11 @@ settings! {
                 ..Control::PLAIN
             }),
         }
-        /// Contacts whose |v_n^{n−1}| is below this many g·Δt do not bounce; 0 in the paper's scheme.
+        /// Contacts do not bounce if their closing speed |v_n| at the beginning of the step is below this many g·Δt
+        /// (gravity times time step). 0 in the paper's scheme.
         ///
-        /// The term ρ v_n^{n−1} of a wedged contact can contradict that of its neighbours, and the step then has no
-        /// solution. Bounces slower than about 2 g·Δt are too small to be seen.
+        /// The restitution term ρ v_n of a contact that is wedged between others can contradict the terms of its
+        /// neighbours, and then the step has no solution. Bounces slower than about 2 g·Δt are too small to be seen.
         #[serde(default)]
         restitution_threshold: f64 = 0.0, "restitution-threshold" ("X"),
             "Contacts that close slower than this many g·dt do not bounce; the paper has 0; with 2 nearly every \
@@ -133,8 +138,8 @@ settings! {
             allowed: "a finite number ≥ 0",
             holds: |value| value >= 0.0 && value.is_finite(),
         }
-        /// Debonding distance δ_c of the law `range`, in mean diameters. The upper limit leaves no room for a third
-        /// grain between two bonded ones.
+        /// Debonding distance δ_c of the law `range`: the opening at which a bond breaks, in mean diameters. The
+        /// upper limit is so small that a third grain does not fit between two bonded grains.
         #[serde(default = "default_debonding_distance")]
         debonding_distance: f64 = DEBONDING_DISTANCE, "debonding-distance" ("D"),
             "Distance by which a bond of the stepper range opens before it breaks, in mean diameters", {
@@ -151,8 +156,8 @@ settings! {
                 ..Control::PLAIN
             }),
         }
-        /// Touch tolerance, in mean diameters. The upper limit leaves no room for a third grain between two bonded
-        /// ones.
+        /// Touch tolerance: the largest gap at which grains touch, in mean diameters. The upper limit is so small
+        /// that a third grain does not fit between two bonded grains.
         #[serde(default = "default_touch_tolerance")]
         touch_tolerance: f64 = TOUCH_TOLERANCE, "touch-tolerance" ("D"),
             "Largest gap at which grains touch, and cohere if they have cohesion, in mean diameters; they push each \
@@ -202,7 +207,7 @@ settings! {
             }),
         }
         /// Damping ratio ζ of a single contact of the stepper `dem`, relative to critical damping. 0 means the ratio
-        /// that follows from ρ; a contact without damping is still possible with ρ = 1.
+        /// that follows from the restitution ρ. For a contact without damping, set ρ to 1.
         #[serde(default, skip_serializing_if = "is_zero")]
         damping_ratio: f64 = 0.0, "damping-ratio" ("ZETA"),
             "Damping ratio of the contacts of the stepper dem; 0 derives it from rho", {
@@ -242,20 +247,21 @@ fn default_debonding_distance() -> f64 {
 }
 
 impl Parameters {
-    /// The same parameters with another Δt, s.
+    /// Returns these parameters with another time step, s.
     pub fn over(self, time_step_secs: f64) -> Self {
         Self { time_step_secs, ..self }
     }
 
-    /// Number of steps in a simulated time (s).
+    /// Returns the number of steps in a simulated time (s).
     pub fn steps_in(&self, secs: f64) -> u64 {
         (secs / self.time_step_secs).round() as u64
     }
 
-    /// Checks that a simulated time (s) takes a practicable number of steps.
+    /// Checks that a simulated time (s) does not take more steps than a run may have.
     ///
     /// # Errors
-    /// Names `field`, the option that sets the time, or Δt if that is unusually small.
+    /// If it takes too many steps. The error names `field`, the option that sets the time, or the time step if that
+    /// is unusually small.
     pub fn check_steps(&self, field: &str, secs: f64) -> Result<()> {
         let steps = secs / self.time_step_secs;
         if steps <= MOST_STEPS {
@@ -272,13 +278,15 @@ impl Parameters {
         })
     }
 
-    /// ρ v_n^{n−1}, m/s, of a contact with this normal velocity at the beginning of the step.
+    /// Returns the restitution term ρ v_n of a contact, m/s, from its normal velocity v_n (m/s) at the beginning of
+    /// the step. 0 if the contact is so slow that it does not bounce.
     pub fn restitution_velocity(&self, normal_velocity: f64, gravity_magnitude: f64) -> f64 {
         let least = self.restitution_threshold * gravity_magnitude * self.time_step_secs;
         if normal_velocity.abs() < least { 0.0 } else { self.restitution * normal_velocity }
     }
 
-    /// a in C₀ = Bond · m_ij · a, m/s²: the parameter if given, otherwise the scene's gravity.
+    /// Returns the acceleration a in the cohesion force C₀ = Bond · m_ij · a, m/s²: the parameter `bond_acceleration`
+    /// if it is given, otherwise the gravity of the scene.
     pub fn cohesion_acceleration(&self, gravity_magnitude: f64) -> f64 {
         match self.bond_acceleration {
             0.0 => gravity_magnitude,
@@ -286,7 +294,8 @@ impl Parameters {
         }
     }
 
-    /// Acceleration that relates lengths and speeds, m/s²: the scene's gravity, or a in scenes without gravity.
+    /// Returns the acceleration that relates lengths and speeds, m/s²: the gravity of the scene, or
+    /// `bond_acceleration` in a scene without gravity.
     pub fn accelerating(&self, gravity_magnitude: f64) -> f64 {
         match gravity_magnitude {
             0.0 => self.bond_acceleration,
@@ -294,7 +303,9 @@ impl Parameters {
         }
     }
 
-    /// Dimensionless Bond·a·Δt/√(g·d), which is Bond·Δt/√(d/g) if a is g (paper §3.3). Without gravity, a replaces g.
+    /// Returns the dimensionless cohesive time Bond·a·Δt/√(g·d), with the acceleration a of cohesion, the time step
+    /// Δt, gravity g and the mean diameter d. If a is g, it equals Bond·Δt/√(d/g) (paper §3.3). Without gravity, a
+    /// replaces g.
     pub fn cohesive_time(&self, mean_diameter: f64, gravity_magnitude: f64) -> f64 {
         let g = self.accelerating(gravity_magnitude);
         let ratio = match self.bond_acceleration {
@@ -304,7 +315,8 @@ impl Parameters {
         ratio * self.bond * self.time_step_secs / (mean_diameter / g).sqrt()
     }
 
-    /// Bond·a·Δt, m/s: the opening speed that one step of cohesion cancels (paper eq. 9).
+    /// Returns the capture speed Bond·a·Δt, m/s: the opening speed that one step of cohesion cancels (paper eq. 9; a:
+    /// acceleration of cohesion, Δt: time step).
     pub fn capture_speed(&self, gravity_magnitude: f64) -> f64 {
         self.bond * self.cohesion_acceleration(gravity_magnitude) * self.time_step_secs
     }

@@ -1,73 +1,77 @@
-//! A periodic cell, whose opposite borders are identified: a grain that leaves on one side re-enters on the other.
+//! Periodic cells: opposite borders are identified, so that a grain that leaves on one side re-enters on the other.
 //!
-//! **Sheared borders** are layers of cells that slide over one another, so that the grains flow without walls (A. W.
-//! Lees, S. F. Edwards, *The computer study of transport processes under extreme conditions*, J. Phys. C 5, 1972).
+//! **Sheared borders.** The cells above and below slide along x, so that the grains flow without walls (A. W. Lees,
+//! S. F. Edwards, *The computer study of transport processes under extreme conditions*, J. Phys. C 5, 1972). The cell
+//! k heights above the cell of the simulation is shifted by k·s along x (m), and moves along x at the speed k·U
+//! (m/s):
 //!
-//! The cell k heights above this one is shifted by k·s along x, and moves along x at k·U relative to it:
+//! > U = γ̇ L_y,  ds/dt = U,  and s is equivalent to s − L_x,
 //!
-//! > U = γ̇ L_y,  ds/dt = U,  and s is equivalent to s − L_x.
+//! with the shear rate γ̇ (1/s), the width L_x and the height L_y (m) of the cell. So the image of a grain in the
+//! cell k heights above is at x + (k s, k L_y) and has the velocity v + (k U, 0). A grain that leaves through the
+//! upper border re-enters as its image from the cell below: its x is reduced by s and its v_x by U. The position of
+//! the borders does not matter: moving them only adds a constant velocity to the flow.
 //!
-//! So the image of a grain in that cell is at x + (k s, k L_y) and has velocity v + (k U, 0). A grain that leaves
-//! through the upper border re-enters as its image from the cell below: its x is reduced by s and its v_x by U. The
-//! position of the borders does not matter: moving them only adds a constant velocity to the flow.
-//!
-//! **Offsets** are first made upright, by undoing the shift of their whole heights, and then each axis wraps
-//! separately. The result is the nearest image for any pair less than half a height apart, and so for any touching
-//! pair.
+//! **Offsets** between two points are reduced to the shortest vector in two steps. The first step counts the whole
+//! cell heights in the offset and subtracts the shift s of that many cells. Then each axis wraps separately. The
+//! result is the nearest image for any pair that is less than half a height apart, and so for any touching pair.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::number::is_zero;
 
-/// Periodic borders: left and right, below and above, or both. The scene repeats without end with that period.
+/// Periodic borders: left and right, below and above, or both. The scene repeats endlessly with the period of the
+/// cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Periodic {
-    /// x of the left and the right border, m; `None` if they do not wrap.
+    /// x of the left and the right border, m. `None` if the cell is not periodic along x.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub x: Option<[f64; 2]>,
-    /// y of the lower and the upper border, m; `None` if they do not wrap.
+    /// y of the lower and the upper border, m. `None` if the cell is not periodic along y.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub y: Option<[f64; 2]>,
-    /// Shear rate γ̇, 1/s: the cell above moves along x at γ̇ times the cell height, relative to this one.
+    /// Shear rate γ̇, 1/s. The image of the cell directly above moves along x at γ̇ times the height of the cell.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub shear_rate: f64,
-    /// Present shift of the cell above along x, m; at most one width to either side at the start.
+    /// Present shift along x of the image of the cell directly above, m. At the start at most one width to either
+    /// side.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub shift: f64,
 }
 
 impl Periodic {
-    /// A cell whose left and right borders wrap, m.
+    /// Returns a cell with periodic left and right borders at these x coordinates, m.
     pub const fn along_x(x: [f64; 2]) -> Self {
         Self { x: Some(x), y: None, shear_rate: 0.0, shift: 0.0 }
     }
 
-    /// A cell whose four borders wrap, m.
+    /// Returns a cell with four periodic borders at these x and y coordinates, m.
     pub const fn along_both(x: [f64; 2], y: [f64; 2]) -> Self {
         Self { x: Some(x), y: Some(y), shear_rate: 0.0, shift: 0.0 }
     }
 
-    /// Width and height of the cell, m, each if its borders wrap.
+    /// Returns the width and the height of the cell, m. `None` for an axis without periodic borders.
     pub fn periods(self) -> [Option<f64>; 2] {
         [self.x, self.y].map(|borders| borders.map(period))
     }
 
-    /// 1 along each axis whose borders wrap, and 0 along the others.
+    /// Returns 1 for each axis with periodic borders, and 0 for each other axis.
     pub(crate) fn axes(self) -> DVec2 {
         DVec2::from(self.periods().map(|period| if period.is_some() { 1.0 } else { 0.0 }))
     }
 
-    /// Corners of an upright box, m, with the borders replacing its sides along each axis that wraps.
+    /// Returns the lower left and the upper right corner of a box, m. On periodic axes the borders replace the sides
+    /// of the given box.
     pub fn borders_or(self, [low, high]: [DVec2; 2]) -> [DVec2; 2] {
         let [left, right] = self.x.unwrap_or([low.x, high.x]);
         let [below, above] = self.y.unwrap_or([low.y, high.y]);
         [DVec2::new(left, below), DVec2::new(right, above)]
     }
 
-    /// The image of a place in the cell, m; the left and the lower border belong to the cell. A place already in the
-    /// cell keeps all its bits.
+    /// Returns the image of a point that is in the cell, m. The left and the lower border belong to the cell. A point
+    /// that is already in the cell is returned unchanged, bit for bit.
     pub fn wrap(self, place: DVec2) -> DVec2 {
         let x = match self.is_sheared() {
             true => place.x - self.lean(self.cells_above(place.y)),
@@ -76,23 +80,24 @@ impl Periodic {
         DVec2::new(wrapped(self.x, x), wrapped(self.y, place.y))
     }
 
-    /// The shortest vector that equals `offset` up to whole periods, m. An offset below half a period keeps all its
-    /// bits.
+    /// Returns the shortest vector that equals `offset` except for whole periods, m. An offset below half a period is
+    /// returned unchanged, bit for bit.
     #[inline]
     pub fn shortest(self, offset: DVec2) -> DVec2 {
         let offset = if self.is_sheared() { self.upright(offset) } else { offset };
         DVec2::new(shortest(self.x, offset.x), shortest(self.y, offset.y))
     }
 
-    /// Number of whole periods along each axis by which `offset` (m) exceeds the shortest vector; 0 along axes that
-    /// do not wrap.
+    /// Returns the number of whole periods along each axis by which `offset` (m) exceeds the shortest equivalent
+    /// vector. 0 along axes without periodic borders.
     pub(crate) fn whole(self, offset: DVec2) -> DVec2 {
         let offset = if self.is_sheared() { self.upright(offset) } else { offset };
         DVec2::new(periods_in(self.x, offset.x), periods_in(self.y, offset.y))
     }
 
-    /// Displacements (m) to the other images of a shape that reach into the cell, given the corners of the shape's
-    /// bounding box. A shape inside the cell, up to rounding, has none.
+    /// Returns the displacements (m) from a shape to those of its images that reach into the cell. The arguments are
+    /// the corners of the bounding box of the shape. A shape inside the cell, except for rounding, has no such
+    /// images.
     pub fn images(self, [low, high]: [DVec2; 2]) -> impl Iterator<Item = DVec2> {
         let middle = 0.5 * (low.x + high.x);
         let along_y = reaching(self.y, [low.y, high.y]).into_iter().flatten();
@@ -104,7 +109,8 @@ impl Periodic {
         all.filter(|by| *by != DVec2::ZERO)
     }
 
-    /// Displacements (m) of a place to itself and to its images one period to either side.
+    /// Returns the displacements (m) from a point to itself and to its images one period to either side along each
+    /// axis.
     pub fn around(self) -> impl Iterator<Item = DVec2> {
         let [along_x, along_y] =
             self.periods().map(|period| [Some(0.0), period, period.map(|by| -by)]);
@@ -114,7 +120,7 @@ impl Periodic {
         })
     }
 
-    /// The image of `place` nearest to `other`, m.
+    /// Returns the image of `place` that is nearest to `other`, m.
     pub fn near(self, place: DVec2, other: DVec2) -> DVec2 {
         if self.is_sheared() {
             return other - self.shortest(other - place);
@@ -134,7 +140,8 @@ pub(super) fn period([low, high]: [f64; 2]) -> f64 {
     high - low
 }
 
-/// Number of whole periods in an offset, rounded to the nearest; 0 if the axis does not wrap.
+/// Returns the number of whole periods in an offset (m), rounded to the nearest integer. 0 for an axis without
+/// periodic borders.
 #[inline]
 pub(super) fn periods_in(borders: Option<[f64; 2]>, offset: f64) -> f64 {
     borders.map_or(0.0, |borders| (offset / period(borders)).round())
@@ -145,7 +152,7 @@ pub(super) fn wrapped(borders: Option<[f64; 2]>, at: f64) -> f64 {
         return at;
     };
     let wrapped = at - (high - low) * ((at - low) / (high - low)).floor();
-    // Rounding may give the upper border, which is the lower one. NaN stays NaN.
+    // Rounding may give the upper border, which is equivalent to the lower border. NaN stays NaN.
     if wrapped >= high || wrapped < low { low } else { wrapped }
 }
 
@@ -157,8 +164,8 @@ pub(super) fn shortest(borders: Option<[f64; 2]>, offset: f64) -> f64 {
     })
 }
 
-/// Displacements along an axis to the images of an interval that overlap the cell, starting with 0 for the interval
-/// itself.
+/// Returns the displacements (m) along one axis to those images of an interval that overlap the cell. The first
+/// displacement is 0, for the interval itself.
 fn reaching(borders: Option<[f64; 2]>, [from, to]: [f64; 2]) -> [Option<f64>; 3] {
     let over = borders.map_or([None; 2], |[low, high]| {
         let period = high - low;
@@ -169,53 +176,57 @@ fn reaching(borders: Option<[f64; 2]>, [from, to]: [f64; 2]) -> [Option<f64>; 3]
 }
 
 impl Periodic {
-    /// True if the cells above and below are shifted, or are moving.
+    /// True if the images of the cell above and below are shifted or move (sheared borders).
     #[inline(always)]
     pub fn is_sheared(self) -> bool {
         self.shear_rate != 0.0 || self.shift != 0.0
     }
 
-    /// Border speed U, m/s.
+    /// Returns the speed U of the image of the cell directly above, m/s.
     pub fn border_speed(self) -> f64 {
         self.shear_rate * self.y.map_or(0.0, period)
     }
 
-    /// Speed along x, m/s, of a disc's nearest image relative to the disc, as seen by another disc at `offset` (m).
+    /// Returns the speed along x of a periodic image of a disc relative to the disc itself, m/s. The image is the one
+    /// that is nearest to another disc, and `offset` (m) is the vector from the disc to this other disc.
     #[inline]
     pub(crate) fn speed_of_image(self, offset: DVec2) -> f64 {
         self.border_speed() * periods_in(self.y, offset.y)
     }
 
-    /// Advances the shift of the cells by `secs`.
+    /// Advances the shift of the images of the cell by `secs` seconds.
     pub(crate) fn slide(&mut self, secs: f64) {
         if self.shear_rate != 0.0 {
             self.shift = shortest(self.x, self.shift + secs * self.border_speed());
         }
     }
 
-    /// An offset without the shift of its whole heights.
+    /// Returns an offset (m) between two points minus the shift of sheared cells in it: the shift along x from one
+    /// cell to the next, times the number of whole cell heights in the offset.
     #[inline]
     pub(super) fn upright(self, offset: DVec2) -> DVec2 {
         DVec2::new(offset.x - self.lean(periods_in(self.y, offset.y)), offset.y)
     }
 
-    /// How many cells above this one the height `y` is.
+    /// Returns the number of cell heights by which the cell that contains the height `y` (m) is above the cell of the
+    /// simulation.
     pub(super) fn cells_above(self, y: f64) -> f64 {
         periods_in(self.y, y - wrapped(self.y, y))
     }
 
-    /// Shift of the cell that is `cells` above this one, m.
+    /// Returns the shift along x of the image of the cell that is `cells` heights higher, m.
     #[inline]
     pub(super) fn lean(self, cells: f64) -> f64 {
         cells * self.shift
     }
 
-    /// Shift of the cell that is `height` (m) above this one, m.
+    /// Returns the shift along x of the image of the cell that is `height` (m) higher, m.
     pub(super) fn lean_of(self, height: f64) -> f64 {
         self.lean(periods_in(self.y, height))
     }
 
-    /// Like `lean_of`, reduced by whole widths so that a place at `x` (m) lands in the cell.
+    /// Returns the shift along x of the image of the cell that is `height` (m) higher, m. It is reduced by whole cell
+    /// widths so that a point at `x` (m) is in the cell after the shift.
     pub(crate) fn lean_into_cell(self, x: f64, height: f64) -> f64 {
         let lean = self.lean_of(height);
         if lean == 0.0 { 0.0 } else { wrapped(self.x, x + lean) - x }
@@ -240,7 +251,7 @@ mod tests {
         }
         let inside = 0.123_456_789;
         assert_eq!(CELL.wrap(DVec2::new(inside, 0.0)).x.to_bits(), inside.to_bits());
-        // A place within rounding of the left border is mapped to either border.
+        // A point that is outside the left border only by rounding must still be mapped into the cell.
         let hair = CELL.wrap(DVec2::new(f64::from_bits((-0.3f64).to_bits() + 1), 0.0));
         assert!((-0.3..0.7).contains(&hair.x));
         assert!(CELL.wrap(DVec2::NAN).x.is_nan());
@@ -300,7 +311,7 @@ mod tests {
             assert!(cell.shift.abs() <= 0.5, "{}", cell.shift);
             for k in 0..200 {
                 let turn = f64::from(k) * 0.7;
-                // Shorter than half a width, so it is the nearest of all images.
+                // The offset is shorter than half a width, so it is the offset to the nearest image.
                 let short = 0.49 * (0.1 + 0.9 * f64::from(k) / 200.0) * DVec2::from_angle(turn);
                 for (by_x, by_y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (-2.0, 1.0), (1.0, -2.0)] {
                     let image = DVec2::new(by_x + by_y * cell.shift, 2.0 * by_y);
@@ -328,9 +339,9 @@ mod tests {
                 assert!(found.distance(DVec2::from(*expected)) < 1e-12, "{found} {expected:?}");
             }
         };
-        // A disc half below the cell appears at its top, shifted by 0.4.
+        // An image of a disc that is partly below the cell appears at the top of the cell, shifted by 0.4.
         near(found(0.1, 2.05), &[[0.4, 2.0]]);
-        // This one straddles the right border.
+        // The next disc also has an image that crosses the right border.
         near(found(0.25, 2.05), &[[0.4, 2.0], [-0.6, 2.0]]);
         near(found(0.5, 2.05), &[[-0.6, 2.0]]);
         near(found(0.5, 3.95), &[[-0.4, -2.0]]);

@@ -1,28 +1,30 @@
-//! Checks that periodic borders suit the bodies, boundaries and gravity of a scene.
+//! Checks that periodic borders are compatible with the bodies, boundaries and gravity of a scene.
 
 use glam::DVec2;
 
 use super::{Boundary, Gravity, Motion, Periodic, Physics};
 use crate::error::{Error, Result};
 
-/// Narrowest cell, in diameters of its largest disc. In a narrower cell a disc and its images leave no room to pass.
+/// Smallest allowed width or height of a periodic cell, in diameters of its largest disc. In a narrower cell nothing
+/// can pass between a disc and its own images.
 const LEAST_DIAMETERS: f64 = 3.0;
-/// Largest surface distance of interacting discs, in mean diameters: above the longest bond
+/// Largest gap between interacting discs, in mean diameters. It is larger than the longest bond
 /// ([`Parameters::debonding_distance`](super::Parameters)).
 const FELT_IN_DIAMETERS: f64 = 0.2;
 
-/// An axis along which borders wrap.
+/// An axis with periodic borders.
 #[derive(Clone, Copy)]
 struct Wrapping {
-    /// Name of its borders in messages.
+    /// Name of the borders in error messages.
     field: &'static str,
-    /// 0 for x, 1 for y.
+    /// Index of the axis: 0 for x, 1 for y.
     axis: usize,
     borders: [f64; 2],
 }
 
 impl Periodic {
-    /// Checks the borders against the world; `lengths` are the radius of the largest disc and d, m.
+    /// Checks the borders against the bodies of the world. `lengths` are the radius of the largest disc and the mean
+    /// diameter d, both in m.
     pub(crate) fn check(
         self,
         boundaries: &[Boundary],
@@ -53,7 +55,8 @@ impl Periodic {
         Ok(())
     }
 
-    /// Checks that sheared borders have finite rates, both axes, friction and rotation, and no fixed bodies.
+    /// Checks sheared borders: their rates must be finite, both axes must be periodic, the physics must include
+    /// friction and rotation, and there must be no fixed bodies.
     fn check_shear(self, fixed_bodies: usize, physics: Physics) -> Result<()> {
         let Self { shear_rate, shift, .. } = self;
         let numbers = [("periodic.shear_rate", shear_rate), ("periodic.shift", shift)];
@@ -102,7 +105,7 @@ impl Wrapping {
         if !(low.is_finite() && high.is_finite() && period.is_finite()) {
             return Err(Error::value(self.field, found(), "two finite numbers of m"));
         }
-        // A disc must not interact with two images of the same other disc.
+        // A disc must not interact with two periodic images of the same other disc.
         let largest_diameter = 2.0 * largest_radius;
         let felt = FELT_IN_DIAMETERS * mean_diameter;
         let least = (LEAST_DIAMETERS * largest_diameter).max(2.0 * (largest_diameter + felt));

@@ -1,25 +1,27 @@
-//! The parts of mechanics that a scene needs.
+//! The effects (axes, friction, rotation, cohesion) that the mechanics of a scene includes.
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 
-/// The physics that a scene needs. Steps are compiled separately for each combination.
+/// The effects that the mechanics of a scene includes. The code of a step is compiled separately for each
+/// combination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Physics {
-    /// Number of axes: 1 (all on the x axis) or 2.
+    /// Number of axes: 1 (all bodies are on the x axis) or 2.
     pub axes: u8,
-    /// True if contacts carry tangential impulses.
+    /// True if contacts transmit tangential impulses.
     pub friction: bool,
-    /// True if grains turn. Requires friction, because without friction nothing changes a disc's spin.
+    /// True if grains rotate. Requires friction, because without friction nothing changes the angular velocity of a
+    /// disc.
     pub rotation: bool,
-    /// True if contacts can pull.
+    /// True if contacts can pull (cohesion).
     pub cohesion: bool,
 }
 
 impl Physics {
-    /// Two axes, friction, rotation and cohesion.
+    /// Mechanics with two axes, friction, rotation and cohesion.
     pub const FULL: Self = Self { axes: 2, friction: true, rotation: true, cohesion: true };
 
     pub(crate) fn validate(&self) -> Result<()> {

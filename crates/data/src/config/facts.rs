@@ -1,4 +1,5 @@
-//! Facts about a recording: all values of its scene, and all changes during the run.
+//! Collects facts about a recorded run, for the metadata of its files: all values of the scene, and all changes of
+//! settings during the run.
 
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
@@ -8,13 +9,13 @@ use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::sim::Settings;
 
-/// Values that are left out: they are in the tables, or concern the recording itself.
+/// Names of values of a scene that are not written as facts: they are in the tables, or concern the recording itself.
 const LEFT_OUT: [&str; 4] = ["grains", "fixed_discs", "source", "data"];
 
-/// Name of the fact that lists the changes.
+/// Name of the fact that lists the changes of settings during the run.
 const CHANGES: &str = "changes";
 
-/// All values of a scene except its discs, as facts of a recording, with the program's version.
+/// Returns all values of a scene except its discs, as facts about a recording. The first fact is the program's version.
 ///
 /// # Errors
 /// If a value cannot be written as JSON.
@@ -35,8 +36,9 @@ pub fn scene_facts(scene: &Scene) -> Result<RunFacts> {
     Ok(RunFacts { facts })
 }
 
-/// The facts of a scene and the changes of its settings during the run. Each change has the number of its step, its
-/// simulated time in seconds, and the values of the changed settings from then on.
+/// Returns the facts about a scene and the changes of its settings during the run. Each element of `changes` has the
+/// number of the step after which the settings changed, its simulated time in seconds, and the new settings. Settings
+/// that did not change are not written.
 ///
 /// # Errors
 /// As [`scene_facts`].
@@ -61,7 +63,7 @@ pub fn run_facts(scene: &Scene, changes: &[(u64, f64, Settings)]) -> Result<RunF
     Ok(run)
 }
 
-/// The values of serialisable data, by name.
+/// Returns the values of serialisable data of a scene, by their dotted names, without the values in [`LEFT_OUT`].
 fn values_of(scene: &Scene, something: &impl Serialize) -> Result<Map<String, Json>> {
     let said = serde_json::to_value(something)
         .map_err(|error| Error::value("scene", &scene.name, error.to_string()))?;
@@ -74,13 +76,14 @@ fn values_of(scene: &Scene, something: &impl Serialize) -> Result<Map<String, Js
     Ok(values)
 }
 
-/// All settings, including those that are off, which scene files leave out.
+/// Returns all settings as JSON, including settings that are switched off, which scene files leave out.
 fn all_settings(settings: &Settings) -> Json {
     let Settings { stepper, parameters, solver, remedies } = settings;
     json!({ "stepper": stepper, "parameters": parameters, "solver": solver, "remedies": remedies })
 }
 
-/// Adds a value by its name. For a table, adds its values by dotted names.
+/// Adds a value to `values` under its name. For a table, adds each value of the table under a dotted name such as
+/// `parameters.bond`.
 fn flatten(name: &str, value: &Json, values: &mut Map<String, Json>) {
     match value {
         Json::Object(table) => {
@@ -96,7 +99,7 @@ fn flatten(name: &str, value: &Json, values: &mut Map<String, Json>) {
 
 fn one_line(value: &Json) -> String {
     match value {
-        // Removes line breaks, because a fact must fit on one comment line.
+        // Line breaks become spaces, because a fact must fit on one comment line.
         Json::String(text) => text.replace(char::is_control, " "),
         other => other.to_string(),
     }

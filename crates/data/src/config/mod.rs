@@ -1,4 +1,4 @@
-//! The request for a run, as options, a scene file, a line of a study, or a saved run.
+//! Reads and writes requests for runs: options of the command line, scene files, lines of a study, and saved runs.
 
 mod facts;
 mod option_words;

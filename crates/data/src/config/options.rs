@@ -1,5 +1,5 @@
-//! Converts a [`Config`] to and from options of the command line, and a flat table with the same names in studies and
-//! journals. Also makes one-sentence messages of errors in a command line.
+//! Converts a [`Config`], the request for a run, to and from options of the command line, and to and from a flat table
+//! with the same names in studies and journals. Also turns errors in a command line into messages of one sentence.
 
 use std::error::Error as _;
 use std::fmt;
@@ -18,12 +18,14 @@ use crate::setting::{About, Changes, Kind, Value};
 use crate::sim::Settings;
 
 impl Config {
-    /// The names of all fields, as they appear on the command line and in study files.
+    /// Returns the names of all options with which a run can be requested, as they appear on the command line and in
+    /// study files.
     pub fn names() -> Vec<String> {
         Self::options().into_iter().map(|(name, _)| name).collect()
     }
 
-    /// The names of all fields, each with its line in the help of the command line.
+    /// Returns the names of all options with which a run can be requested, each with its line in the help of the
+    /// command line.
     pub fn options() -> Vec<(String, String)> {
         let command = Self::augment_args(Command::new("config"));
         let help = |option: &Arg| option.get_help().map(ToString::to_string).unwrap_or_default();
@@ -31,7 +33,7 @@ impl Config {
         command.get_arguments().filter_map(named).collect()
     }
 
-    /// Parses options, each a name and a value, as the command line does.
+    /// Parses options, each given as (name, value), as the command line does.
     ///
     /// ```
     /// use slump_data::config::Config;
@@ -44,7 +46,8 @@ impl Config {
     /// ```
     ///
     /// # Errors
-    /// In the command line's own words, if an option is not accepted, alone or together with the others.
+    /// If an option is not accepted, alone or together with the other options. The message is the same as on the
+    /// command line.
     pub fn of_options<'a>(options: impl IntoIterator<Item = (&'a str, &'a str)>) -> Result<Self> {
         let command = Self::augment_args(Command::new("slump").no_binary_name(true));
         let given = options.into_iter().map(|(name, value)| format!("--{name}={value}"));
@@ -66,7 +69,7 @@ impl Args for Config {
     }
 }
 
-/// The command-line option for a setting.
+/// Creates the command-line option for a setting.
 fn option(about: &About) -> Arg {
     let parser: ValueParser = match about.kind {
         Kind::Number => clap::value_parser!(f64).into(),
@@ -91,11 +94,11 @@ fn option(about: &About) -> Arg {
     }
 }
 
-/// Long names of settings that have a short name.
+/// Second names of some settings, as (name, longer name), because their usual names are short.
 const ALIASES: [(&str, &str); 4] =
     [("dt", "time-step"), ("rho", "restitution"), ("mu", "friction"), ("solver", "method")];
 
-/// The value given for a setting, if any.
+/// Returns the value that the command line gives for a setting, if any.
 fn given(about: &About, matches: &ArgMatches) -> Option<Value> {
     let name = about.name;
     match about.kind {
@@ -148,7 +151,7 @@ impl Serialize for Config {
     }
 }
 
-/// The settings that are given.
+/// A request to be written without the source of its scene. Only the settings that the request gives are written.
 struct GivenSettings<'a>(&'a Config);
 
 impl Serialize for GivenSettings<'_> {
@@ -202,10 +205,10 @@ impl<'de> Visitor<'de> for ConfigVisitor {
     }
 }
 
-/// The error in a command line, in one sentence that says what is allowed. The message of `command`'s own parser is not
-/// enough: it adds usage and hints, and leaves out the allowed values.
+/// Describes an error in a command line in one sentence that says which values are allowed. The message of clap, the
+/// parser of `command`, is not enough, because it adds usage and hints and leaves out the allowed values.
 pub fn refusal_of(error: &clap::Error, mut command: Command) -> String {
-    // Arguments have no displayed form before this call.
+    // The parser clap can display arguments only after this call.
     command.build();
     let said = |kind: ContextKind| match error.get(kind) {
         Some(ContextValue::String(text)) => text.clone(),
@@ -232,7 +235,7 @@ pub fn refusal_of(error: &clap::Error, mut command: Command) -> String {
                 none if none.is_empty() => String::new(),
                 near => format!(", such as {near}"),
             };
-            // Links and studies accept only a part of the command line.
+            // Links and studies have only a part of the options of the command line.
             let allowed = match command.is_no_binary_name_set() {
                 true => "a setting, or say where a scene comes from",
                 false => "an option or a command that --help lists",
@@ -269,13 +272,13 @@ pub fn refusal_of(error: &clap::Error, mut command: Command) -> String {
     legible(&sentence)
 }
 
-/// Reduces `--bond <BOND>` to `--bond`, as a user writes it.
+/// Shortens an argument such as `--bond <BOND>` to `--bond`, as a user writes it.
 fn without_value_name(argument: &str) -> &str {
     argument.split_once(" <").map_or(argument, |(name, _)| name)
 }
 
-/// Requirement on a value that is not a word of a list: from the parser's error, and from the option's help, which has
-/// the range.
+/// Describes the values that an option allows if it does not take a word of a list. The kind of value comes from the
+/// parser's error, and the range comes from the option's help.
 fn kind_of_value(error: &clap::Error, command: &Command, argument: &str) -> String {
     let source = error.source();
     let kind = if source.is_some_and(|source| source.is::<ParseFloatError>()) {
@@ -287,7 +290,7 @@ fn kind_of_value(error: &clap::Error, command: &Command, argument: &str) -> Stri
     {
         format!("a whole number in {range}")
     } else {
-        // One of Slump's own parsers: its message says what is allowed.
+        // The error is from one of Slump's own parsers, whose message says what is allowed.
         source.map_or_else(|| "given".to_owned(), ToString::to_string)
     };
     match find(command, argument).and_then(Arg::get_help) {
@@ -301,7 +304,7 @@ fn find<'a>(command: &'a Command, argument: &str) -> Option<&'a Arg> {
     own.or_else(|| command.get_subcommands().find_map(|below| find(below, argument)))
 }
 
-/// The names of all commands, including subcommands.
+/// Returns the names of all commands. The names of subcommands follow each command in parentheses.
 fn commands(command: &Command) -> String {
     let name = |command: &Command| match commands(command) {
         none if none.is_empty() => command.get_name().to_owned(),
@@ -311,7 +314,7 @@ fn commands(command: &Command) -> String {
     own.map(name).collect::<Vec<_>>().join(", ")
 }
 
-/// The first sentence of a parser's message, without usage and hints.
+/// Returns the message of a parser as one line, without usage and hints.
 fn first_sentence(message: &str) -> String {
     let message = message.trim_start_matches("error: ");
     let lines = message.lines().take_while(|line| !line.is_empty() && !line.starts_with("Usage"));

@@ -1,4 +1,4 @@
-//! The description of a run as words of a command line and as texts to be stored in files.
+//! Describes a run by the words of a command line that repeats it, and by texts to be stored in files.
 
 use serde_json::Value as Json;
 
@@ -8,8 +8,8 @@ use crate::output::Texts;
 use crate::sim::Settings;
 
 impl Config {
-    /// The options that ask for this scene with these settings: the source of the scene, and each setting that differs
-    /// from the scene's own.
+    /// Returns the command-line options that ask for this scene with these settings: the options for the source of the
+    /// scene, and an option for each setting that differs from the scene's own value.
     ///
     /// # Errors
     /// If the scene no longer exists.
@@ -21,9 +21,9 @@ impl Config {
         Ok(words)
     }
 
-    /// The options for the source of the scene.
+    /// Returns the command-line options for the source of the scene.
     fn source_words(&self) -> Vec<String> {
-        // A path that is not Unicode is refused when it is read.
+        // Writing fails only for a path that is not Unicode. Such a path is refused when it is read.
         let Ok(Json::Object(fields)) = serde_json::to_value(&self.source) else {
             return Vec::new();
         };
@@ -35,7 +35,7 @@ impl Config {
     }
 }
 
-/// Settings as options: all settings, or those that differ from `others`.
+/// Returns settings as command-line options: all settings, or only the settings that differ from `others`.
 pub fn words_of(settings: &Settings, others: Option<&Settings>) -> Vec<String> {
     let differs = |name| others.is_none_or(|others| settings.get(name) != others.get(name));
     let names = Settings::about().map(|about| about.name).filter(|&name| differs(name));
@@ -44,26 +44,27 @@ pub fn words_of(settings: &Settings, others: Option<&Settings>) -> Vec<String> {
     words.flatten().collect()
 }
 
-/// Joins words into a line for a shell.
+/// Joins words into a command line for a shell, with quotes around words that need them.
 pub fn joined(words: &[String]) -> String {
-    // An error means a character that no argument can contain.
+    // Joining fails only for a character that no argument can contain.
     shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
 }
 
-/// Scene, settings and options of a run.
+/// Origin of a result: scene, settings and command-line options of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Provenance {
-    /// Name of its scene.
+    /// Name of the run's scene.
     pub scene: String,
-    /// Its settings.
+    /// Settings of the run.
     pub settings: Settings,
-    /// The options that reproduce the run.
+    /// Command-line options that reproduce the run.
     pub words: Vec<String>,
 }
 
 impl Provenance {
-    /// Texts for a file that shows this run, with a simulated time (s) if the file shows one moment. `further` are
-    /// further options of the command.
+    /// Returns the texts to be stored in a file that shows this run: title, scene, settings and command line.
+    /// `time_secs` is the simulated time (s) if the file shows a single moment. `further` are more options for that
+    /// command line.
     pub fn texts(&self, time_secs: Option<f64>, further: &[String]) -> Texts {
         let Self { scene, settings, words } = self;
         let mut texts = Texts::default();
@@ -80,8 +81,8 @@ impl Provenance {
     }
 }
 
-/// The options for a run up to a simulated time (s), with a picture at that time. The time may exceed the scene's
-/// duration.
+/// Returns the command-line options for a run that ends at a simulated time (s) and makes a picture at that time. The
+/// time may exceed the scene's duration.
 pub fn words_up_to(time_secs: f64) -> Vec<String> {
     let secs = time_secs.to_string();
     let mut words = vec!["--times".to_owned(), secs.clone()];
@@ -91,7 +92,8 @@ pub fn words_up_to(time_secs: f64) -> Vec<String> {
     words
 }
 
-/// A simulated time as a user would write it, without the rounding error of a sum over many steps.
+/// Rounds a simulated time (s) to twelve decimals, as a user would write it. This removes the rounding error of a sum
+/// over many steps.
 pub fn asked_time_secs(time_secs: f64) -> f64 {
     format!("{time_secs:.12}").parse().unwrap_or(time_secs)
 }

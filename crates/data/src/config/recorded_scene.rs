@@ -1,4 +1,4 @@
-//! Checks of recordings whose grains become the initial state of a pile. A pile has its own walls, gravity and sizes,
+//! Checks recordings whose grains become the initial state of a pile. A pile has its own walls, gravity and sizes,
 //! which may differ from those of the recorded scene.
 
 use std::path::Path;
@@ -8,8 +8,8 @@ use crate::data::facts_of_recording;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 
-/// Prefixes of the names of facts that a pile does not take from a recording. Settings are not in the list, because
-/// every run asks for its own.
+/// Beginnings of the names of facts about a recorded scene that a pile does not take over. Settings are not in the
+/// list, because every run asks for its own settings.
 const OF_THE_PILE: [&str; 10] = [
     "areal_density",
     "boundaries",
@@ -23,9 +23,9 @@ const OF_THE_PILE: [&str; 10] = [
     "physics.",
 ];
 
-/// Checks that a pile can start from the grains at `path`. Fails if they are from a recording, or a table of a
-/// recording, whose scene has periodic borders. Unless a pile `is_asked_for` by name, also fails if that scene has
-/// anything else that the `pile` lacks.
+/// Checks that the scene `pile` can start from the grains in the file or folder `path`. Fails if the grains are from a
+/// recording of a scene with periodic borders. Also fails if the recorded scene has another property that the pile
+/// lacks, unless the user has asked for a pile by name (`is_asked_for`).
 pub(super) fn check_starts_pile(path: &Path, pile: &Scene, is_asked_for: bool) -> Result<()> {
     let Some(recorded) = facts_of_recording(path) else { return Ok(()) };
     if recorded.keys().any(|name| name.starts_with("periodic.")) {

@@ -1,5 +1,5 @@
-//! The request for a run: the source of the scene, and changes to it. The same structure describes the options of the
-//! command line, a run of a study, and the record that is written with results.
+//! Defines the request for a run: the source of the scene, and changes to the scene. The same structure describes the
+//! options of the command line, a run of a study, and the request that is written with results.
 
 use std::path::{Path, PathBuf};
 
@@ -21,22 +21,22 @@ use crate::sim::{RemedyChanges, Settings, Stepper};
 use crate::solver::SolverChanges;
 use crate::world::{Grain, ParameterChanges};
 
-/// A scene and changes to it. Values that are not given are those of the scene. Plain data, checked when the scene is
-/// made ([`Config::scene`]).
+/// Request for a run: a scene and changes to it. Values that are not given are those of the scene. A request may
+/// contain wrong values: they are checked when the scene is made ([`Config::scene`]).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Config {
     /// The source of the scene.
     pub source: SceneSource,
-    /// The stepper.
+    /// The stepper: the rule that advances the state by Δt.
     pub stepper: Option<Stepper>,
-    /// Parameters of the contact laws, and Δt.
+    /// Changes to the parameters of the contact laws and to the time step Δt.
     pub parameters: ParameterChanges,
-    /// Settings of the solver.
+    /// Changes to the settings of the solver.
     pub solver: SolverChanges,
-    /// Remedies for known failures.
+    /// Changes to the remedies: optional corrections for known failures of a stepper, such as overlap.
     pub remedies: RemedyChanges,
-    /// The folder for relative paths; empty for the working directory. It is not a part of the request: a study asks
-    /// for the same runs in any folder.
+    /// The folder to which relative paths refer; empty for the working directory. It is not a part of the request: a
+    /// study asks for the same runs in any folder.
     pub folder: PathBuf,
 }
 
@@ -119,7 +119,8 @@ impl SceneSource {
         Ok(true)
     }
 
-    /// The pile that `grains`, `box_width`, `seed`, `deposition` and `sizes` ask for.
+    /// Returns the description of the new pile that `grains`, `box_width`, `seed`, `deposition` and `sizes` ask for.
+    /// Missing options have their defaults.
     pub fn new_pile(&self) -> NewPile {
         let default = NewPile::default();
         NewPile {
@@ -131,7 +132,7 @@ impl SceneSource {
         }
     }
 
-    /// Sets the options to those of this pile.
+    /// Sets `grains`, `box_width`, `seed`, `deposition` and `sizes` to the values of `pile`.
     pub fn set_new_pile(&mut self, pile: &NewPile) {
         let NewPile { grains, box_width_in_diameters, seed, deposition, sizes } = pile.clone();
         (self.grains, self.box_width) = (Some(grains), Some(box_width_in_diameters));
@@ -139,7 +140,7 @@ impl SceneSource {
         self.sizes = (sizes != Sizes::default()).then_some(sizes);
     }
 
-    /// True if a new pile is to be made, whose grains must settle.
+    /// True if the request asks for a new pile, whose grains must settle first.
     pub fn makes_new_pile(&self) -> bool {
         self.grains.is_some()
             || self.box_width.is_some()
@@ -149,19 +150,20 @@ impl SceneSource {
     }
 }
 
-/// A scene before any changes.
+/// A scene before a request has changed it.
 #[derive(Clone, Debug)]
 pub struct BaseScene {
     scene: Scene,
-    /// The new pile, if the scene's grains are its unsettled grains.
+    /// Description of the new pile, if the scene has the grains of a new pile that has not settled yet.
     new_pile: Option<NewPile>,
 }
 
 impl BaseScene {
-    /// Uses an existing scene. If the scene names a file of discs, the file is looked up in `folder`.
+    /// Creates a base scene from an existing scene. If the scene names a file of discs, the file is read; relative
+    /// paths refer to `folder`.
     ///
     /// # Errors
-    /// Names the first field outside its range, or the file that cannot be read.
+    /// The error names the first field that is outside its range, or the file that cannot be read.
     pub fn of(scene: Scene, folder: &Path) -> Result<Self> {
         let (scene, new_pile) = unsettled(scene, folder)?;
         Ok(Self { scene, new_pile })
@@ -169,34 +171,34 @@ impl BaseScene {
 }
 
 impl Config {
-    /// The name of the scene that is used if none is given.
+    /// Name of the scene that is used if a request names no scene.
     pub const DEFAULT_SCENE: &str = "pile";
-    /// The only scene with a `start` option.
+    /// Name of the only scene that has the option `start`.
     const CRADLE: &str = "cradle";
 
-    /// A scene by name or file, without changes.
+    /// Creates a request for a scene, given by its name or file, without changes.
     pub fn of_scene(name: impl Into<String>) -> Self {
         let source = SceneSource { scene: Some(name.into()), ..SceneSource::default() };
         Self { source, ..Self::default() }
     }
 
-    /// True if nothing is requested.
+    /// True if the request is empty: it neither names a scene nor changes anything.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
-    /// The names of given settings that a stepper does not read. A remedy that the stepper lacks is not listed: it is
-    /// refused.
+    /// Returns the names of the settings that the request gives but the stepper does not use. Remedies are not listed,
+    /// because a remedy that the stepper lacks is an error.
     pub fn unread_by(&self, stepper: Stepper) -> Vec<String> {
         let (source, remedies) = (SceneSource::default(), RemedyChanges::default());
         let given = Self { source, stepper: None, remedies, ..self.clone() };
-        // Plain data with names can always be written as JSON.
+        // A request has only named values, which can always be written as JSON.
         let given = serde_json::to_value(&given).unwrap_or_default();
         let names = given.as_object().into_iter().flat_map(|given| given.keys());
         names.filter(|name| !stepper.reads(name)).cloned().collect()
     }
 
-    /// This request with all settings given.
+    /// Returns this request with all settings given explicitly, as in `settings`.
     pub fn with_settings(self, settings: &Settings) -> Self {
         Self {
             stepper: Some(settings.stepper),
@@ -207,7 +209,7 @@ impl Config {
         }
     }
 
-    /// Sets the setting `name`. Returns false if there is no such setting or the value is of another kind.
+    /// Sets the setting `name`. Returns false if there is no such setting or the value is not of its kind.
     pub fn set(&mut self, name: &str, value: Value) -> bool {
         let Self { stepper, parameters, solver, remedies, .. } = self;
         if name == Settings::STEPPER.name {
@@ -217,27 +219,27 @@ impl Config {
         parameters.set(name, value) || solver.set(name, value) || remedies.set(name, value)
     }
 
-    /// Makes the scene with the changes and checks it, without settling a new pile: the scene has the built-in grains,
-    /// or the grains in their first positions, instead. This takes little time, so that a wrong value is reported
-    /// before long work begins.
+    /// Makes the requested scene with the requested changes and checks it, but does not let a new pile settle: the
+    /// scene has the grains of the built-in scene, or the grains of the new pile at their initial positions. This takes
+    /// little time, so that a wrong value is reported before long work begins.
     ///
     /// # Errors
-    /// Names the first field that is unknown or outside its range, or the file that cannot be read.
+    /// The error names the first field that is unknown or outside its range, or the file that cannot be read.
     pub fn without_settling(&self) -> Result<Scene> {
         self.change(&self.base_scene()?)
     }
 
-    /// Makes the scene with the changes and checks it. A new pile takes a while: `progress` is called repeatedly and
-    /// stops the work by returning false.
+    /// Makes the requested scene with the requested changes and checks it. If a new pile must settle, this takes a
+    /// while: `progress` is called repeatedly and stops the work by returning false.
     ///
     /// # Errors
-    /// Names the first field that is unknown or outside its range, or the file that cannot be read. Also fails if the
-    /// grains do not come to rest.
+    /// The error names the first field that is unknown or outside its range, or the file that cannot be read. Making
+    /// the scene also fails if the grains do not come to rest.
     pub fn scene(&self, progress: impl FnMut(Settling) -> bool) -> Result<Scene> {
         self.scene_on(self.base_scene()?, progress)
     }
 
-    /// Like [`Config::scene`], but for the scene `base`, whatever scene the request names.
+    /// Like [`Config::scene`], but changes the scene `base` instead of the scene that the request names.
     ///
     /// # Errors
     /// As [`Config::scene`].
@@ -253,7 +255,8 @@ impl Config {
         }
     }
 
-    /// The scene with a new pile whose settled grains are given.
+    /// Makes the requested scene with the requested changes and checks it. The new pile of the scene has the grains
+    /// `settled`, which have already settled.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
@@ -261,7 +264,8 @@ impl Config {
         self.settled_on(self.base_scene()?, settled)
     }
 
-    /// The scene with these discs as its initial state, as if `initial` were a file of them.
+    /// Makes a pile with the requested changes and checks it. Its initial state is `discs`, as if the option `initial`
+    /// named a file with these discs.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
@@ -271,7 +275,7 @@ impl Config {
         self.change(&BaseScene { scene, new_pile: None })
     }
 
-    /// The new pile that must be made for this scene, if any.
+    /// Returns the description of the new pile that must settle for this scene, if any.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
@@ -282,7 +286,8 @@ impl Config {
         Ok(self.base_scene()?.new_pile)
     }
 
-    /// The scene in its file or by its name, without changes.
+    /// Makes the scene that the request names, or the scene that starts from the initial grains of the request, without
+    /// the other requested changes.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
@@ -309,7 +314,7 @@ impl Config {
         Ok(BaseScene { scene, new_pile })
     }
 
-    /// A key that is equal for all requests with the same [`Config::base_scene`].
+    /// Returns a key by which scenes can be reused: requests with the same key have the same [`Config::base_scene`].
     pub fn base_scene_key(&self) -> String {
         let SceneSource { scene, initial, initial_step, box_width, start, .. } = &self.source;
         let box_width = box_width.filter(|_| initial.is_some());
@@ -317,7 +322,7 @@ impl Config {
         format!("{:?}", (self.named(), is_named, initial, initial_step, box_width, start))
     }
 
-    /// Like [`Config::without_settling`], for a base scene that was already made.
+    /// Like [`Config::without_settling`], but changes the scene `base`, which was already made.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
@@ -328,7 +333,8 @@ impl Config {
         Ok(scene)
     }
 
-    /// The canonical name of a built-in scene; for a file, its name as given.
+    /// Returns the canonical name of the built-in scene that the request names. For a scene file, returns the name of
+    /// the file as given.
     pub fn named(&self) -> &str {
         let asked = self.source.scene.as_deref().unwrap_or(Self::DEFAULT_SCENE);
         SceneInfo::named(asked).map_or(asked, |info| info.name)
@@ -373,7 +379,7 @@ impl Config {
         let width = self.source.new_pile().box_width_in_diameters;
         let mut pile = pile_of(discs.grains.clone(), width)?;
         if !discs.fixed_discs.is_empty() {
-            // The rough base of the recording, with its width.
+            // The pile has the rough base of the recording, including its width.
             discs.place_fixed_discs(&mut pile, path)?;
         }
         Ok(pile.without_implied_masses())
@@ -394,9 +400,9 @@ impl Config {
         Ok(scene)
     }
 
-    /// This request with every default filled in from `scene`.
+    /// Returns this request with every missing value filled in from `scene`.
     pub fn resolved(&self, scene: &Scene) -> Self {
-        // An initial state may include its own scene.
+        // An initial state that is a saved run contains its own scene.
         let name = if self.source.initial.is_some() { &scene.name } else { self.named() };
         let source = SceneSource {
             scene: Some(name.into()),
@@ -406,7 +412,7 @@ impl Config {
         Self { source, ..self.clone() }.with_settings(&scene.settings())
     }
 
-    /// Applies the given settings. A preset is not a setting and is not applied.
+    /// Changes `settings` to the values that the request gives. The preset of the request is not applied.
     pub fn change_settings(&self, settings: &mut Settings) {
         settings.stepper = self.stepper.unwrap_or(settings.stepper);
         self.parameters.apply(&mut settings.parameters);
@@ -419,7 +425,7 @@ impl Config {
             put_on_base(scene, width)?;
         }
         scene.stepper = self.stepper.unwrap_or(scene.stepper);
-        // A preset skips the settings that the stepper does not have.
+        // The stepper is set first, because a preset skips settings that the stepper does not have.
         if let Some(preset) = self.source.preset {
             preset.apply(scene);
         }
@@ -430,7 +436,7 @@ impl Config {
         scene.validate()
     }
 
-    /// The scene of a saved state, with the state's grains as initial state.
+    /// Reads the scene of a saved run from a file. The scene starts from the present grains of that run.
     fn scene_of_state(&self, path: &Path) -> Result<Scene> {
         if let Some(step) = self.source.initial_step {
             let allowed =
@@ -439,7 +445,8 @@ impl Config {
         }
         let scene = SavedState::open(path)?.as_start();
         match &self.source.scene {
-            // The scene of a file may have the same name as a challenge.
+            // Both names are compared, because a saved scene may have the name of a challenge (a task in the window),
+            // and [`Config::named`] replaces that name by the name of the challenge's scene.
             Some(name) if *name != scene.name && self.named() != scene.name => {
                 let allowed =
                     format!("left out, or {}, the scene of the initial state", scene.name);
@@ -449,11 +456,11 @@ impl Config {
         }
     }
 
-    /// Applies the requested changes to a resumed run, from now on.
+    /// Applies the requested changes to a resumed run. They take effect from its next step on.
     ///
     /// # Errors
-    /// Names the first setting that is outside its range or contradicts the others, or says that the request asks for
-    /// another initial state.
+    /// The error names the first setting that is outside its range or contradicts the other settings, or says that the
+    /// request asks for another initial state.
     pub fn change_state(&self, state: &mut SavedState) -> Result<()> {
         let kept = SceneSource { duration: self.source.duration, ..SceneSource::default() };
         if self.source != kept {

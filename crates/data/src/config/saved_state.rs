@@ -1,4 +1,4 @@
-//! A complete run as a file, from which it resumes bit for bit.
+//! Saves a complete run in a file, from which the run resumes with bitwise identical results.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::sim::{Simulation, Tally};
 use crate::world::{Grain, Gravity};
 
-/// The header of the files.
+/// Header of the files with saved runs.
 const SEAL: Seal = Seal {
     magic: "slump-state ",
     format: 7,
@@ -19,7 +19,7 @@ const SEAL: Seal = Seal {
     form: "a state that --save or --checkpoint-every wrote",
 };
 
-/// A run at one moment, from which it can resume.
+/// Saved run: the state of a run at one moment, from which the run can resume.
 ///
 /// ```
 /// use slump_core::scene::built_in;
@@ -38,42 +38,42 @@ const SEAL: Seal = Seal {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SavedState {
-    /// The scene with which the run began, with the settings now in force.
+    /// The scene with which the run began, but with the present settings.
     pub scene: Scene,
     /// The simulation, including everything that affects later steps.
     pub simulation: Simulation,
-    /// Sums over the steps so far.
+    /// Sums over the steps of the run so far.
     pub tally: Tally,
-    /// Additional data of a run that resumes in its own folder. Only that run reads it.
+    /// Additional data of a run that resumes in its own output folder. Only that run reads these data.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub of_run: Vec<u8>,
 }
 
 impl SavedState {
-    /// The state of a run of `scene` at this moment. `tally` has the sums over its steps; it may be empty if the sums
-    /// are not needed.
+    /// Creates the saved state of a run of `scene` at the present moment of `simulation`. `tally` has the sums over the
+    /// run's steps; it may be empty if the sums are not needed.
     pub fn new(mut scene: Scene, simulation: Simulation, tally: Tally) -> Self {
         scene.set_settings(*simulation.settings());
         Self { scene, simulation, tally, of_run: Vec::new() }
     }
 
-    /// Writes a file. The file is written completely or not at all.
+    /// Writes the state to a file, completely or not at all.
     ///
     /// # Errors
-    /// Names the file and what the system says.
+    /// The error names the file and gives the system's message.
     pub fn save(&self, path: &Path) -> Result<()> {
         write_file(path, &self.to_bytes()?)
     }
 
-    /// Reads a file.
+    /// Reads a saved run from a file.
     ///
     /// # Errors
-    /// If it cannot be read, is damaged, was written by another version, or is not a saved run.
+    /// If the file cannot be read, is damaged, was written by another version, or is not a saved run.
     pub fn open(path: &Path) -> Result<Self> {
         SEAL.open(path)
     }
 
-    /// The bytes that [`SavedState::save`] writes. Equal states give equal bytes.
+    /// Returns the bytes that [`SavedState::save`] writes. Equal states give equal bytes.
     ///
     /// # Errors
     /// If the state cannot be serialised.
@@ -81,7 +81,7 @@ impl SavedState {
         SEAL.written(self)
     }
 
-    /// Reads the bytes of a file; `path` is for messages.
+    /// Reads a saved run from the bytes of a file; `path` is used only in messages.
     ///
     /// # Errors
     /// As [`SavedState::open`].
@@ -89,13 +89,13 @@ impl SavedState {
         SEAL.read(bytes, path.as_ref())
     }
 
-    /// True if a file is a saved run, of any version.
+    /// True if a file is a saved run of any version of Slump.
     pub fn is_in(path: &Path) -> bool {
         SEAL.is_on(path)
     }
 
-    /// A scene that starts at t = 0 with the present grains and their velocities, and everything else in the scene at
-    /// its present position.
+    /// Returns a scene that starts at time 0 from the present state: with the present positions and velocities of the
+    /// grains, and with walls, fixed discs and periodic borders at their present positions.
     pub fn as_start(&self) -> Scene {
         let world = self.simulation.world();
         let grains = &world.grains;

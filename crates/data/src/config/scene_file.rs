@@ -1,4 +1,4 @@
-//! Scene files in TOML, and files of discs in CSV.
+//! Reads and writes scene files in TOML and files of discs in CSV.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -11,15 +11,15 @@ use crate::input::{MOST_OF_TOML, read_text};
 use crate::scene::{GrainSource, NewPile, Scene, settle, start_of};
 use crate::world::Grain;
 
-/// The expected form of a scene file, for messages.
+/// Description of a valid scene file, for messages.
 const FORM: &str = "a scene file in TOML, such as `slump scene` prints";
 
-/// Reads a scene from a TOML file, reads its grains from a CSV file if it names one, and makes a new pile if it asks
-/// for one.
+/// Reads a scene from a TOML file. If the scene names a file of grains, reads the grains from that file. If the scene
+/// asks for a new pile, makes the pile and lets it settle.
 ///
 /// # Errors
-/// If the file cannot be read, is not TOML, contains something unknown (the message names line and column), or contains
-/// a value outside its range.
+/// If the file cannot be read, is not TOML or contains something unknown (the message names the line), or contains a
+/// value outside its range.
 pub fn read_scene(path: &Path) -> Result<Scene> {
     match read_unsettled(path)? {
         (scene, Some(pile)) => Ok(scene.with_settled(settle(&pile, |_| true)?)),
@@ -27,8 +27,8 @@ pub fn read_scene(path: &Path) -> Result<Scene> {
     }
 }
 
-/// Like [`read_scene`] without settling: also returns the new pile, if any, and the scene then has its unsettled
-/// grains. Quick.
+/// Like [`read_scene`], but quick, because a new pile is not settled. The scene then has the grains of the new pile at
+/// their initial positions, and the description of the pile is returned, too.
 pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<NewPile>)> {
     let text = read_text(path, FORM, MOST_OF_TOML)?;
     let scene = toml::from_str(&text).map_err(|error| {
@@ -39,8 +39,8 @@ pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<NewPile>)> {
     unsettled(scene, path.parent().unwrap_or(Path::new("")))
 }
 
-/// A scene with its grains, or with the unsettled grains of a new pile. Files that the scene names are looked up in
-/// `folder`.
+/// Reads the grains of a scene from the file that the scene names, or adds the grains of a new pile at their initial
+/// positions and returns the description of that pile. Relative paths in the scene refer to `folder`.
 pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Option<NewPile>)> {
     let mut new_pile = None;
     if let Some(source) = scene.source.take() {
@@ -67,7 +67,8 @@ pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Optio
     Ok((scene, new_pile))
 }
 
-/// The grains of a file for a scene. If the scene lists no fixed discs, it also takes those of the file.
+/// Reads the grains for a scene from a file. If the scene lists no fixed discs, the fixed discs of the file are added
+/// to the scene.
 fn discs_of(scene: &mut Scene, path: &Path, step: Option<u64>) -> Result<Vec<Grain>> {
     let mut discs = read_grains(path, step)?;
     let grains = std::mem::take(&mut discs.grains);
@@ -85,7 +86,7 @@ fn discs_of(scene: &mut Scene, path: &Path, step: Option<u64>) -> Result<Vec<Gra
     Ok(grains)
 }
 
-/// A scene as a TOML file.
+/// Returns the text of a TOML file that describes a scene.
 ///
 /// # Errors
 /// If the scene contains a value that TOML cannot express.
@@ -102,8 +103,8 @@ pub fn parse_discs(text: &str, path: &Path) -> Result<Vec<Grain>> {
     Ok(parse_grains(text, path)?.grains)
 }
 
-/// Text of a CSV file of discs, without their materials and masses. The numbers read back bit for bit. `comment` comes
-/// first, each of its lines after `# `.
+/// Returns the text of a CSV file of discs, without their materials and masses. The numbers read back bit for bit. The
+/// text begins with the lines of `comment`, each after `# `.
 pub fn write_discs(grains: &[Grain], comment: &str) -> String {
     let mut text = String::new();
     for line in comment.lines() {

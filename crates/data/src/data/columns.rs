@@ -1,4 +1,4 @@
-//! The tables of a recording: their columns, and the values in them.
+//! Declares the columns of the tables of a recording, and fills the tables with values.
 
 use super::means;
 use super::other_bodies::{OTHER_KINDS, OtherBodies};
@@ -10,7 +10,7 @@ use crate::column_spec::{ColumnSpec, column};
 use crate::granular::{GrainMeasures, Histogram, PileMeasures, histograms};
 use crate::sim::{ContactState, ContactStatus, GrainState, Moment, Observables, Stepper};
 
-/// The tables that formats write for each frame, without rows.
+/// Returns empty tables with the columns of the tables to which each recorded frame adds rows.
 pub(super) fn empty_tables_of_frames() -> [Table; 6] {
     let histograms = histogram_table(&Observables::default(), &[]);
     let contacts = Table::new(CONTACTS, CONTACT_COLUMNS, &[], &[]);
@@ -19,46 +19,46 @@ pub(super) fn empty_tables_of_frames() -> [Table; 6] {
     [empty_grains(), contacts, means::no_pairs(), walls, measures, histograms]
 }
 
-/// All tables that formats write, without rows.
+/// Returns empty tables with the columns of all tables of a recording.
 pub(super) fn empty_tables() -> impl Iterator<Item = Table> {
     empty_tables_of_frames().into_iter().chain([Table::of_steps(&[])])
 }
 
-/// The tables of a recording one by one, for callers that do not need a whole frame.
+/// Single tables of a recording, for callers that do not need a whole frame.
 impl Table {
-    /// One row per grain, then one row per fixed disc.
+    /// Makes the table of grains: one row per grain, then one row per fixed disc.
     pub fn of_grains(moment: &Moment) -> Self {
         grains(moment, &GrainMeasures::of_each(moment))
     }
 
-    /// One row per contact.
+    /// Makes the table of contacts: one row per contact.
     pub fn of_contacts(moment: &Moment) -> Self {
         contacts(moment)
     }
 
-    /// One row for the whole pile.
+    /// Makes the table of measures: one row for the whole pile.
     pub fn of_measures(moment: &Moment) -> Self {
         measures(Some((&moment.observables, &PileMeasures::of(moment))))
     }
 
-    /// One row per bin of each histogram.
+    /// Makes the table of histograms: one row per bin of each histogram.
     pub fn of_histograms(moment: &Moment) -> Self {
         histogram_table(&moment.observables, &histograms(moment))
     }
 
-    /// One row per step.
+    /// Makes the table of steps: one row per step.
     pub fn of_steps(rows: &[Observables]) -> Self {
         Self::new("steps", STEP_COLUMNS, rows, &[])
     }
 }
 
-/// Words of the column `kind`.
+/// Words of the column `kind`, the kind of a disc.
 pub(super) const KINDS: &[&str] = &["grain", "fixed", "lost"];
-/// Index of the word for a moving disc.
+/// Index in [`KINDS`] of the word for a moving disc.
 pub(super) const GRAIN: usize = 0;
-/// Index of the word for a fixed disc.
+/// Index in [`KINDS`] of the word for a fixed disc.
 pub(super) const FIXED: usize = 1;
-/// Index of the word for a disc that went through a wall or left the world.
+/// Index in [`KINDS`] of the word for a disc that went through a wall or left the world.
 pub(super) const LOST: usize = 2;
 
 struct GrainTableRow {
@@ -136,7 +136,8 @@ pub(super) fn grains(moment: &Moment, measures: &[GrainMeasures]) -> Table {
     grains_of(&rows, measures, &names)
 }
 
-/// Rows with the measures of grains and the names of materials. Fixed discs, which follow, have no measures.
+/// Makes the table of grains from rows of discs, the measures of the grains, and the names of materials. Fixed discs
+/// are in the last rows and have no measures.
 fn grains_of(rows: &[GrainTableRow], measures: &[GrainMeasures], materials: &[String]) -> Table {
     let measures = Table::new("grains", GrainMeasures::COLUMNS, measures, &[]);
     Table::new("grains", GRAIN_COLUMNS, rows, materials).beside(measures)
@@ -153,7 +154,7 @@ struct ContactTableRow {
     id: u32,
     other_id: u64,
     kind: u32,
-    /// Index in the list of names.
+    /// Index of body j's name in the list of names.
     name: u32,
     has_bonds: bool,
     state: ContactState,
@@ -245,7 +246,7 @@ pub(super) fn contacts(moment: &Moment) -> Table {
     Table::new(CONTACTS, CONTACT_COLUMNS, &rows, &others.names)
 }
 
-/// Measures of a whole pile at a step: one row or none.
+/// Makes the table of measures of the whole pile, with one row for a step, or without rows.
 pub(super) fn measures(row: Option<(&Observables, &PileMeasures)>) -> Table {
     let (now, pile): (Vec<_>, Vec<_>) = row.into_iter().map(|(now, pile)| (*now, *pile)).unzip();
     let of_step =
@@ -289,7 +290,7 @@ pub(super) fn histogram_table(now: &Observables, histograms: &[Histogram]) -> Ta
     Table::new("histograms", BIN_COLUMNS, &bins, &words)
 }
 
-/// A frame that has been written in every format.
+/// Row of the list of frames: a frame that has been written in every format.
 pub(super) struct FrameRow {
     pub step: u64,
     pub time_secs: f64,
@@ -306,26 +307,26 @@ pub(super) fn frames(rows: &[FrameRow]) -> Table {
     Table::new("frames", FRAME_COLUMNS, rows, &[])
 }
 
-/// A quantity that each step measures, with its name in tables.
+/// A quantity that is measured in each step, and its column in the table of steps.
 pub struct Observed(&'static ColumnSpec<Observables>);
 
 impl Observed {
-    /// All quantities.
+    /// Returns all quantities that are measured in each step.
     pub fn all() -> impl Iterator<Item = Self> {
         STEP_COLUMNS.iter().map(Self)
     }
 
-    /// The quantity with that name.
+    /// Returns the quantity whose column has the given name.
     pub fn named(name: &str) -> Option<Self> {
         Self::all().find(|observed| observed.0.name == name)
     }
 
-    /// Name in tables.
+    /// Returns the name of the quantity's column in tables.
     pub fn name(&self) -> &'static str {
         self.0.name
     }
 
-    /// Name and unit.
+    /// Returns name and unit for a label, such as `kinetic energy (J)`.
     pub fn title(&self) -> String {
         let name = self.0.name.replace('_', " ");
         match self.0.unit {
@@ -334,12 +335,12 @@ impl Observed {
         }
     }
 
-    /// Description, in a few words.
+    /// Returns the description of the quantity, in a few words.
     pub fn about(&self) -> &'static str {
         self.0.about
     }
 
-    /// The value in a row that has one; true is 1 and false is 0.
+    /// Returns the value of the quantity in a row (true is 1 and false is 0); `None` if the row has no value.
     pub fn of(&self, row: &Observables) -> Option<f64> {
         self.0.value.number(row)
     }

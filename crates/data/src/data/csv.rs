@@ -1,4 +1,4 @@
-//! Recordings as text: one growing table for each kind of row, `csv/grains.csv` and so on.
+//! Writes recordings as CSV text: one growing file for each table, such as `csv/grains.csv`.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind::NotFound, Write};
@@ -65,30 +65,30 @@ impl Format for Csv {
     }
 }
 
-/// First character of a comment line.
+/// First character of a comment line in CSV files.
 pub(super) const COMMENT: u8 = b'#';
 
-/// A table that is written row by row, below comments that describe the columns.
+/// A CSV file that is written row by row, below comments that describe its columns.
 pub(super) struct TextTable {
     path: PathBuf,
-    /// Comments and the header line.
+    /// Text above the rows: comments and the header line with the names of the columns.
     head: String,
     names: String,
     file: Option<GrowingFile>,
     rows: Vec<u8>,
 }
 
-/// The rows that remain in a table.
+/// Number of the rows that remain in a table, and the step of the last row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct KeptRows {
     pub rows: u64,
-    /// Step of the last row.
+    /// Step of the last row; `None` without rows.
     pub step: Option<u64>,
 }
 
 impl TextTable {
-    /// A table with the columns of `table`. The file is created with the first rows, even if there are none of them, or
-    /// continued after [`TextTable::roll_back`].
+    /// Prepares a file with the columns of `table`. The first call of [`TextTable::add`] creates the file, even if that
+    /// call adds no rows. [`TextTable::roll_back`] opens an existing file to continue it.
     pub(super) fn new(path: PathBuf, run: &RunFacts, table: &Table) -> Self {
         let names: Vec<_> = table.columns.iter().map(|column| column.name).collect();
         let names = names.join(",");
@@ -109,7 +109,7 @@ impl TextTable {
         Ok(())
     }
 
-    /// The file, which has at least its head.
+    /// Returns the file. If the file is new, its head is written first.
     fn begun(&mut self) -> Result<&mut GrowingFile> {
         match &mut self.file {
             Some(file) => Ok(file),
@@ -121,12 +121,13 @@ impl TextTable {
         }
     }
 
-    /// Writes the file to the disk, at least with its head.
+    /// Makes sure that the file is on the disk. A file without rows has at least its head.
     pub(super) fn finish(&mut self) -> Result<()> {
         self.begun()?.sync()
     }
 
-    /// Drops the rows after a step, or all rows, and an incomplete row at the end.
+    /// Removes the rows after the step `step` (all rows if `step` is `None`), and an incomplete row at the end. Returns
+    /// the rows that remain.
     pub(super) fn roll_back(&mut self, step: Option<u64>) -> Result<KeptRows> {
         self.file = None;
         let (kept, whole) = self.rows_there(step, u64::MAX)?;
@@ -138,8 +139,8 @@ impl TextTable {
         Ok(kept)
     }
 
-    /// Counts the rows of the file up to a step, at most `most`, and gives their length with the head, bytes. Both are
-    /// 0 without a file.
+    /// Counts the rows of the file up to the step `step`, at most `most` rows. Also returns the length of the head and
+    /// these rows, bytes. If the file does not exist, both numbers are 0.
     pub(super) fn rows_there(&self, step: Option<u64>, most: u64) -> Result<(KeptRows, u64)> {
         let mut file = match File::open(&self.path) {
             Ok(file) => BufReader::new(file),
@@ -218,7 +219,7 @@ fn write_rows(text: &mut Vec<u8>, table: &Table) {
     }
 }
 
-/// A word as one field: quoted if it contains commas or quotes (RFC 4180).
+/// Writes a word as one field of a row, with quotes around it if it contains commas or quotes (RFC 4180).
 fn write_word(text: &mut Vec<u8>, word: &str) {
     if word.contains([',', '"']) {
         let _ = write!(text, "\"{}\"", word.replace('"', "\"\""));

@@ -1,4 +1,4 @@
-//! Files in the folder of a recording: their names, and functions that find and remove them.
+//! Defines the names of files in the folder of a recording, and finds and removes such files.
 
 use std::io::ErrorKind::NotFound;
 use std::path::{Path, PathBuf};
@@ -6,15 +6,16 @@ use std::path::{Path, PathBuf};
 use crate::error::{Error, Result};
 use crate::output::final_name;
 
-/// The list of frames that have been written in every format.
+/// Name of the file that lists the frames that have been written in every format.
 pub(super) const FRAMES: &str = "frames.csv";
-/// First part of the name of a Parquet file, …
+/// Beginning of the name of a Parquet file. The number of the file follows.
 const BEGINNING_OF_PART: &str = "part-";
-/// … and last part.
+/// Ending of the name of a Parquet file.
 const ENDING_OF_PART: &str = ".parquet";
 
-/// The plain files of a folder whose names belong to a recording, sorted, including drafts of such files that a killed
-/// process left. Empty if there is no folder. Links and pipes are left out.
+/// Returns the plain files in a folder whose names are accepted by `is_ours`, sorted. This includes drafts (incomplete
+/// files) of such names that a killed process left. Links and pipes are left out. If the folder does not exist, the
+/// list is empty.
 pub(super) fn files_named(folder: &Path, is_ours: impl Fn(&str) -> bool) -> Result<Vec<PathBuf>> {
     let refuse = |error| Error::file(folder, error);
     let entries = match std::fs::read_dir(folder) {
@@ -44,25 +45,25 @@ pub(super) fn make_folder(path: &Path) -> Result<()> {
         .map_err(|error| Error::file(path, format!("cannot be written to ({error})")))
 }
 
-/// The path of the part with that number in a table's folder.
+/// Returns the path of the Parquet file with the given number in the folder of a table.
 #[cfg(feature = "data")]
 pub(super) fn path_of_part(folder: &Path, number: u64) -> PathBuf {
     folder.join(format!("{BEGINNING_OF_PART}{number:05}{ENDING_OF_PART}"))
 }
 
-/// The number of the part with that name.
+/// Returns the number in the name of a Parquet file of a table; `None` for any other name.
 pub(super) fn part_number(name: &str) -> Option<u64> {
     let digits = name.strip_prefix(BEGINNING_OF_PART)?.strip_suffix(ENDING_OF_PART)?;
     digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok())?
 }
 
-/// The parts in a table's folder, sorted by their numbers.
+/// Returns the numbered Parquet files in the folder of a table, sorted by their numbers.
 pub(super) fn numbered_parts(folder: &Path) -> Result<Vec<(u64, PathBuf)>> {
     let paths = files_named(folder, |name| part_number(name).is_some())?;
     let number = |path: &Path| path.file_name().and_then(|name| part_number(name.to_str()?));
     let numbered = paths.into_iter().filter_map(|path| Some((number(&path)?, path)));
     let mut numbered: Vec<_> = numbered.collect();
-    // From part 100,000 on, names have more digits and do not sort by number.
+    // From file number 100,000 on, names have more digits and do not sort by number.
     numbered.sort();
     Ok(numbered)
 }

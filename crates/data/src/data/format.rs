@@ -1,4 +1,4 @@
-//! The interface of all formats, and the data that they write.
+//! Defines the interface of all file formats of recordings, and the data that they write.
 
 use std::path::Path;
 
@@ -11,36 +11,37 @@ use crate::error::{Error, Result};
 use crate::granular::{MomentMeasures, measure};
 use crate::sim::{ForceSums, Moment, Observables};
 
-/// Facts about a recording in addition to its tables, for the metadata of its files.
+/// Facts about a recorded run in addition to its tables, for the metadata of its files.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RunFacts {
-    /// Names and values without line breaks: program, command, and all values of the scene.
+    /// Facts as (name, value), without line breaks: program, command, and all values of the scene.
     pub facts: Vec<(String, String)>,
 }
 
-/// One recorded moment.
+/// One recorded moment of a run, as tables.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// Number of earlier frames.
+    /// Number of earlier frames in the recording.
     pub number: u64,
-    /// The moment that the tables were made from. The tables contain everything that is written to files.
+    /// The moment from which the tables were made. All data that are written to files are in the tables.
     pub moment: Moment,
-    /// One row per grain, then one row per fixed disc.
+    /// Table of grains: one row per grain, then one row per fixed disc.
     pub grains: Table,
-    /// One row per contact.
+    /// Table of contacts: one row per contact.
     pub contacts: Table,
-    /// One row per pair that transmitted a force since the frame before.
+    /// Table of pairs: one row per pair of bodies that transmitted a force since the previous frame.
     pub pairs: Table,
-    /// One row per wall.
+    /// Table of walls: one row per wall. A wall is a rigid body made of boundaries and fixed discs.
     pub walls: Table,
-    /// One row for the whole pile.
+    /// Table of measures: one row for the whole pile.
     pub measures: Table,
-    /// One row per bin of each histogram.
+    /// Table of histograms: one row per bin of each histogram.
     pub histograms: Table,
 }
 
 impl Frame {
-    /// Makes the tables of a moment, and of the forces that pairs have transmitted since the frame before.
+    /// Makes the tables of a moment. `number` is the number of earlier frames, and `sums` are the sums of the contact
+    /// forces of each pair of bodies since the previous frame.
     pub fn new(number: u64, moment: Moment, sums: &ForceSums) -> Self {
         let MomentMeasures { pile, grains, histograms } = measure(&moment);
         let now = &moment.observables;
@@ -63,15 +64,16 @@ impl Frame {
     }
 }
 
-/// The extent of a recording at one moment of a run. All of it must still exist when the run is resumed.
+/// Extent of a recording at one moment of its run: numbers of frames and rows. All of them must still exist when the
+/// run is resumed from that moment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecordingMark {
     /// Number of frames.
     pub frames: u64,
-    /// Number of rows of the table of steps.
+    /// Number of rows in the table of steps.
     pub steps: u64,
-    /// Number of rows of the tables that each frame adds to, in the order in which `data.json` lists them.
+    /// Number of rows in each table to which every frame adds rows, in the order of the tables in a [`Frame`].
     pub rows: [u64; 6],
 }
 
@@ -85,10 +87,11 @@ impl RecordingMark {
     }
 }
 
-/// Refuses a file or a folder of files that has lost `things` (rows, frames, …) since the run was saved.
+/// Fails if a file, or a folder of files, no longer has all `things` (rows, frames, …) that it had when the run was
+/// saved.
 ///
 /// # Errors
-/// Names the file or folder, with both counts.
+/// The error names the file or folder, the number found, and the number when the run was saved.
 pub(super) fn check_count(path: &Path, things: &str, found: u64, marked: u64) -> Result<()> {
     if found == marked {
         return Ok(());
@@ -99,21 +102,21 @@ pub(super) fn check_count(path: &Path, things: &str, found: u64, marked: u64) ->
     Err(Error::file(path, reason))
 }
 
-/// A file format for frames. It is used by one thread, which is not the solver's.
+/// A file format of recordings. Only one thread uses a format, and this is not the solver's thread.
 ///
-/// Whenever the program is killed, everything that was written before stays readable. A format starts in a folder
-/// without its files, or, if the next call is [`Format::roll_back`], in a folder with them.
+/// If the program is killed, all data written before remain readable. A format starts in a folder that has no files of
+/// this format. If the folder has such files, [`Format::roll_back`] must be called before anything is written.
 pub(super) trait Format: Send {
-    /// Writes the next frame. Memory must not grow with the number of frames.
+    /// Writes the next frame. The used memory must not grow with the number of frames.
     fn add(&mut self, frame: &Frame) -> Result<()>;
 
-    /// Writes the measurements of some steps, which follow the steps before.
+    /// Writes the measurements of some steps. These steps follow the steps written before.
     fn add_steps(&mut self, _steps: &[Observables]) -> Result<()> {
         Ok(())
     }
 
-    /// Makes everything that was added visible to readers. Called after a frame, or after several frames if the run is
-    /// faster than the disk.
+    /// Makes all added data visible to readers of the files. It is called after each frame, or after several frames if
+    /// the run is faster than the disk.
     fn flush(&mut self) -> Result<()> {
         Ok(())
     }
@@ -122,14 +125,14 @@ pub(super) trait Format: Send {
         self.flush()
     }
 
-    /// Checks that everything written up to `step`, and up to the frame of the step `last_frame`, still exists. Changes
-    /// nothing.
+    /// Checks that all measurements of steps up to `step`, and all frames up to the frame of the step `last_frame`,
+    /// still exist as counted by `mark`. Changes no file.
     ///
     /// # Errors
-    /// Names a file that has lost a part of it.
+    /// The error names a file that has lost data.
     fn check(&self, step: u64, last_frame: Option<u64>, mark: &RecordingMark) -> Result<()>;
 
-    /// Drops the measurements of steps after `step`, and all frames after that of the step `last_frame` (all frames if
-    /// it is `None`), so that the run can resume from `step`.
+    /// Removes the measurements of steps after `step`, and all frames after the frame of the step `last_frame` (all
+    /// frames if it is `None`), so that the run can resume from `step`.
     fn roll_back(&mut self, step: u64, last_frame: Option<u64>) -> Result<()>;
 }

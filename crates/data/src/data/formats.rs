@@ -1,4 +1,4 @@
-//! The list of all formats: the formats that this build can write, and how each starts.
+//! Lists the file formats of recordings that this build can write, and starts them.
 
 use std::path::Path;
 
@@ -11,14 +11,14 @@ use super::vtk::{self, Vtk};
 use crate::error::{Error, Result};
 use crate::scene::{DataSettings, FormatName};
 
-/// The format that is written if none is asked for.
+/// Format of a recording if the user does not ask for a format.
 pub const DEFAULT_FORMAT: FormatName =
     if cfg!(feature = "data") { FormatName::Parquet } else { FormatName::Csv };
 
-/// The requested formats, without repetitions.
+/// Returns the requested formats without repetitions, or the default format if no format is requested.
 ///
 /// # Errors
-/// If this build cannot write one of them.
+/// If this build cannot write one of the requested formats.
 pub fn formats_of(settings: &DataSettings) -> Result<Vec<FormatName>> {
     if settings.formats.is_empty() {
         return Ok(vec![DEFAULT_FORMAT]);
@@ -30,7 +30,7 @@ pub fn formats_of(settings: &DataSettings) -> Result<Vec<FormatName>> {
 /// Fails if this build cannot write a format.
 ///
 /// # Errors
-/// Names the missing feature.
+/// The error names the formats that this build can write, and the missing feature.
 pub fn check_format(format: FormatName) -> Result<()> {
     if cfg!(feature = "data") || format != FormatName::Parquet {
         return Ok(());

@@ -1,12 +1,13 @@
-//! LAMMPS dumps for OVITO and other readers: `ovito/grains.dump`, a text dump with one row per grain;
-//! `ovito/contacts.dump`, a `dump local` with one row per contact between two discs, as bonds; and `ovito/walls.dump`,
-//! with one row per wall. Contacts with boundaries are left out, because OVITO only draws bonds between particles and
-//! otherwise refuses the frame.
+//! Writes recordings as LAMMPS dumps for OVITO and other readers. `ovito/grains.dump` is a text dump with one row per
+//! grain. `ovito/contacts.dump` is a `dump local` with one row per contact between two discs, as bonds.
+//! `ovito/walls.dump` has one row per wall. Contacts with boundaries are left out, because OVITO draws bonds only
+//! between particles and otherwise refuses the frame.
 //!
-//! Columns have the names that readers know. MDAnalysis finds the lines of a frame of grains by their number, and
+//! Columns have the names that readers know. MDAnalysis finds the lines of a frame of grains by counting lines, and
 //! neither MDAnalysis nor ASE accepts grains without z or with unknown elements. The frames of grains therefore contain
-//! only the items that every dump has. The description of the run and the time of each frame are written ahead of the
-//! contacts. Numbers are written in the shortest form that reads back as the same number.
+//! only the items that every dump has. The description of the run is at the beginning of the file of contacts, and the
+//! times of frames are in the files of contacts and walls. Numbers are written in the shortest form that reads back as
+//! the same number.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -27,15 +28,16 @@ pub(super) const FOLDER: &str = "ovito";
 /// File names of grains, contacts and walls.
 pub(super) const FILES: [&str; 3] = ["grains.dump", "contacts.dump", "walls.dump"];
 
-/// First line of an incomplete frame. No reader knows this item, and every reader skips it at the end of a file.
+/// First line of an incomplete frame. No reader knows this item, and every reader skips this item at the end of a file.
 const DRAFT: &str = "ITEM: DRAFT";
-/// Prefix that identifies the first line of a draft, even if a kill has cut its word short.
+/// Beginning of a line that identifies an incomplete frame, even if the line was cut because the program was killed.
 const OF_A_DRAFT: &str = "ITEM: D";
-/// Item with the time of a frame, ahead of its step. Frames of grains lack it.
+/// Header line above the simulated time of a frame, which is written ahead of the step. Frames of grains have no time.
 const TIME: &str = "ITEM: TIME";
-/// Item with the step of a frame.
+/// Header line above the step of a frame.
 const STEP: &str = "ITEM: TIMESTEP";
-/// First columns of grains, as (name in dumps, name in Slump). All other columns follow with their own names.
+/// First columns of the dump of grains, as (name in the dump, name in Slump). All other columns follow with their own
+/// names.
 const GRAIN_COLUMNS: [(&str, &str); 10] = [
     ("id", "id"),
     ("type", "kind"),
@@ -46,24 +48,26 @@ const GRAIN_COLUMNS: [(&str, &str); 10] = [
     ("vx", "vx"),
     ("vy", "vy"),
     ("omegaz", "omega"),
-    // OVITO expects whole numbers in `coordination`, but fixed discs have no value.
+    // Not `coordination`: OVITO expects whole numbers in a column of this name, but fixed discs have no value.
     ("coordination_number", "coordination"),
 ];
-/// Like `GRAIN_COLUMNS`, for contacts.
+/// First columns of the dump of contacts, as (name in the dump, name in Slump). All other columns follow with their own
+/// names.
 const CONTACT_COLUMNS: [(&str, &str); 2] = [("batom1", "id_i"), ("batom2", "id_j")];
-/// Columns that are left out: they are in the head of a frame, or do not concern contacts between discs.
+/// Columns that dumps do not have: they are in the head of a frame, or do not concern contacts between discs.
 const LEFT_OUT: [&str; 3] = ["step", "time", "name_j"];
-/// The only column of grains that contains words, and its words for grains, fixed discs and lost grains. Readers only
-/// know chemical elements. All other columns have numbers instead of words.
+/// The only column of the dump of grains that contains words, the names of chemical elements. Readers know no other
+/// words, so all other columns have numbers instead of words.
 const IN_WORDS: &str = "element";
+/// Chemical elements that stand for grains, fixed discs and lost grains.
 const ELEMENTS: [&str; 3] = ["H", "He", "Li"];
-/// Item with the number of rows of a frame.
+/// Beginning of the header line above the number of rows of a frame.
 const COUNT: &str = "ITEM: NUMBER OF ";
-/// The word for grains in dumps.
+/// The word for grains in the header lines of a dump.
 const ATOMS: &str = LABELS[0];
-/// The words for rows of grains, contacts and walls in dumps.
+/// The words for rows of grains, contacts and walls in the header lines of a dump.
 const LABELS: [&str; 3] = ["ATOMS", "BONDS", "ENTRIES"];
-/// The lowest type number in LAMMPS.
+/// The lowest number of a particle type in LAMMPS.
 const FIRST_TYPE: u32 = 1;
 
 pub(super) struct Lammps {
@@ -73,10 +77,10 @@ pub(super) struct Lammps {
     walls: GrowingDump,
 }
 
-/// A dump that grows.
+/// A dump file to which frames are added.
 struct GrowingDump {
     path: PathBuf,
-    /// `None` before the first frame.
+    /// The file; `None` before the first frame.
     file: Option<GrowingFile>,
 }
 
@@ -140,8 +144,8 @@ impl GrowingDump {
     }
 }
 
-/// Length of the frames up to a step in a dump that Slump wrote, bytes; 0 if `step` is `None`. `None` if there is no
-/// file.
+/// Returns the length of all frames up to the step `step` in a dump that Slump wrote, bytes; 0 if `step` is `None`.
+/// Returns `None` if there is no file.
 fn length_until(path: &Path, step: Option<u64>) -> Result<Option<u64>> {
     let file = match File::open(path) {
         Ok(file) => file,
@@ -178,7 +182,7 @@ fn length_until(path: &Path, step: Option<u64>) -> Result<Option<u64>> {
     }
 }
 
-/// Number of complete frames up to a step in a dump that Slump wrote; 0 without a file.
+/// Counts the complete frames up to the step `step` in a dump that Slump wrote; 0 without a file.
 fn whole_frames(path: &Path, step: Option<u64>) -> Result<u64> {
     let mut lines = match File::open(path) {
         Ok(file) => BufReader::new(file),
@@ -212,29 +216,29 @@ fn whole_frames(path: &Path, step: Option<u64>) -> Result<u64> {
     Ok(frames)
 }
 
-/// The text of a frame.
+/// The text of a frame in a dump.
 struct FrameText {
-    /// Text ahead of the first frame: units, and facts about the run. Readers skip unknown items there, and nowhere
-    /// else.
+    /// Text ahead of the first frame of a file: units, and facts about the run. Readers skip unknown items only ahead
+    /// of the first frame.
     pub front: String,
-    /// Text up to the names of the columns.
+    /// Text of the frame from its first line to the names of the columns.
     pub head: String,
     pub rows: String,
 }
 
-/// One row per grain, then one row per fixed disc.
+/// Writes a frame of grains: one row per grain, then one row per fixed disc.
 fn grains(frame: &Frame) -> FrameText {
     let rows = 0..frame.grains.len();
     dump(ATOMS, frame, (&frame.grains, &GRAIN_COLUMNS), rows)
 }
 
-/// One row per wall.
+/// Writes a frame of walls: one row per wall.
 fn walls(frame: &Frame) -> FrameText {
     let rows = 0..frame.walls.len();
     dump(LABELS[2], frame, (&frame.walls, &[]), rows)
 }
 
-/// One row per contact between two discs.
+/// Writes a frame of contacts: one row per contact between two discs.
 fn contacts(frame: &Frame, facts: &RunFacts) -> FrameText {
     let contacts = frame.moment.contacts.iter().enumerate();
     let between_discs =
@@ -281,7 +285,8 @@ fn dump(
     FrameText { front: String::new(), head, rows: text }
 }
 
-/// The z component that follows a y component, because readers expect vectors in three dimensions.
+/// Returns the name of the z component that follows the column `name` if the column is a y component. Readers expect
+/// vectors in three dimensions.
 fn along_z(label: &str, name: &str) -> Option<&'static str> {
     match name {
         "y" if label == ATOMS => Some("z"),
@@ -290,8 +295,9 @@ fn along_z(label: &str, name: &str) -> Option<&'static str> {
     }
 }
 
-/// The periodic image of each grain, counted along x and y from its initial image. `None` without periodic borders, and
-/// for shearing borders, where the displacement is not a whole number of cells.
+/// Returns the periodic image that contains each grain, counted in periods along x and y from the grain's initial
+/// image. Returns `None` without periodic borders, and for shearing borders, at which the displacement is not a whole
+/// number of periods.
 fn images(moment: &Moment) -> Option<Vec<[i64; 2]>> {
     let cell = moment.surroundings.periodic.filter(|cell| cell.shear_rate == 0.0)?;
     let periods = cell.periods();
@@ -333,13 +339,14 @@ fn push(text: &mut String, name: &str, values: &Values, row: usize) {
     };
 }
 
-/// The number that stands for the first word of a list.
+/// Returns the number that stands for the first word of a list of words in the column `name`.
 fn first_code(name: &str) -> u32 {
     if name == "type" { FIRST_TYPE } else { 0 }
 }
 
-/// One line with the facts about the run, and one line for each dump that describes its columns. OVITO looks for the
-/// first frame only in the first 20 lines and does not recognise the file otherwise.
+/// Returns the text ahead of the first frame: one line with the facts about the run, and for each dump one line that
+/// describes its columns. There are no more lines, because OVITO recognises a file only if its first frame begins in
+/// the first 20 lines.
 fn front(facts: &RunFacts, frame: &Frame) -> String {
     let facts = facts.facts.iter().map(|(name, said)| format!("{name}: {said}"));
     let facts = facts.collect::<Vec<_>>().join("; ");
@@ -362,7 +369,8 @@ fn front(facts: &RunFacts, frame: &Frame) -> String {
 fn head(moment: &Moment, label: &str, count: usize) -> String {
     let observables = &moment.observables;
     let ([min, max], radius) = bounds(moment);
-    // Periodic along the axes with periodic borders, else shrink-wrapped around the discs.
+    // The box is periodic (`pp`) along axes with periodic borders, and shrink-wrapped around the discs (`ss`) along
+    // other axes.
     let periodic = moment.surroundings.periodic.unwrap_or_default();
     let [along_x, along_y] =
         periodic.periods().map(|period| if period.is_some() { "pp" } else { "ss" });
@@ -371,7 +379,7 @@ fn head(moment: &Moment, label: &str, count: usize) -> String {
         true => {
             format!("{along_x} {along_y} ss\n{:?} {:?}\n{:?} {:?}\n", min.x, max.x, min.y, max.y)
         }
-        // A leaning box is given by the upright box around it, and its tilt.
+        // A tilted box is given by the axis-parallel box around it, and its tilt.
         false => format!(
             "xy xz yz {along_x} {along_y} ss\n{:?} {:?} {tilt:?}\n{:?} {:?} 0.0\n",
             min.x + tilt.negative_part(),
@@ -392,7 +400,8 @@ fn head(moment: &Moment, label: &str, count: usize) -> String {
     )
 }
 
-/// A box around all discs that are not lost, or the whole cell along a periodic axis, and the largest radius, m.
+/// Returns the box around all discs that are not lost (along a periodic axis, the whole periodic cell) by its lower
+/// left and upper right corner, m, and the largest radius of a disc, m.
 fn bounds(moment: &Moment) -> ([DVec2; 2], f64) {
     let grains = moment.grains.iter().filter(|grain| !grain.lost);
     let grains = grains.map(|grain| (grain.position, grain.radius));

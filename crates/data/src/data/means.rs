@@ -1,5 +1,5 @@
-//! Means over the time between two frames: the table of pairs, and the mean columns of the tables of grains, walls and
-//! the pile. They come from sums over all steps, so pairs that have separated are included.
+//! Computes means over the time between two frames: the table of pairs, and the mean columns of the tables of grains,
+//! walls and the pile. The means come from sums over all steps, so they include pairs that have separated since.
 
 use glam::{DMat2, DVec2};
 
@@ -11,7 +11,7 @@ use crate::column_spec::{ColumnSpec, column};
 use crate::granular::GrainMeasures;
 use crate::sim::{ForceSums, Moment, PairSum, Surroundings};
 
-/// Tables of means, and columns of means for other tables.
+/// The table of pairs, and columns of means for the tables of grains, walls and the pile.
 pub(super) struct Means {
     pub pairs: Table,
     pub grains: Table,
@@ -20,7 +20,8 @@ pub(super) struct Means {
 }
 
 impl Means {
-    /// `area` is the area of the pile at the moment, m².
+    /// Computes the means. `sums` are the sums of contact forces since the previous frame, and `area` is the area of
+    /// the pile at the moment, m².
     pub(super) fn of(
         sums: &ForceSums,
         moment: &Moment,
@@ -28,7 +29,7 @@ impl Means {
         area: f64,
     ) -> Self {
         let ForceSums { secs, pairs, stresses, .. } = sums;
-        // A lost grain has no cell.
+        // A lost grain has no cell, and its stress is NaN.
         let mean = |stress: DMat2, area: f64| {
             stress * if area > 0.0 { 1.0 / (secs * area) } else { f64::NAN }
         };
@@ -46,7 +47,7 @@ impl Means {
             let torque = place_of(&wall, &moment.surroundings).perp_dot(impulse) - about_origin;
             WallMeans {
                 force: -impulse / *secs,
-                // In a periodic scene there is no unique point for the torque.
+                // In a periodic scene a wall has images, so the point about which the torque acts is not unique.
                 torque: if periodic.is_none() { torque / *secs } else { f64::NAN },
                 work: if *secs > 0.0 { sums().map(|pair| pair.work).sum() } else { f64::NAN },
             }
@@ -69,7 +70,7 @@ struct PairTableRow {
     id: u32,
     other_id: u64,
     kind: u32,
-    /// Index in the list of names.
+    /// Index of body j's name in the list of names.
     name: u32,
     sum: PairSum,
 }
@@ -126,7 +127,7 @@ fn pairs_table(sums: &ForceSums, moment: &Moment) -> Table {
 }
 
 impl Table {
-    /// One row per pair that has transmitted a force.
+    /// Makes the table of pairs: one row per pair of bodies that has transmitted a force.
     pub fn of_pairs(sums: &ForceSums, moment: &Moment) -> Self {
         pairs_table(sums, moment)
     }
@@ -140,7 +141,8 @@ fn some(number: f64) -> Option<f64> {
     (!number.is_nan()).then_some(number)
 }
 
-/// Mean stress σ, the mean of f ⊗ ℓ divided by the area.
+/// Columns of the mean stress σ, N/m: Σ f ⊗ ℓ over contacts, averaged over time and divided by the area, with the
+/// contact force f (N) and the branch vector ℓ (m).
 const STRESS_COLUMNS: &[ColumnSpec<DMat2>] = &[
     column(
         "mean_stress_xx",

@@ -1,15 +1,15 @@
-//! Names of body j in the tables of contacts and of pairs.
+//! Describes body j of a contact, the body that grain i touches, in the tables of contacts and pairs.
 
 use crate::sim::{Moment, OtherBody};
 
-/// Words of the column `kind_j`.
+/// Words of the column `kind_j`, the kind of body j.
 pub(super) const OTHER_KINDS: &[&str] = &["grain", "fixed", "boundary"];
 
-/// Kinds, numbers and names of bodies j for tables.
+/// Kinds, ids and names of the bodies j of a moment, for tables.
 pub(super) struct OtherBodies<'a> {
     moment: &'a Moment,
     first_boundary: u64,
-    /// An empty name, followed by the shapes and numbers of the boundaries.
+    /// Names of bodies: an empty name for grains and fixed discs, followed by shape and number of each boundary.
     pub names: Vec<String>,
 }
 
@@ -25,7 +25,7 @@ impl<'a> OtherBodies<'a> {
         }
     }
 
-    /// Index of the word for its kind, number, and index of its name.
+    /// Returns, for a body j, the index of its kind in [`OTHER_KINDS`], its id, and the index of its name in `names`.
     pub(super) fn told(&self, other: OtherBody) -> (u32, u64, u32) {
         match other {
             OtherBody::Grain(number) => (0, self.moment.id(number).into(), 0),

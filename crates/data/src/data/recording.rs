@@ -1,4 +1,4 @@
-//! A recording: writes the measurements and moments of a run to files while it runs.
+//! Records a run: writes the measurements of its steps and its moments to files while it runs.
 
 use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -14,21 +14,21 @@ use crate::error::{Error, Result};
 use crate::scene::{DataSettings, FormatName};
 use crate::sim::{ForceSums, Moment, Observables, Simulation};
 
-/// Default simulated time between two frames, s; the same as between pictures.
+/// Default simulated time between two frames, s. Pictures have the same default interval.
 const DEFAULT_EVERY_SECS: f64 = 0.04;
-/// Number of messages that may wait to be written. Frames among them take memory. With fewer, the run would wait for a
-/// disk that is busy for a moment.
+/// Number of messages that may wait for the writing thread. With more, waiting frames take more memory. With fewer, the
+/// run would wait for a disk that is busy for a moment.
 const MOST_WAITING: usize = 4;
-/// Number of step rows that may wait to be sent.
+/// Largest number of rows of the table of steps that are collected before they are sent to the writing thread.
 const MOST_ROWS: usize = 1024;
-/// Frames between two writes of the files if the run is faster than the disk. If it is larger, more is lost when the
-/// program is killed.
+/// Largest number of frames between two flushes of the files if the run is faster than the disk. If it is larger, more
+/// frames are lost when the program is killed.
 const FRAMES_AT_ONCE: usize = 8;
 
 /// A recording that grows during a run.
 ///
-/// A separate thread writes the frames. If writing fails there, the next call returns the error. Memory does not grow
-/// with the run: if the disk is too slow, the run waits.
+/// A separate thread writes the frames. If this thread fails to write, the next call returns the error. The used memory
+/// does not grow with the run: if the disk is too slow, the run waits.
 ///
 /// ```
 /// use slump_data::data::{RunFacts, FormatName, Recording};
@@ -47,30 +47,31 @@ const FRAMES_AT_ONCE: usize = 8;
 /// ```
 pub struct Recording {
     folder: RecordingFolder,
-    /// Rows that are sent with the next frame.
+    /// Measurements of steps that have not yet been sent to the writing thread.
     rows: Vec<Observables>,
     frames: u64,
-    /// Step of the last frame that existed when the recording was resumed.
+    /// Step of the last frame that existed when the recording was resumed; `None` for a new recording.
     last_step: Option<u64>,
     schedule: Option<FrameSchedule>,
-    /// `None` once the recording has ended, also after an error.
+    /// The writing thread; `None` once the recording has ended, also after an error.
     writer: Option<WriterThread>,
-    /// Sums of the forces of pairs since the last frame.
+    /// Sums of the contact forces of each pair of bodies since the last frame.
     sums: ForceSums,
 }
 
-/// The thread that writes, and its message channel.
+/// The thread that writes the files, and the channel for messages to it.
 struct WriterThread {
     sender: SyncSender<RecordingMessage>,
     thread: JoinHandle<Result<()>>,
 }
 
 impl Recording {
-    /// Starts a recording in a folder, which is created if missing. An existing recording is removed if `overwrite` is
-    /// true, and refused otherwise.
+    /// Starts a recording in a folder, which is created if it does not exist. If the folder contains a recording, that
+    /// recording is removed if `overwrite` is true, and otherwise refused.
     ///
     /// # Errors
-    /// If the folder cannot be written to, another process is recording into it, or it contains a recording.
+    /// If the folder cannot be written to, if another process is recording into the folder, or if it contains a
+    /// recording and `overwrite` is false.
     pub fn start(
         folder: &Path,
         formats: &[FormatName],
@@ -91,18 +92,19 @@ impl Recording {
     ) -> Result<Self> {
         formats.iter().try_for_each(|&format| check_format(format))?;
         folder.clear()?;
-        // The manifest comes first: other programs identify a recording by it.
+        // The manifest (`data.json`) is written first, because other programs identify a recording by this file.
         write_manifest(folder.path(), formats, facts)?;
         let writer = FormatsWriter::start(folder.path(), formats, facts)?;
         Self::with(folder, writer, 0, None)
     }
 
-    /// Resumes the recording in a folder, for a run that resumes at a step at which the recording had the extent
-    /// `mark`. Later rows are dropped. Without an existing recording a new one is started.
+    /// Resumes the recording in a folder, for a run that resumes at the step `step`. At that step the recording had the
+    /// extent `mark`. Later rows and frames are removed. If the folder contains no recording, a new recording is
+    /// started.
     ///
     /// # Errors
-    /// As [`Recording::start`], and if a file differs from the format of this version or has lost a part of that
-    /// extent. Then nothing is changed.
+    /// As [`Recording::start`]. Also fails if a file differs from the format of this version, or has lost rows or
+    /// frames of that extent. Then no recorded data are changed.
     pub fn go_on(
         folder: &Path,
         formats: &[FormatName],
@@ -154,24 +156,25 @@ impl Recording {
         Ok(Self { folder, rows, frames, last_step, schedule: None, writer, sums })
     }
 
-    /// Sums of the forces of pairs since the last frame. A run that resumes from a saved state passes them to
-    /// [`Recording::with_sums`].
+    /// Returns the sums of the contact forces of each pair of bodies since the last frame. A run that resumes from a
+    /// saved state passes these sums to [`Recording::with_sums`].
     pub fn sums(&self) -> &ForceSums {
         &self.sums
     }
 
-    /// Continues the means of the next frame from these sums.
+    /// Sets the sums of forces since the last frame, so that the means of the next frame include the time before the
+    /// run was saved.
     pub fn with_sums(mut self, sums: ForceSums) -> Self {
         self.sums = sums;
         self
     }
 
-    /// The folder of the recording.
+    /// Returns the folder of the recording.
     pub fn folder(&self) -> &Path {
         self.folder.path()
     }
 
-    /// Number of frames added so far.
+    /// Returns the number of frames added so far.
     pub fn frames(&self) -> u64 {
         self.frames
     }
@@ -186,13 +189,13 @@ impl Recording {
         if self.rows.len() < MOST_ROWS && !has_failed { Ok(()) } else { self.send_rows() }
     }
 
-    /// Adds the forces of pairs in the last step to the means of the next frame. Call it at the start and after each
-    /// step; more than one call per step has no further effect.
+    /// Adds the contact forces of the last step to the means of the next frame. Call this function at the start and
+    /// after each step; more than one call per step has no further effect.
     pub fn follow(&mut self, simulation: &Simulation) {
         self.sums.follow(simulation);
     }
 
-    /// Adds a frame. Its step must be later than those of the frames before.
+    /// Adds a moment as a frame. The step of the moment must be later than the steps of all earlier frames.
     ///
     /// # Errors
     /// If an earlier write failed.
@@ -204,8 +207,9 @@ impl Recording {
         Ok(())
     }
 
-    /// Makes [`Recording::add_if_due`] add frames at the steps nearest to some times of the run, which is now in this
-    /// state. In a resumed recording the frames up to now exist already.
+    /// Sets the simulated times of frames: [`Recording::add_if_due`] then adds a frame at the step nearest to each of
+    /// these times. `simulation` is the run in its present state. A resumed recording already has all frames up to this
+    /// state.
     pub fn at(mut self, times: Times, simulation: &Simulation) -> Self {
         let mut schedule = FrameSchedule::new(times);
         if self.last_step.is_some() {
@@ -215,8 +219,8 @@ impl Recording {
         self
     }
 
-    /// Adds a frame of the present state if one is due. Without [`Recording::at`], a frame is always due. Also calls
-    /// [`Recording::follow`]. Call it at the start and after each step.
+    /// Adds a frame of the present state if a frame is due. Without a call of [`Recording::at`], a frame is always due.
+    /// Also calls [`Recording::follow`]. Call this function at the start and after each step.
     ///
     /// # Errors
     /// If an earlier write failed.
@@ -226,22 +230,22 @@ impl Recording {
         if is_due { self.add(simulation.moment()) } else { Ok(()) }
     }
 
-    /// Waits until readers can find everything, and returns the extent of the recording.
+    /// Waits until all added data are in the files, and returns the extent of the recording.
     ///
     /// # Errors
-    /// If something could not be written.
+    /// If data could not be written.
     pub fn flush(&mut self) -> Result<RecordingMark> {
         self.send_rows()?;
         let (done, answer) = sync_channel(1);
         self.send(RecordingMessage::Flush(done))?;
-        // No reply comes if the writer has failed; `end` then returns its error.
+        // If the writing thread has failed, no reply comes. Then `end` returns the error of that thread.
         answer.recv().or_else(|_| self.end().map(|()| RecordingMark::default()))
     }
 
     /// Ends the recording.
     ///
     /// # Errors
-    /// If something could not be written.
+    /// If data could not be written.
     pub fn finish(mut self) -> Result<()> {
         self.send_rows()?;
         self.end()
@@ -263,7 +267,7 @@ impl Recording {
         }
     }
 
-    /// Ends the thread and returns its error, once.
+    /// Ends the writing thread and returns its error. Later calls have no effect.
     fn end(&mut self) -> Result<()> {
         let Some(WriterThread { sender, thread }) = self.writer.take() else { return Ok(()) };
         drop(sender);
@@ -273,7 +277,8 @@ impl Recording {
 
 impl Drop for Recording {
     fn drop(&mut self) {
-        // The thread must end before the folder is unlocked for others. `finish` reports errors, this does not.
+        // The writing thread must end before the folder is unlocked for other processes. Its error is lost here; only
+        // `finish` reports it.
         if let Some(WriterThread { sender, thread }) = self.writer.take() {
             drop(sender);
             let _ = thread.join();
@@ -283,24 +288,24 @@ impl Drop for Recording {
 
 enum RecordingMessage {
     Steps(Vec<Observables>),
-    /// A frame, with the number of earlier frames.
+    /// A frame: the number of earlier frames, the moment, and the sums of contact forces since the previous frame.
     Frame(u64, Box<(Moment, ForceSums)>),
-    /// A request to write everything before replying.
+    /// A request to write all earlier messages to the files and then to send the extent of the recording.
     Flush(SyncSender<RecordingMark>),
 }
 
-/// Writes all formats, on a separate thread, and the list of frames that all formats have.
+/// Writes the files of all formats on a separate thread, and the list of the frames that all formats have written.
 struct FormatsWriter {
     formats: Vec<Box<dyn Format>>,
     index: TextTable,
-    /// Frames that the formats have received but may not have written.
+    /// Frames that the formats have received but may not yet have written to their files.
     waiting: Vec<FrameRow>,
-    /// Extent of the data that the formats have received.
+    /// Extent of all data that the formats have received.
     mark: RecordingMark,
 }
 
 impl FormatsWriter {
-    /// Starts in a folder without a recording, or opens the existing recording.
+    /// Starts in a folder without a recording, or opens the existing recording in it.
     fn start(folder: &Path, formats: &[FormatName], facts: &RunFacts) -> Result<Self> {
         let formats = formats.iter().map(|format| start_format(*format, folder, facts));
         let formats = formats.collect::<Result<_>>()?;
@@ -308,7 +313,7 @@ impl FormatsWriter {
         Ok(Self { formats, index, waiting: Vec::new(), mark: RecordingMark::default() })
     }
 
-    /// Checks that the recording has the extent `mark` at a step, and returns its frames.
+    /// Checks that the recording has the extent `mark` at the step `step`, and returns its frames up to that step.
     fn check(&self, step: u64, mark: &RecordingMark) -> Result<KeptRows> {
         let (kept, _) = self.index.rows_there(Some(step), mark.frames)?;
         if kept.rows < mark.frames {
@@ -322,8 +327,8 @@ impl FormatsWriter {
         Ok(kept)
     }
 
-    /// Drops everything that was recorded after a step, at which the recording had the extent `mark`. If a part of that
-    /// is missing, drops nothing.
+    /// Removes all data that were recorded after the step `step`, at which the recording had the extent `mark`. If data
+    /// of that extent are missing, removes nothing.
     fn roll_back(&mut self, step: u64, mark: &RecordingMark) -> Result<KeptRows> {
         let kept = self.check(step, mark)?;
         self.index.roll_back(kept.step)?;
@@ -333,13 +338,14 @@ impl FormatsWriter {
         Ok(kept)
     }
 
-    /// Writes messages until the channel closes. An error ends the recording, but data written before it remains.
+    /// Handles messages until the channel closes. An error ends the recording, but the data written before the error
+    /// remain.
     fn run(mut self, messages: &Receiver<RecordingMessage>) -> Result<()> {
         let taken = self.take_all(messages);
-        // If a frame could not be added, the frames before it are complete.
+        // If a frame could not be added, the frames before it are complete and are still written.
         let flushed = if self.waiting.is_empty() { Ok(()) } else { self.flush() };
         let written = taken.and(flushed);
-        // Every format is finished, even if others failed.
+        // Every format is finished, even if another format has failed.
         let finished: Vec<_> = self.formats.iter_mut().map(|format| format.finish()).collect();
         written.and(finished.into_iter().collect())
     }
@@ -376,7 +382,7 @@ impl FormatsWriter {
             }
             RecordingMessage::Flush(done) => {
                 self.flush()?;
-                // The receiver of the reply may be gone.
+                // Sending fails if nobody waits for the reply any more, which does no harm.
                 let _ = done.send(self.mark);
                 Ok(())
             }
@@ -391,23 +397,23 @@ impl FormatsWriter {
     }
 }
 
-/// The simulated times of frames.
+/// Simulated times at which frames are recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Times {
-    /// From 0 on, with this interval, s.
+    /// At time 0 and then at regular intervals of this length, s.
     Every(f64),
-    /// At these times, s, in ascending order.
+    /// At the listed simulated times, s, in ascending order.
     At(Vec<f64>),
 }
 
 impl Times {
-    /// The times for these settings: frames at a constant rate.
+    /// Returns the times that settings ask for: frames at a constant rate.
     pub fn of(settings: &DataSettings) -> Self {
         Self::Every(settings.every_secs.unwrap_or(DEFAULT_EVERY_SECS))
     }
 }
 
-/// The steps of a run at which frames are made.
+/// Schedule of frames: decides after which steps of a run a frame is recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameSchedule {
     times: Times,
@@ -415,32 +421,33 @@ pub struct FrameSchedule {
 }
 
 impl FrameSchedule {
-    /// Frames at the steps nearest to some times.
+    /// Creates a schedule with a frame at the step nearest to each of the given times.
     pub fn new(times: Times) -> Self {
         Self { times, next: 0 }
     }
 
-    /// True if a frame of the present state is due. Call it once for each step, in order.
+    /// True if a frame of the present state is due. Call this function once for each step, in order.
     pub fn is_due(&mut self, simulation: &Simulation) -> bool {
         let latest_secs = simulation.time_secs() + 0.5 * simulation.parameters().time_step_secs;
         let step = simulation.observables().step;
         self.is_due_at(step, latest_secs, |secs| simulation.step_at(secs))
     }
 
-    /// True if a frame is due after a step that represents all times up to `latest_secs`.
+    /// True if a frame is due after the step `step`, which is the nearest step for all times up to `latest_secs` (s).
+    /// `step_at` returns the step that is nearest to a time.
     fn is_due_at(&mut self, step: u64, latest_secs: f64, step_at: impl Fn(f64) -> u64) -> bool {
         let mut due = false;
         while self.next_secs().is_some_and(|secs| step_at(secs) <= step) {
             due = true;
             let before = self.next;
             self.next = match self.times {
-                // In one operation, because many frames may fall into a single step.
+                // Times that fall into the same step are skipped in one operation, because they may be many.
                 Times::Every(secs) => {
                     before.saturating_add(1).max((latest_secs / secs).floor() as usize)
                 }
                 Times::At(_) => before + 1,
             };
-            // The count has reached its maximum: a frame is due in every step.
+            // The counter has reached its maximum, so a frame is due in every step.
             if self.next == before {
                 break;
             }

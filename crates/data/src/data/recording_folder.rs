@@ -1,5 +1,5 @@
-//! The folder of a recording: the names of its files, the lock that reserves it for one recording, and `data.json`,
-//! which describes the recording.
+//! Manages the folder of a recording: the names of its files, the lock that reserves it for one recording, and the
+//! manifest `data.json`, which describes the recording.
 
 use std::path::{Path, PathBuf};
 
@@ -16,10 +16,10 @@ use crate::output::{
 };
 use crate::scene::FormatName;
 
-/// File that lists the contents of a recording.
+/// Name of the file that lists the contents of a recording.
 const MANIFEST: &str = "data.json";
 
-/// A folder that is locked against other recordings until this value is dropped.
+/// A folder that no other recording can use until this value is dropped.
 pub struct RecordingFolder {
     path: PathBuf,
     overwrite: bool,
@@ -27,11 +27,11 @@ pub struct RecordingFolder {
 }
 
 impl RecordingFolder {
-    /// Creates the folder if it is missing, and locks it.
+    /// Creates the folder if it does not exist, and locks it.
     ///
     /// # Errors
-    /// If it cannot be written to, another process is recording into it, or it contains a recording and `overwrite` is
-    /// false.
+    /// If the folder cannot be written to, if another process is recording into the folder, or if it contains a
+    /// recording and `overwrite` is false.
     pub fn of(path: &Path, overwrite: bool) -> Result<Self> {
         let folder = Self::lock(path)?;
         let files = files_of_a_recording(path)?;
@@ -48,7 +48,7 @@ impl RecordingFolder {
         Ok(Self { overwrite, ..folder })
     }
 
-    /// Locks a folder to resume its recording, and removes the drafts that a killed process left.
+    /// Locks a folder to resume its recording, and removes the drafts (incomplete files) that a killed process left.
     ///
     /// # Errors
     /// As [`RecordingFolder::of`].
@@ -66,12 +66,12 @@ impl RecordingFolder {
         Ok(Self { path: path.to_owned(), overwrite: false, _lock: lock })
     }
 
-    /// The path of the folder.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Removes an existing recording if `overwrite` is true.
+    /// Removes an existing recording in the folder if `overwrite` is true.
     pub(super) fn clear(&self) -> Result<()> {
         if !self.overwrite {
             return Ok(());
@@ -80,10 +80,11 @@ impl RecordingFolder {
     }
 }
 
-/// Removes the recording in a folder, and then its empty folders. Files of other programs remain.
+/// Removes the files of the recording in a folder, and then the folders of the recording that are empty. Files of other
+/// programs remain.
 ///
 /// # Errors
-/// If another process is recording into it, or a file cannot be removed.
+/// If another process is recording into the folder, or a file cannot be removed.
 pub fn remove_recording(path: &Path) -> Result<()> {
     let folder = RecordingFolder::lock(path)?;
     for file in files_of_a_recording(path)? {
@@ -101,8 +102,8 @@ pub fn remove_recording(path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// All files of a recording in a folder, for every format, including formats that this build cannot write, and drafts
-/// that a killed process left.
+/// Returns all files of a recording in a folder, of all formats. This includes formats that this build cannot write,
+/// and drafts (incomplete files) that a killed process left.
 fn files_of_a_recording(folder: &Path) -> Result<Vec<PathBuf>> {
     let tables: Vec<_> = empty_tables().map(|table| table.name).collect();
     let mut all = files_named(folder, |name| [MANIFEST, FRAMES].contains(&name))?;
@@ -119,7 +120,7 @@ fn files_of_a_recording(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(all)
 }
 
-/// True if a file is a draft that a killed process left.
+/// True if a file is a draft, an incomplete file that a killed process left.
 fn is_left(path: &Path) -> bool {
     let name = path.file_name().and_then(|name| name.to_str());
     name.is_some_and(|name| final_name(name) != name)
@@ -145,10 +146,10 @@ pub(super) fn write_manifest(folder: &Path, formats: &[FormatName], run: &RunFac
     write_file(&path, text.as_bytes())
 }
 
-/// Refuses to resume a recording with other formats.
+/// Fails if the recording in a folder has other formats than `formats`.
 pub(super) fn check_manifest(folder: &Path, formats: &[FormatName]) -> Result<()> {
     let path = folder.join(MANIFEST);
-    // Without a manifest there is no recording yet.
+    // If there is no manifest, there is no recording yet.
     let Ok(text) = std::fs::read(&path) else { return Ok(()) };
     let manifest: Value = serde_json::from_slice(&text)
         .map_err(|error| Error::unread(&path, error, "the manifest of a recording"))?;
@@ -160,7 +161,8 @@ pub(super) fn check_manifest(folder: &Path, formats: &[FormatName]) -> Result<()
     Err(Error::value("data-format", names.join(","), allowed))
 }
 
-/// Facts about the scene of a recording, by name; `path` is its folder or a table in it. `None` without a recording.
+/// Reads the facts about the scene of a recording, by name. `path` is the folder of the recording or a table in it.
+/// Returns `None` if there is no recording.
 pub(crate) fn facts_of_recording(path: &Path) -> Option<Map<String, Value>> {
     let mut manifests = path.ancestors().take(3).map(|folder| folder.join(MANIFEST));
     let text = manifests.find_map(|path| std::fs::read(path).ok())?;

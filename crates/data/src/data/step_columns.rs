@@ -1,10 +1,10 @@
-//! The columns of the table of steps: the measurements of each step.
+//! Declares the columns of the table of steps: the measurements of each step.
 
 use crate::column_spec::CellValue::{Count, Flag, Number, SomeNumber};
 use crate::column_spec::{ColumnSpec, column};
 use crate::sim::Observables;
 
-/// The columns of the table of steps.
+/// Columns of the table of steps, which has one row per step.
 pub const STEP_COLUMNS: &[ColumnSpec<Observables>] = &[
     ColumnSpec::step(|row| row.step),
     ColumnSpec::time(|row| row.time_secs),

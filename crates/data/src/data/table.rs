@@ -1,28 +1,28 @@
-//! Tables of named columns, independent of file formats.
+//! Defines tables of named columns, independent of file formats.
 
 #[cfg(feature = "data")]
 use crate::column_spec::STEP;
 use crate::column_spec::{CellValue, ColumnSpec};
 
-/// A table: columns of one length.
+/// A table: columns with the same number of rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// Name, which is a part of file names: `grains`.
+    /// Name of the table, which is a part of file names, such as `grains`.
     pub name: &'static str,
-    /// Columns, in the order of the files.
+    /// Columns, in their order in files.
     pub columns: Vec<Column>,
 }
 
-/// One column.
+/// One column of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// Name in files.
+    /// Name of the column in files.
     pub name: &'static str,
     /// Unit; `1` for a dimensionless quantity, empty if the column is not a quantity.
     pub unit: &'static str,
-    /// Description, in a few words.
+    /// Description of the column, in a few words.
     pub about: &'static str,
-    /// One value per row.
+    /// Values of the column, one per row.
     pub values: Values,
 }
 
@@ -31,22 +31,22 @@ pub struct Column {
 pub enum Values {
     /// Numbers.
     Numbers(Vec<f64>),
-    /// Numbers that some rows do not have.
+    /// Numbers; `None` for rows without a number.
     SomeNumbers(Vec<Option<f64>>),
-    /// Whole numbers: identities and counts.
+    /// Whole numbers ≥ 0: ids and counts.
     Counts(Vec<u64>),
-    /// True or false; `None` if the contact law does not define it.
+    /// True or false; `None` if the property does not exist under the contact law.
     Flags(Vec<Option<bool>>),
-    /// Words of a short list.
+    /// Words from a short list.
     Words {
-        /// The list.
+        /// The list of words.
         words: Vec<String>,
         /// The index of each row's word in `words`.
         codes: Vec<u32>,
     },
 }
 
-/// Runs the same code on the list of values, for every kind.
+/// Runs the same code on the list of values of a column, for every kind of values.
 macro_rules! each_kind {
     ($values:expr, $list:ident => $work:expr) => {
         match $values {
@@ -70,7 +70,7 @@ impl Values {
         self.len() == 0
     }
 
-    /// The number of a row; NaN if it has none.
+    /// Returns the number in a row; NaN if the row has no number.
     pub(super) fn number(&self, row: usize) -> f64 {
         match self {
             Self::Numbers(numbers) => numbers[row],
@@ -80,13 +80,14 @@ impl Values {
         }
     }
 
-    /// The word of a row, if this is a column of words.
+    /// Returns the word in a row, if this is a column of words.
     pub(super) fn word(&self, row: usize) -> Option<&str> {
         let Self::Words { words, codes } = self else { return None };
         words.get(codes[row] as usize).map(String::as_str)
     }
 
-    /// These values extended to `rows` rows, with empty values at the end. Counts become numbers, which can be missing.
+    /// Returns these values extended to `rows` rows, with missing values at the end. Counts become numbers, because a
+    /// number can be missing but a count cannot. Words, and numbers that cannot be missing, are not extended.
     pub(super) fn padded(self, rows: usize) -> Self {
         match self {
             Self::SomeNumbers(mut numbers) => {
@@ -122,7 +123,7 @@ impl Values {
     }
 }
 
-/// The index of a word in a list. If it is missing, it is added at the end.
+/// Returns the index of a word in a list. If the list does not have the word, adds the word at the end.
 pub(super) fn place_of(words: &mut Vec<String>, word: &str) -> u32 {
     let known = words.iter().position(|known| known == word);
     known.unwrap_or_else(|| {
@@ -132,15 +133,16 @@ pub(super) fn place_of(words: &mut Vec<String>, word: &str) -> u32 {
 }
 
 impl Column {
-    /// Unit and meaning below the file's name for the column, such as `gap [m]: distance of the surfaces`, for formats
-    /// that have no separate place for them.
+    /// Returns name, unit and meaning of the column in one line, such as `gap [m]: distance of the surfaces`, for
+    /// formats that have no separate fields for unit and meaning. `name` is the column's name in the file.
     pub(super) fn described(&self, name: &str) -> String {
         let Self { unit, about, .. } = self;
         let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
         format!("{name}{unit}: {about}")
     }
 
-    /// Like `described`, for formats that write words as numbers, the first of them `first_code`.
+    /// Like `described`, for formats that write words as numbers: also lists the number of each word. The first word
+    /// has the number `first_code`.
     pub(super) fn described_with_codes(&self, name: &str, first_code: u32) -> String {
         let codes = match &self.values {
             Values::Words { words, .. } => {
@@ -156,7 +158,7 @@ impl Column {
 }
 
 impl Table {
-    /// A table of rows, with the list of names that they refer to.
+    /// Makes a table from rows. `names` is the list of names to which the rows refer by index.
     pub(super) fn new<Row>(
         name: &'static str,
         specs: &[ColumnSpec<Row>],
@@ -185,8 +187,8 @@ impl Table {
         Self { name, columns: columns.collect() }
     }
 
-    /// This table with the columns of another table added. If that table has fewer rows, its remaining values are
-    /// empty.
+    /// Returns this table with the columns of the table `more` added. If `more` has fewer rows, its columns are
+    /// extended with missing values.
     pub(super) fn beside(mut self, more: Self) -> Self {
         let rows = self.len();
         self.columns.extend(more.columns.into_iter().map(|mut column| {
@@ -206,13 +208,13 @@ impl Table {
         self.len() == 0
     }
 
-    /// The column of that name.
+    /// Returns the column with the given name.
     pub fn column(&self, name: &str) -> Option<&Column> {
         self.columns.iter().find(|column| column.name == name)
     }
 }
 
-/// Tables that grow and are cut back.
+/// Methods for tables that grow and are shortened.
 #[cfg(feature = "data")]
 impl Table {
     /// Adds the rows of a table with the same columns.
@@ -222,7 +224,7 @@ impl Table {
         }
     }
 
-    /// The step of each row.
+    /// Returns the step of each row.
     pub(super) fn steps(&self) -> &[u64] {
         match self.column(STEP).map(|column| &column.values) {
             Some(Values::Counts(steps)) => steps,
@@ -230,20 +232,20 @@ impl Table {
         }
     }
 
-    /// Drops the rows after a step, or all rows.
+    /// Removes the rows after the step `step`, or all rows if `step` is `None`.
     pub(super) fn keep_until(&mut self, step: Option<u64>) {
         let rows = self.steps().partition_point(|&there| Some(there) <= step);
         self.truncate(rows);
     }
 
-    /// Drops all rows but the first ones.
+    /// Removes all rows except the first `rows`.
     pub(super) fn truncate(&mut self, rows: usize) {
         for column in &mut self.columns {
             each_kind!(&mut column.values, list => list.truncate(rows));
         }
     }
 
-    /// Approximate size without compression, bytes.
+    /// Returns the approximate size of the table in a file without compression, bytes.
     pub(super) fn size(&self) -> usize {
         let width = |column: &Column| match column.values {
             Values::Numbers(_) | Values::SomeNumbers(_) | Values::Counts(_) => 8,

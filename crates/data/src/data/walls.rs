@@ -1,7 +1,7 @@
-//! The table of walls: boundaries and fixed discs, one row per rigid body.
+//! Makes the table of walls. A wall is a rigid body made of boundaries and fixed discs, and has one row in the table.
 //!
-//! A motion, with everything that it moves, is one wall. Each boundary without a motion is one wall, and all fixed
-//! discs without a motion together are one wall. Forces are contact forces, averaged over the step.
+//! All boundaries and fixed discs that move together are one wall. Each boundary at rest is one wall, and all fixed
+//! discs at rest together are one wall. Forces on walls are contact forces, averaged over the step.
 
 use glam::DVec2;
 
@@ -15,7 +15,7 @@ struct WallTableRow {
     step: u64,
     time_secs: f64,
     id: u64,
-    /// Index in the list of names.
+    /// Index of the wall's name in the list of names.
     name: u32,
     motion: Option<f64>,
     /// The boundaries and discs of the wall, and its motion.
@@ -105,7 +105,7 @@ const WALL_COLUMNS: &[ColumnSpec<WallTableRow>] = &[
 ];
 
 impl Table {
-    /// One row per wall.
+    /// Makes the table of walls: one row per wall.
     pub fn of_walls(moment: &Moment) -> Self {
         let walls = walls(&moment.surroundings).into_iter().enumerate();
         let rows = walls.map(|(number, (wall, motion))| row(moment, number, motion, wall));
@@ -118,7 +118,7 @@ impl Table {
     }
 }
 
-/// The fixed discs, with the velocities of their motions.
+/// Returns the fixed discs of a moment, each with the velocity that its motion gives it.
 pub(super) fn fixed_discs(moment: &Moment) -> impl Iterator<Item = GrainState> + '_ {
     let surroundings = &moment.surroundings;
     let discs = &surroundings.fixed_discs;
@@ -142,10 +142,10 @@ pub(super) fn fixed_discs(moment: &Moment) -> impl Iterator<Item = GrainState> +
     })
 }
 
-/// Each wall with the number of its motion, if it has one.
+/// Returns all walls, each with the number of its motion in the scene; `None` for pistons and walls at rest.
 pub(super) fn walls(surroundings: &Surroundings) -> Vec<(MotionView, Option<f64>)> {
     let Surroundings { boundaries, fixed_discs, moving, .. } = surroundings;
-    // Pistons come first in the list and are not numbered motions.
+    // Pistons come first in the list `moving` and have no number.
     let by_themselves = boundaries.iter().filter(|shape| matches!(shape, Boundary::Piston { .. }));
     let first_motion = by_themselves.count().min(moving.len());
     let moves = |is_it: &dyn Fn(&MotionView) -> bool| moving.iter().any(is_it);
@@ -182,7 +182,7 @@ fn row(
     let secs = moment.observables.time_step_secs;
     let (mut force, mut torque, mut work) = (DVec2::ZERO, 0.0, 0.0);
     for contact in moment.contacts.iter().filter(|contact| is_of(contact.other, &wall)) {
-        // Position of the contact when the forces acted, before the grain moved on.
+        // Position of the contact when the forces acted, before the grain moved in this step.
         let touched = contact.point - secs * moment.grains[contact.grain as usize].velocity;
         let offset = touched - place;
         let offset = periodic.map_or(offset, |periodic| periodic.shortest(offset));
@@ -207,7 +207,8 @@ fn row(
     (row, name)
 }
 
-/// Reference point of a wall, m: its pivot if it turns, else a point of its first boundary, else its first disc.
+/// Returns the reference point of a wall, m: the pivot if the wall turns, else a point of its first boundary, else the
+/// centre of its first disc.
 pub(super) fn place_of(wall: &MotionView, surroundings: &Surroundings) -> DVec2 {
     let Surroundings { boundaries, fixed_discs, .. } = surroundings;
     let of_boundary = wall.boundaries.first().and_then(|&it| point_of(&boundaries[it]));

@@ -1,22 +1,25 @@
-//! The cell of each grain: the region that is nearer to it than to any other disc, as far as it belongs to the packing.
+//! Computes the cell of each grain: the region that is nearer to the grain than to any other disc, as far as the region
+//! belongs to the packing.
 //!
-//! *Power cells.* Distance is measured by the power |p − x|² − r² of a point with respect to a disc (Laguerre, also
-//! radical, tessellation; F. Aurenhammer, *Power Diagrams*, SIAM J. Comput. 16, 1987). If radii differ, cells of the
-//! plain Voronoi diagram cut through larger discs. The power diagram separates two touching discs at their contact
-//! point, so each disc lies in its cell except for overlaps. For equal radii both diagrams are the same. Fixed discs
-//! also have cells, which do not count for any grain.
+//! *Power cells.* The distance of a point p from a disc with centre x and radius r is measured by the power |p − x|² −
+//! r² (Laguerre, also radical, tessellation; F. Aurenhammer, *Power Diagrams*, SIAM J. Comput. 16, 1987). If radii
+//! differ, cells of the plain Voronoi diagram cut through larger discs. The power diagram separates two touching discs
+//! at their contact point, so each disc lies in its cell except for overlaps. For equal radii the two diagrams are the
+//! same. Fixed discs also have cells, but their area does not count for any grain.
 //!
-//! *Walls.* A side of a boundary cuts the cells of the grains in front of it, between its ends, along its line. If a
-//! grain is not in front of any side of a boundary, the boundary's nearest corner cuts its cell, perpendicular to the
-//! line from the grain's centre. So no cell reaches into a solid or through a wall, and a wall that ends takes a little
-//! of the region around its end. *Periodic borders.* The images of discs and walls cut cells like the originals.
+//! *Walls.* A grain is in front of a straight side of a boundary if the foot of the perpendicular from its centre lies
+//! between the ends of the side. The line of the side then cuts the grain's cell. If a grain is not in front of any
+//! side of a boundary, the nearest corner of the boundary cuts its cell, along a line perpendicular to the line from
+//! the grain's centre to the corner. So no cell reaches into a solid or through a wall, and a wall with a free end
+//! takes a little of the region around that end. *Periodic borders.* The periodic images of discs and walls cut cells
+//! like the originals.
 //!
 //! *Extent of the packing.* A point belongs to the packing if its power with respect to the nearest grain is below
-//! 3r̄², where r̄ is the mean radius. If grains of that radius surround a pore that is just large enough for one more
-//! grain, the centre of the pore is the first point outside. A cell with corners outside is open: it lies at a free
-//! surface or at a hole and says nothing about the density of the packing. The part of its area that counts is bounded
-//! by this limit and by the box around all grains. A packing with straight sides and without holes therefore fills
-//! exactly its box, whether there are walls at its sides or not.
+//! 3r̄², with the mean radius r̄. If grains of that radius surround a pore that is just large enough for one more
+//! grain, the centre of the pore is the first point outside the packing. A cell with a corner outside the packing is
+//! open: it lies at a free surface or at a hole and says nothing about the density of the packing. Only the part of an
+//! open cell that is within the packing and within the box around all grains counts as area. A packing with straight
+//! sides and without holes therefore fills exactly its box, with or without walls at its sides.
 
 use std::f64::consts::PI;
 
@@ -28,31 +31,34 @@ use crate::contact::BroadPhase;
 use crate::sim::{GrainState, Surroundings};
 use crate::world::{Boundary, Edge, Periodic};
 
-/// Limit of the packing: the largest power with respect to the nearest grain, in squares of the mean radius. If it is
-/// smaller, loose packings have open cells inside. If it is larger, more of the air above a free surface counts.
+/// Limit of the packing: the largest power |p − x|² − r² of a point p in the packing with respect to the nearest grain
+/// (centre x, radius r), in squares of the mean radius. If it is smaller, loose packings have open cells inside. If it
+/// is larger, more of the air above a free surface counts.
 const LARGEST_POWER: f64 = 3.0;
 
-/// Relative margin in the squared distance by which the corners of a closed cell lie within the limit; it covers
-/// rounding.
+/// Relative margin for rounding in the test whether a cell is closed. The squared distances of its corners from its
+/// centre must be below the limit by this fraction.
 const CLOSED_WITHIN: f64 = 1e-9;
 
 pub(super) struct PowerCells {
-    /// Areas of the cells, m²; NaN for a grain that does not count.
+    /// Area of each grain's cell, m²; NaN for a lost grain.
     pub areas: Vec<f64>,
-    /// Area of a grain's disc divided by that of its cell; NaN if the cell is not closed.
+    /// Area of each grain's disc divided by the area of its cell; NaN if the cell is not closed.
     pub solid_fractions: Vec<f64>,
-    /// Sum of the areas of all cells, m².
+    /// Sum of the areas of the cells of all grains, m².
     pub area: f64,
-    /// Area of the box around all grains, m²; NaN without grains.
+    /// Area of the axis-parallel box around all grains, m²; NaN without grains.
     pub box_area: f64,
-    /// Σ πr² over all grains, m².
+    /// Total area Σ πr² of the discs of all grains, m².
     pub disc_area: f64,
     pub closed: u32,
-    /// Σ πr² over the grains with closed cells, divided by the areas of those cells; NaN without closed cells.
+    /// Total disc area of the grains with closed cells, divided by the total area of those cells; NaN without closed
+    /// cells.
     pub solid_fraction: f64,
 }
 
-/// Corners of the upright box around all grains, unbounded across periodic borders.
+/// Lower left and upper right corner (m) of the axis-parallel box around all grains. Along a periodic axis the box is
+/// unbounded.
 #[derive(Clone, Copy)]
 struct GrainBox {
     low: DVec2,
@@ -112,7 +118,8 @@ impl PowerCells {
     }
 }
 
-/// The grains that count, with their indices, followed by the fixed discs.
+/// Returns the indices of the grains that are not lost, and the discs that have cells: first these grains, then the
+/// fixed discs.
 fn sites(network: &Network, surroundings: &Surroundings) -> (Vec<usize>, Vec<Site>) {
     let (indices, grains): (Vec<usize>, Vec<&GrainState>) = network.grains().unzip();
     let mean_radius = grains.iter().map(|grain| grain.radius).sum::<f64>() / grains.len() as f64;
@@ -127,7 +134,8 @@ fn sites(network: &Network, surroundings: &Surroundings) -> (Vec<usize>, Vec<Sit
     (indices, grains.chain(fixed).map(site).collect())
 }
 
-/// The line of equal powers, as a cut of the first site's cell.
+/// Returns the half-plane that bounds the cell of the first site against the second site. On its border both discs have
+/// the same power.
 fn cut(sites: &[Site], first: usize, second: usize) -> HalfPlane {
     let (site, other) = (&sites[first], &sites[second]);
     let branch = other.position - site.position;
@@ -142,7 +150,8 @@ fn cut(sites: &[Site], first: usize, second: usize) -> HalfPlane {
     HalfPlane { offset: 0.5 * (distance + powers / distance), direction: branch / distance }
 }
 
-/// For each of the first `grains` sites, the sites whose cells may border on its cell: their reaches overlap.
+/// Returns, for each of the first `grains` sites, the indices of the sites whose cells may border on its cell: the
+/// circles with the radii `reach` around the two sites overlap.
 fn neighbours(sites: &[Site], grains: usize) -> Vec<Vec<usize>> {
     let mut neighbours = vec![Vec::new(); grains];
     let centres: Vec<DVec2> = sites.iter().map(|site| site.position).collect();
@@ -178,11 +187,11 @@ impl GrainBox {
         if size.y < 0.0 { f64::NAN } else { area }
     }
 
-    /// The sides of the box, relative to a point inside.
+    /// Returns the four sides of the box as half-planes relative to `centre`, a point inside the box.
     fn cuts(&self, centre: DVec2) -> [HalfPlane; 4] {
         let (mut above, mut below) = (self.high - centre, centre - self.low);
         let [width, height] = self.periodic.unwrap_or_default().periods();
-        // Beyond the reach of any cell.
+        // Along a periodic axis the sides are beyond the reach of any cell.
         if let Some(width) = width {
             (above.x, below.x) = (2.0 * width, 2.0 * width);
         }
@@ -198,26 +207,25 @@ impl GrainBox {
     }
 }
 
-/// A half-plane that cuts a cell: the points p with (p − x)·direction ≤ offset, where x is the centre of the cell's
-/// disc.
+/// A half-plane that cuts a cell: the points p with (p − x)·direction ≤ offset, with the centre x of the cell's disc.
 #[derive(Clone, Copy, Debug)]
 struct HalfPlane {
-    /// m; negative if the centre is beyond the line.
+    /// Distance of the half-plane's border from the disc's centre, m; negative if the centre is outside the half-plane.
     offset: f64,
-    /// Unit vector.
+    /// Unit normal of the half-plane's border, pointing out of the half-plane.
     direction: DVec2,
 }
 
-/// A disc that has a cell.
+/// A disc that has a cell: a grain, a fixed disc, or a periodic image of such a disc.
 #[derive(Clone, Copy)]
 struct Site {
     position: DVec2,
     radius: f64,
-    /// Radius of the region that can belong to its cell, m.
+    /// Radius of the circle around the disc's centre that contains its cell, m.
     reach: f64,
 }
 
-/// Adds those images of the sites whose cells may border on a cell of an original site.
+/// Adds those periodic images of the sites whose cells may border on a cell of an original site.
 fn append_images(sites: &mut Vec<Site>, periodic: Option<Periodic>) {
     let Some(periodic) = periodic else { return };
     let reach = 2.0 * sites.iter().map(|site| site.reach).fold(0.0, f64::max);
@@ -237,27 +245,27 @@ fn append_images(sites: &mut Vec<Site>, periodic: Option<Periodic>) {
     sites.extend(images);
 }
 
-/// A site and, with periodic borders, its images one period to each side. Testing them against the walls is equivalent
-/// to testing the site against the walls and their images.
+/// Returns a site and, with periodic borders, its images one period to each side. Testing the images against the walls
+/// is equivalent to testing the site against the images of the walls.
 fn with_images(site: &Site, periodic: Option<Periodic>) -> impl Iterator<Item = Site> {
     let site = *site;
     let around = periodic.unwrap_or_default().around();
     around.map(move |by| Site { position: site.position + by, ..site })
 }
 
-/// Position of a grain relative to a side.
+/// Position of a grain relative to a straight side of a boundary.
 enum Stands {
-    /// In front of the side: the cut along its line.
+    /// The grain is in front of the side. The half-plane cuts the grain's cell along the line of the side.
     Before(HalfPlane),
-    /// Beyond an end of the side: the vector to the nearer end, m.
+    /// The grain is beyond an end of the side. The vector leads from its centre to the nearer end, m.
     Beside(DVec2),
 }
 
-/// Adds the cuts by the sides of all boundaries that can affect a site's cell.
+/// Adds the half-planes by which the sides and corners of all boundaries can cut a site's cell.
 fn cut_by_walls(boundaries: &[Vec<Edge>], site: &Site, cuts: &mut Vec<HalfPlane>) {
     for edges in boundaries {
         let mut before = false;
-        // The shortest vector to a corner, m.
+        // Shortest vector from the site to a corner of the boundary so far, m.
         let mut corner: Option<DVec2> = None;
         for edge in edges {
             match stands(site.position, edge) {
@@ -291,7 +299,7 @@ fn stands(centre: DVec2, edge: &Edge) -> Stands {
             let along = to - from;
             let part = (centre - from).dot(along) / along.length_squared();
             if part > 0.0 && part < 1.0 {
-                // For a centre on the line itself, either direction would do.
+                // If the centre is on the line itself, both normal directions are valid.
                 let way = from + part * along - centre;
                 let direction = way.normalize_or(-along.perp().normalize_or_zero());
                 Stands::Before(HalfPlane { offset: way.length(), direction })
@@ -302,8 +310,8 @@ fn stands(centre: DVec2, edge: &Edge) -> Stands {
     }
 }
 
-/// A cell during its construction: its corners, anticlockwise, relative to the centre of its disc. Its memory is reused
-/// for the next cell.
+/// Polygon of a cell during its construction: its corners, anticlockwise, relative to the centre of the cell's disc, m.
+/// The buffers are reused for the next cell.
 #[derive(Default)]
 struct CellPolygon {
     corners: Vec<DVec2>,
@@ -311,14 +319,15 @@ struct CellPolygon {
 }
 
 impl CellPolygon {
-    /// Sets the cell to a square around everything within `reach` (m) of the centre, reduced by the cuts.
+    /// Sets the cell to a square that contains all points within `reach` (m) of the centre, and then reduces the cell
+    /// by all cuts.
     fn fill(&mut self, reach: f64, cuts: &mut [HalfPlane]) {
         self.corners.clear();
         let signs = [DVec2::NEG_ONE, DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
         self.corners.extend(signs.map(|sign| reach * sign));
         cuts.sort_unstable_by(|a, b| a.offset.total_cmp(&b.offset));
         for &cut in cuts.iter() {
-            // All later cuts are at least as far away.
+            // Cuts are sorted by offset, so all later cuts are at least as far away and change nothing.
             if cut.offset > 0.0 && cut.offset * cut.offset >= self.farthest_squared() {
                 break;
             }
@@ -326,7 +335,7 @@ impl CellPolygon {
         }
     }
 
-    /// Keeps the part that satisfies the cuts.
+    /// Reduces the cell to the part that is inside all half-planes.
     fn clip<const COUNT: usize>(&mut self, cuts: [HalfPlane; COUNT]) {
         for HalfPlane { offset, direction } in cuts {
             if offset < 0.0 && offset * offset >= self.farthest_squared() {
@@ -338,18 +347,18 @@ impl CellPolygon {
         }
     }
 
-    /// True if the cell exists and all its corners are nearer to the centre than `reach`, m.
+    /// True if the cell is not empty and all its corners are nearer to the centre than `reach`, m.
     fn is_closed(&self, reach: f64) -> bool {
         !self.corners.is_empty() && self.farthest_squared() < (1.0 - CLOSED_WITHIN) * reach * reach
     }
 
-    /// Squared distance of its farthest corner, m²; 0 if the cell is empty.
+    /// Returns the squared distance of the farthest corner of the cell from the centre, m²; 0 if the cell is empty.
     fn farthest_squared(&self) -> f64 {
         self.corners.iter().map(|corner| corner.length_squared()).fold(0.0, f64::max)
     }
 
-    /// Area within `radius` (m) of the centre. Each side spans a triangle with the centre, which the circle reduces to
-    /// a triangle with a sector at either end.
+    /// Computes the area of the cell within `radius` (m) of the centre, m². Each side of the cell spans a triangle with
+    /// the centre. The circle reduces this triangle to a smaller triangle with a circular sector at either end.
     fn area_within(&self, radius: f64) -> f64 {
         let nexts = self.corners.iter().cycle().skip(1);
         let sides = self.corners.iter().zip(nexts);
@@ -357,7 +366,8 @@ impl CellPolygon {
     }
 }
 
-/// Signed area of the part of the triangle between the origin and a side that lies inside a circle about the origin.
+/// Computes the signed area (m²) of the part of a triangle that lies inside the circle with the given radius (m) around
+/// the origin. The corners of the triangle are the origin, `from` and `to`.
 fn area_below(from: DVec2, to: DVec2, radius: f64) -> f64 {
     let inside = radius * radius;
     if from.length_squared() <= inside && to.length_squared() <= inside {

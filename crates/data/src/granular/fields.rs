@@ -1,19 +1,22 @@
-//! Density, momentum, velocity and stress as fields, by smoothing (I. Goldhirsch, *Stress, stress asymmetry and couple
-//! stress: from discrete particles to continuous fields*, Granular Matter 12:239, 2010):
+//! Computes density, momentum, velocity and stress as smoothed fields (I. Goldhirsch, *Stress, stress asymmetry and
+//! couple stress: from discrete particles to continuous fields*, Granular Matter 12:239, 2010):
 //!
 //! > ρ = Σ m φ(r − r_i),  p = Σ m v φ(r − r_i),  V = p/ρ,
 //! > σ_k = Σ m v′ ⊗ v′ φ(r − r_i) with v′ = v − V(r),  σ_c = Σ f ⊗ ℓ ∫₀¹ φ(r − r_i + s ℓ) ds,
 //!
-//! Compression is positive, as everywhere in Slump. f is the force on grain i, and ℓ leads to its centre from that of
-//! grain j, or from the touched point of a wall or fixed disc.
+//! Density ρ, momentum density p, velocity V and kinetic stress σ_k come from sums over grains with masses m, positions
+//! r_i and velocities v. The contact stress σ_c comes from a sum over contacts: f is the force on grain i, and the
+//! branch vector ℓ leads to the centre of grain i from the centre of grain j, or from the touched point of a wall or
+//! fixed disc. Compression is positive, as everywhere in Slump.
 //!
-//! **φ** is the product of a cubic B-spline in x and one in y. It has continuous second derivatives and ends at 2√3
-//! widths, and its standard deviation along each axis is the width. **A value is the mean over a cell**, to which each
-//! grain contributes the integral of φ. The sums over all cells are therefore exact: of mass, of momentum, and of σ_c,
-//! whose sum is Σ f ⊗ ℓ. The integral over s is a Gauss quadrature, whose weights add up to 1.
+//! **The smoothing function φ** is the product of a cubic B-spline in x and one in y. It has continuous second
+//! derivatives and ends at 2√3 widths, and its standard deviation along each axis is the width. **Each value is the
+//! mean over a grid cell**, to which each grain contributes the integral of φ. The sums of mass, momentum and contact
+//! stress over all cells are therefore exact; for the contact stress the sum is Σ f ⊗ ℓ. The integral over s is
+//! computed by Gauss quadrature, whose weights add up to 1.
 //!
-//! **Periodic borders** move the part that is smeared across them to the other side. If the borders shear, that part
-//! has the velocity that a grain has after crossing.
+//! **At periodic borders** the part of a grain that is smeared beyond a border appears at the opposite border. If the
+//! borders shear, that part has the velocity that a grain has after crossing the border.
 
 use glam::{DMat2, DVec2};
 
@@ -22,44 +25,47 @@ use crate::error::{Error, Result};
 use crate::sim::{GrainState, Moment};
 use crate::world::Periodic;
 
-/// Cells per width; with two, a field that is smooth over a width is resolved.
+/// Grid cells per smoothing width. With two, a field that is smooth over a width is resolved.
 const CELLS_IN_WIDTH: f64 = 2.0;
-/// Largest number of cells. More cells would take more memory than a field is worth.
+/// Largest number of grid cells of a field. More cells would take more memory than a field is worth.
 const MOST_CELLS: f64 = 4e6;
-/// Gauss quadrature on 0 … 1, exact up to the fifth degree: points and weights.
+/// Gauss quadrature on the interval from 0 to 1, as (point, weight). It is exact for polynomials up to degree five.
 const QUADRATURE: [(f64, f64); 3] = [
     (0.112_701_665_379_258_3, 5.0 / 18.0),
     (0.5, 4.0 / 9.0),
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
 
-/// Smoothed fields of a moment: means over the cells of a grid, row by row from below, each row from the left.
+/// Smoothed fields of a moment. Each list has the mean over each cell of a grid, row by row from below, each row from
+/// the left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fields {
-    /// The standard deviation of the smoothing along each axis, m.
+    /// Smoothing width, m: the standard deviation of the smoothing function along each axis.
     pub width: f64,
-    /// Corner of the cell with the index 0, m: the origin, or the lower periodic borders.
+    /// Lower left corner of the cell with the index 0 along both axes, m: the origin of coordinates, or along a
+    /// periodic axis the lower border.
     pub origin: DVec2,
-    /// Sides of a cell, m.
+    /// Width and height of a grid cell, m.
     pub cell: DVec2,
-    /// Indices of the first cell along both axes.
+    /// Indices of the first cell of the grid along x and y.
     pub first: [i64; 2],
-    /// Cells along both axes.
+    /// Numbers of cells along x and y.
     pub counts: [usize; 2],
-    /// ρ, kg/m².
+    /// Density ρ in each cell: mass per area, kg/m².
     pub density: Vec<f64>,
-    /// p, kg/(m·s).
+    /// Momentum p per area in each cell, kg/(m·s).
     pub momentum: Vec<DVec2>,
-    /// V, m/s; NaN where there is no mass.
+    /// Velocity V in each cell, m/s; NaN in a cell without mass.
     pub velocity: Vec<DVec2>,
-    /// σ_k, N/m.
+    /// Kinetic stress σ_k in each cell, due to velocity fluctuations, N/m.
     pub kinetic_stress: Vec<DMat2>,
-    /// σ_c, N/m: the first index is that of the force.
+    /// Contact stress σ_c in each cell, N/m. The first index of the tensor is that of the force, the second that of the
+    /// branch vector.
     pub contact_stress: Vec<DMat2>,
 }
 
 impl Fields {
-    /// Fields of all grains that are not lost, smoothed by a width, m.
+    /// Computes the fields of all grains that are not lost, with the smoothing width `width`, m.
     ///
     /// # Errors
     /// If the width is not a finite length > 0 or would need too many cells, or if a number of the moment is not finite.
@@ -67,8 +73,9 @@ impl Fields {
         Self::in_box(moment, width, [DVec2::MIN, DVec2::MAX])
     }
 
-    /// Fields of the grains in a box, from its lower left to its upper right corner, m, with a smoothing width around
-    /// it. Other grains are left out.
+    /// Computes the fields on a grid that covers the grains in a box, given by its lower left and upper right corner
+    /// (m), and the region over which these grains are smeared. Grains outside the box count only as far as they are
+    /// smeared into this grid.
     ///
     /// # Errors
     /// As [`Fields::of`].
@@ -89,7 +96,7 @@ impl Fields {
         let centres = network.grains().map(|(_, grain)| grain.position);
         let touched = network.links.iter();
         let touched = touched.map(|link| network.grains[link.grain].position - link.branch());
-        // Along a periodic axis, all grains are inside.
+        // Along a periodic axis, all grains are inside the box.
         let is_in = |at: &DVec2| {
             (periodic.x.is_some() || (least.x..=most.x).contains(&at.x))
                 && (periodic.y.is_some() || (least.y..=most.y).contains(&at.y))
@@ -119,7 +126,8 @@ impl Fields {
         Ok(fields)
     }
 
-    /// True if the fields of a whole box do not exceed the largest number of cells.
+    /// True if the fields of a box, given by its lower left and upper right corner (m), do not need more than the
+    /// largest number of grid cells with the smoothing width `width`, m.
     pub fn are_few(periodic: Option<Periodic>, corners: [DVec2; 2], width: f64) -> bool {
         let axes = axes_over(periodic.unwrap_or_default(), corners, width);
         axes.iter().map(|axis| axis.cells).product::<f64>() <= MOST_CELLS
@@ -144,7 +152,7 @@ impl Fields {
             .collect();
         for (_, grain) in network.grains() {
             smoothing.share(grain.position, |cell, share, above| {
-                // If the weight is rounded to zero, there is no velocity.
+                // If the weight is rounded to zero, the cell may have no mass and no velocity.
                 if share > 0.0 {
                     let own = seen(grain.velocity, above) - velocity[cell];
                     kinetic_stress[cell] += outer(per_area * share * grain.mass * own, own);
@@ -167,7 +175,7 @@ impl Fields {
         self.velocity = velocity;
     }
 
-    /// Centres of the cells along x and along y, m.
+    /// Returns the centres of the cells along x and along y, m.
     pub fn centres(&self) -> [Vec<f64>; 2] {
         [0, 1].map(|axis| {
             let of = |number: usize| {
@@ -179,7 +187,8 @@ impl Fields {
     }
 }
 
-/// The corners of the smallest box around points; both at the origin without points.
+/// Returns the lower left and upper right corner of the smallest box around points. Without points, both are at the
+/// origin.
 pub(crate) fn box_of(places: impl Iterator<Item = DVec2>) -> [DVec2; 2] {
     let wider = |[low, high]: [DVec2; 2], [other, one]: [DVec2; 2]| [low.min(other), high.max(one)];
     places.map(|at| [at, at]).reduce(wider).unwrap_or([DVec2::ZERO; 2])
@@ -192,12 +201,12 @@ fn axes_over(periodic: Periodic, [low, high]: [DVec2; 2], width: f64) -> [GridAx
     ]
 }
 
-/// a ⊗ b.
+/// Returns the tensor product a ⊗ b.
 fn outer(a: DVec2, b: DVec2) -> DMat2 {
     DMat2::from_cols(b.x * a, b.y * a)
 }
 
-/// The cells along an axis.
+/// Grid cells along one axis.
 struct GridAxis {
     wraps: bool,
     origin: f64,
@@ -207,7 +216,8 @@ struct GridAxis {
 }
 
 impl GridAxis {
-    /// All cells over which points in an interval are smeared, or all cells between periodic borders.
+    /// Creates all cells over which points from `from` to `to` (m) are smeared, or all cells between the periodic
+    /// borders.
     fn of(borders: Option<[f64; 2]>, [from, to]: [f64; 2], width: f64) -> Self {
         let side = width / CELLS_IN_WIDTH;
         if let Some([low, high]) = borders {
@@ -220,8 +230,9 @@ impl GridAxis {
         Self { wraps: false, origin: 0.0, side, first: first as i64, cells }
     }
 
-    /// Weights of the cells around a smeared point: cell, weight, and the number of periods by which the cell lies
-    /// beyond the upper border. The weights add up to 1, unless a part lies outside the grid.
+    /// Returns, for each grid cell over which a point at `place` (m) is smeared, the cell's index, its weight, and the
+    /// number of periods by which the cell is beyond the upper periodic border. The weights add up to 1, unless a part
+    /// of the smeared point is outside the grid.
     fn shares(&self, place: f64, width: f64) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
         let knots = knots(width);
         let at = move |cell: f64| self.origin + cell * self.side;
@@ -247,12 +258,13 @@ impl GridAxis {
     }
 }
 
-/// Distance of the knots of a cubic B-spline with standard deviation `width`.
+/// Returns the distance between the knots of a cubic B-spline with the standard deviation `width`, in the unit of
+/// `width`.
 fn knots(width: f64) -> f64 {
     3f64.sqrt() * width
 }
 
-/// The integral of the cubic B-spline up to a point, in knots from its centre.
+/// Returns the integral of the cubic B-spline up to `place`, a distance from its centre in units of the knot distance.
 fn spline_below(place: f64) -> f64 {
     let t = place.abs();
     let above_middle = if t < 1.0 {
@@ -270,7 +282,8 @@ struct Smoothing {
 }
 
 impl Smoothing {
-    /// Calls `to` for the cells over which a point is smeared: cell, weight, and the number of periods above this one.
+    /// Calls `to` for each grid cell over which a point at `place` (m) is smeared, with the cell's index, its weight,
+    /// and the number of periods by which the smeared part lies above the periodic cell of the scene.
     fn share(&self, place: DVec2, mut to: impl FnMut(usize, f64, f64)) {
         let [along_x, along_y] = &self.axes;
         let in_row = |above: f64| {

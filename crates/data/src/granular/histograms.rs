@@ -1,49 +1,56 @@
-//! Histograms of forces, directions, contacts and overlaps.
+//! Counts forces, directions, contacts and overlaps of a pile in histograms.
 //!
-//! The bins are the same for all piles and moments, so that counts add up over frames and runs.
+//! The bins are the same for all piles and moments, so that counts of several frames and runs can be added.
 
 use super::MomentParts;
 use super::stress::axis_degrees;
 use crate::sim::Moment;
 
-/// Width of the bins of directions, degrees. The first bin is centred at 0, so that the directions of square and
-/// triangular packings are in the centres of their bins.
+/// Width of a bin of contact directions, degrees. The first bin is centred at 0, so that the contact directions of
+/// square and triangular packings are in the centres of their bins.
 const DEGREES: f64 = 5.0;
-/// Bins of f per mean force.
+/// Number of bins of normal forces per mean force: a bin is 1/5 of the mean force wide.
 const FORCE_BINS_IN_ONE: i32 = 5;
-/// The bins of f reach from this many mean forces in tension …
+/// Lower limit of the bins of normal forces: this many mean forces, in tension. One more bin contains all stronger
+/// tensile forces.
 const FORCES_PULLING: i32 = 4;
-/// … to this many in compression.
+/// Upper limit of the bins of normal forces: this many mean forces, in compression. One more bin contains all stronger
+/// compressive forces.
 const FORCES_PUSHING: i32 = 8;
-/// The last bin of contacts per grain includes all larger numbers. Equal discs have 6 at most.
+/// Lower edge of the last bin of contacts per grain. This bin includes all larger numbers. Equal discs have at most 6
+/// contacts.
 const CONTACTS: u32 = 12;
-/// Edges of overlaps in mean diameters: 0, and three per decade.
+/// Edges of the bins of overlaps, in mean diameters: 0, and then three per decade from 1e-7 to 0.1.
 const OVERLAPS: [f64; 20] = [
     0.0, 1e-7, 2e-7, 5e-7, 1e-6, 2e-6, 5e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3,
     1e-2, 2e-2, 5e-2, 1e-1,
 ];
 
-/// Number of occurrences of each range of a quantity.
+/// Histogram of a quantity: the number of values in each bin.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Histogram {
-    /// The quantity, a word.
+    /// Name of the quantity, one word such as `overlap`.
     pub quantity: &'static str,
-    /// Unit of the edges; 1 if they are dimensionless.
+    /// Unit of the edges; `1` for a dimensionless quantity.
     pub unit: &'static str,
-    /// Bin k reaches from `edges[k]`, which belongs to it, to `edges[k + 1]`. The first and last edges may be infinite.
+    /// Edges of the bins. Bin k reaches from `edges[k]`, which belongs to the bin, to `edges[k + 1]`. The first and
+    /// last edges may be infinite.
     pub edges: Vec<f64>,
-    /// Number of values in each bin.
+    /// Number of values of the quantity in each bin.
     pub counts: Vec<u64>,
 }
 
-/// The histograms of a pile:
+/// Computes the histograms of a pile:
 ///
-/// * `normal_force`: f = N/⟨|N|⟩ of the contacts that bear a force, in bins of 0.2 from −4 to 8, and two bins beyond.
-/// * `contact_orientation`: directions of the normals of all contacts, degrees anticlockwise from the x axis, in bins
-///   of 5 from −2.5 to 177.5. A normal is an axis without direction, so values above 177.5 count as below 2.5.
-/// * `coordination`: contacts per grain, in bins of one; the last bin is unbounded.
-/// * `overlap`: overlaps of contacts in mean diameters: one bin for contacts with a gap, below 0; then from 0 to 1e-7,
-///   and three bins per decade (1, 2, 5) to 0.1 and beyond.
+/// * `normal_force`: the normal force N of each contact that bears a force, divided by the mean of |N|, in bins of 0.2
+///   from −4 to 8. Two more bins contain the values below −4 and above 8.
+/// * `contact_orientation`: the directions of the normals of all contacts, degrees anticlockwise from the x axis, in
+///   bins of 5 from −2.5 to 177.5. A normal counts as an axis without a sign, so directions from 177.5 to 180 count in
+///   the bin from −2.5 to 2.5.
+/// * `coordination`: the number of contacts of each grain, in bins of one. The last bin has no upper limit.
+/// * `overlap`: the overlap of each contact in mean diameters. The first bin contains the contacts with a gap, which
+///   have a negative overlap. The next bin reaches from 0 to 1e-7. Then there are three bins per decade (1, 2, 5) up to
+///   0.1, and a bin for larger overlaps.
 pub fn histograms(moment: &Moment) -> Vec<Histogram> {
     of_parts(&MomentParts::of(moment), moment)
 }
@@ -78,7 +85,7 @@ impl Histogram {
     ) -> Self {
         let mut counts = vec![0; edges.len() - 1];
         for value in values {
-            // The number of edges that are not above the value; NaN is in no bin.
+            // Number of edges that are not above the value. NaN compares false, so NaN is in no bin.
             let edges_below = edges.partition_point(|&edge| edge <= value);
             if let Some(count) = edges_below.checked_sub(1).and_then(|bin| counts.get_mut(bin)) {
                 *count += 1;

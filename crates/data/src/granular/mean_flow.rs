@@ -1,4 +1,4 @@
-//! The mean flow around each grain, and the kinetic energy relative to it.
+//! Fits the mean flow around each grain, and computes the kinetic energy of the grains relative to this flow.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -6,18 +6,19 @@ use super::network::Network;
 use crate::contact::Grid;
 use crate::sim::{GrainState, Surroundings};
 
-/// Radius of the neighbourhood that determines the mean flow, in mean diameters. If it is larger, a curved flow counts
-/// as fluctuation. If it is smaller, too few grains contribute.
+/// Radius of the neighbourhood of a grain in which the mean flow is fitted, in mean diameters. If it is larger, a
+/// curved flow counts as fluctuation. If it is smaller, too few grains contribute.
 const REACH_IN_DIAMETERS: f64 = 3.0;
-/// Least number of grains for a fit. A linear flow has three parameters per component, so fewer grains determine it
-/// badly.
+/// Least number of grains for a fit of the mean flow. A linear flow has three parameters per velocity component, so
+/// fewer grains determine the flow badly.
 const LEAST: f64 = 7.0;
 
-/// ½ Σ m |v − v̄|², where v̄ is the local mean flow, J.
+/// Computes the kinetic energy of the velocity fluctuations, ½ Σ m |v − v̄|², J, with the mass m and velocity v of each
+/// grain and the mean flow v̄ around it.
 ///
-/// v̄ is linear in position, so a uniform shear does not contribute to the fluctuation. It is fitted by least squares
-/// to the grains of the neighbourhood, all with the same weight. For n uncorrelated velocities the fit removes 3/n of
-/// their variance; the factor n/(n − 3) restores it.
+/// The mean flow v̄ is linear in position, so a uniform shear does not count as fluctuation. It is fitted by least
+/// squares to the velocities of the grains in the neighbourhood, all with the same weight. For n uncorrelated
+/// velocities the fit removes 3/n of their variance. The factor n/(n − 3) restores it.
 pub(super) fn peculiar_energy(network: &Network, surroundings: &Surroundings) -> f64 {
     let reach = REACH_IN_DIAMETERS * surroundings.mean_diameter;
     let mass: f64 = network.grains().map(|(_, grain)| grain.mass).sum();
@@ -43,11 +44,11 @@ pub(super) fn peculiar_energy(network: &Network, surroundings: &Surroundings) ->
     let of_grain =
         |((_, grain), FlowSums { matrix, velocities }): ((usize, &GrainState), FlowSums)| {
             let count = matrix.x_axis.x;
-            // Grains in a straight line do not determine the flow across it.
+            // Grains in a straight line do not determine how the flow changes across that line.
             let fitted = count >= LEAST && matrix.determinant() > 1e-6 * count.powi(3);
             let (peculiar, part) = if fitted {
                 let inverse = matrix.inverse();
-                // The mean flow at the grain, relative to its own velocity.
+                // The mean flow at the grain minus the grain's own velocity.
                 let mean = velocities.map(|sum| (inverse * sum).x);
                 (DVec2::from(mean), count / (count - 3.0))
             } else {
@@ -58,17 +59,19 @@ pub(super) fn peculiar_energy(network: &Network, surroundings: &Surroundings) ->
     network.grains().zip(sums).map(of_grain).sum()
 }
 
-/// Sums over the neighbourhood of a grain, for the fit of a linear flow.
+/// Sums over the neighbourhood of a grain, for the least-squares fit of a linear flow.
 #[derive(Clone, Copy)]
 struct FlowSums {
-    /// Σ (1, x, y) ⊗ (1, x, y), with (x, y) relative to the grain, in units of the reach.
+    /// Σ (1, x, y) ⊗ (1, x, y) over the grains of the neighbourhood. The positions (x, y) are relative to the central
+    /// grain and in units of the neighbourhood's radius.
     matrix: DMat3,
-    /// Σ (1, x, y) v for each component, with v relative to the grain's velocity, m/s.
+    /// Σ (1, x, y) v over the grains of the neighbourhood, for each velocity component v relative to the central grain,
+    /// m/s.
     velocities: [DVec3; 2],
 }
 
 impl FlowSums {
-    /// Sums with the grain itself only.
+    /// Creates the sums with the central grain only.
     fn of_one() -> Self {
         let mut sums = Self { matrix: DMat3::ZERO, velocities: [DVec3::ZERO; 2] };
         sums.add(DVec2::ZERO, DVec2::ZERO);
@@ -85,7 +88,8 @@ impl FlowSums {
     }
 }
 
-/// Positions and velocities of the grains, followed by those of their images within reach of the cell.
+/// Returns the positions (m) and velocities (m/s) of the grains, followed by those of their periodic images that are at
+/// most `reach` (m) outside the periodic cell.
 fn with_images(network: &Network, surroundings: &Surroundings, reach: f64) -> Vec<(DVec2, DVec2)> {
     let grains = || network.grains().map(|(_, grain)| (grain.position, grain.velocity));
     let Some(cell) = surroundings.periodic else { return grains().collect() };

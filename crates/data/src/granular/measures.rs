@@ -1,4 +1,4 @@
-//! Measures of a pile around each of its grains, and as a whole.
+//! Measures a pile around each of its grains, and as a whole.
 
 use glam::DVec2;
 
@@ -8,8 +8,8 @@ use super::stress::{self, Tensor};
 use crate::column_spec::{CellValue, ColumnSpec};
 use crate::sim::{ContactStatus, Moment};
 
-/// Declares a kind of row: a structure, and a [`ColumnSpec`] for each field. The doc comment of a field is also its
-/// description in tables; its unit follows its type.
+/// Declares a structure for the rows of a table, and a [`ColumnSpec`] for each of its fields. The doc comment of a
+/// field is also the description of its column in tables. The unit of a field follows its type.
 macro_rules! columns {
     (@value f64 $field:ident) => {
         CellValue::SomeNumber(|row| (!row.$field.is_nan()).then_some(row.$field))
@@ -36,7 +36,7 @@ macro_rules! columns {
         }
 
         impl $Name {
-            /// The fields, in the order of the declaration.
+            /// Columns of the table, one per field, in the order of the declaration.
             pub const COLUMNS: &'static [ColumnSpec<Self>] = &[$(
                 ColumnSpec {
                     name: stringify!($field),
@@ -50,7 +50,7 @@ macro_rules! columns {
 }
 
 columns! {
-    /// Measures of the pile around one grain at one moment. A lost grain has no contacts, and its other numbers are
+    /// Measures of the pile around one grain at one moment. A lost grain has no contacts, and its other measures are
     /// NaN.
     pub struct GrainMeasures {
         /// Number of contacts with other grains, fixed discs and boundaries.
@@ -88,7 +88,7 @@ impl GrainMeasures {
         let sums = stress::stress_of_grains(network);
         let of_grain = |(index, sum): (usize, Tensor)| {
             let cell_area = cells.areas[index];
-            // A disc inside a larger one may have no cell at all.
+            // A disc inside a larger disc may have no cell.
             let stress = sum.over(if cell_area > 0.0 { cell_area } else { f64::NAN });
             Self {
                 coordination: coordination.of_grains[index],
@@ -108,8 +108,8 @@ impl GrainMeasures {
 }
 
 columns! {
-    /// Measures of the whole pile at one moment. An undefined number is NaN, such as a mean over nothing, or a
-    /// direction if all directions are alike.
+    /// Measures of the whole pile at one moment. An undefined measure is NaN, such as a mean over no contacts, or a
+    /// principal direction if both principal values are equal.
     pub struct PileMeasures {
         /// Number of grains that are not lost. The other measures are those of these grains.
         grains: u32, "1";
@@ -188,7 +188,7 @@ columns! {
 }
 
 impl PileMeasures {
-    /// Measures a pile. If the measures of its grains are also needed, [`measure`](super::measure) is cheaper.
+    /// Measures a whole pile. If the measures of its grains are also needed, [`measure`](super::measure) is cheaper.
     pub fn of(moment: &Moment) -> Self {
         Self::of_parts(&MomentParts::of(moment))
     }
@@ -236,8 +236,8 @@ impl PileMeasures {
 }
 
 columns! {
-    /// Shape of a heap at one moment: the triangle in which mass has the same mean height above the lowest point and the
-    /// same mean horizontal distance from the middle.
+    /// Shape of a heap at one moment, as a triangle. The mass of the triangle and the mass of the heap have the same
+    /// mean height above the lowest point and the same mean horizontal distance from the middle.
     pub struct HeapShape {
         /// Angle of repose: slope of the sides of the triangle.
         repose_angle: f64, "degree";
@@ -247,7 +247,7 @@ columns! {
 }
 
 impl HeapShape {
-    /// Measures a heap.
+    /// Measures the shape of a heap.
     pub fn of(moment: &Moment) -> Self {
         let grains = || moment.grains.iter().filter(|grain| !grain.lost);
         let mean = |of: &dyn Fn(DVec2) -> f64| {

@@ -1,5 +1,5 @@
-//! The usual quantities of granular physics for a [`Moment`]: stress, fabric, coordination, solid fraction, forces,
-//! clusters.
+//! Computes the usual quantities of granular physics from a [`Moment`], the full state of a simulation at one instant:
+//! stress, fabric, coordination, solid fraction, forces, clusters.
 //!
 //! ```
 //! let mut simulation = slump_core::scene::built_in("pile")?.simulation()?;
@@ -9,10 +9,10 @@
 //! # Ok::<(), slump_core::error::Error>(())
 //! ```
 //!
-//! Lengths are in m and forces in N. Stresses in a plane are forces per length, in N/m. Compression is positive,
-//! directions are in degrees anticlockwise from the x axis, and an undefined number is NaN. Lost grains and their
-//! contacts do not count. Contacts have the forces, normals and gaps of the moment's last step, while grains have the
-//! positions after that step.
+//! Lengths are in m and forces in N. In a plane a stress is a force per length, in N/m. Compression is positive,
+//! directions are in degrees anticlockwise from the x axis, and an undefined quantity is NaN. Lost grains (grains that
+//! went through a wall or left the world) and their contacts do not count. Forces, normals and gaps of contacts belong
+//! to the moment's last step, and the positions of grains to the end of that step.
 
 mod cells;
 mod fields;
@@ -32,18 +32,19 @@ use self::cells::PowerCells;
 use self::network::{Clusters, Coordination, ForceDistribution, Network};
 use crate::sim::{Moment, Surroundings};
 
-/// All measures of a moment.
+/// All measures of a moment: of the pile, of each grain, and histograms.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct MomentMeasures {
-    /// The whole pile.
+    /// Measures of the whole pile.
     pub pile: PileMeasures,
-    /// Each grain, in the order of the grains.
+    /// Measures of each grain, in the order of the moment's grains.
     pub grains: Vec<GrainMeasures>,
-    /// See [`histograms()`].
+    /// Histograms of forces, directions, contacts and overlaps ([`histograms()`]).
     pub histograms: Vec<Histogram>,
 }
 
-/// Computes all measures together, which is faster than one by one.
+/// Computes all measures of a moment in one call. One call is faster than separate calls, because the measures share
+/// intermediate results.
 pub fn measure(moment: &Moment) -> MomentMeasures {
     let parts = MomentParts::of(moment);
     MomentMeasures {
@@ -53,7 +54,7 @@ pub fn measure(moment: &Moment) -> MomentMeasures {
     }
 }
 
-/// Intermediate results that several measures use.
+/// Intermediate results of a moment that several measures use.
 struct MomentParts<'a> {
     network: Network<'a>,
     cells: PowerCells,

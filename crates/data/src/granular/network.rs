@@ -1,33 +1,37 @@
-//! The network of the grains that count (all that are not lost) and their contacts, and quantities of the network
-//! itself: contacts per grain, clusters, and the distribution of normal forces.
+//! Builds the network of the grains that count and their contacts, and computes quantities of the network itself:
+//! contacts per grain, clusters, and the distribution of normal forces. A grain counts unless it is lost (it went
+//! through a wall or left the world) or its position is not finite.
 
 use ena::unify::{InPlaceUnificationTable, UnifyKey};
 use glam::DVec2;
 
 use crate::sim::{ContactState, ContactStatus, GrainState, Moment, OtherBody};
 
-/// A contact bears a force if it exceeds this fraction of the mean force of all contacts. If the fraction is smaller,
-/// residual errors of the solver appear as support. If it is larger, weak contacts do not count.
+/// Fraction of the mean force of all contacts above which a contact bears a force. If the fraction is smaller, residual
+/// errors of the solver count as forces. If it is larger, weak contacts do not count.
 const BEARS_FROM: f64 = 1e-6;
 
-/// The grains and contacts that count.
+/// Network of contacts between the grains that are not lost. Lost grains went through a wall or left the world.
 pub(super) struct Network<'a> {
     pub grains: &'a [GrainState],
-    /// True if a grain counts. Links only contain indices of grains that count.
+    /// For each grain, true if the grain counts: it is not lost and its position is finite. `links` has only indices of
+    /// such grains.
     pub counts: Vec<bool>,
     pub links: Vec<NetworkContact>,
 }
 
-/// A contact that counts. Vectors are in m and N.
+/// A contact of a grain that is not lost with another such grain, a wall or a fixed disc. Lengths are in m and forces
+/// in N.
 pub(super) struct NetworkContact {
     pub grain: usize,
-    /// Grain j; `None` if i touches a wall or fixed disc.
+    /// Index of grain j; `None` if grain i touches a wall or a fixed disc.
     pub other: Option<usize>,
     pub normal: DVec2,
     pub gap: f64,
-    /// From the contact point to the centre of i. If j is a grain, it includes half of the gap, else all of it.
+    /// Vector from the contact point to the centre of grain i, m. It includes half of the gap if body j is a grain, and
+    /// otherwise the whole gap.
     pub own_branch: DVec2,
-    /// From the centre of grain j to the contact point; zero if j is not a grain.
+    /// Vector from the centre of grain j to the contact point, m; zero if body j is not a grain.
     pub other_branch: DVec2,
     pub force: DVec2,
     pub normal_force: f64,
@@ -36,7 +40,8 @@ pub(super) struct NetworkContact {
 }
 
 impl NetworkContact {
-    /// The branch vector ℓ: to the centre of i from that of grain j, or from the touched point of another body.
+    /// Returns the branch vector ℓ, m. It ends at the centre of grain i. It begins at the centre of grain j, or at the
+    /// touched point of a wall or fixed disc.
     pub(super) fn branch(&self) -> DVec2 {
         self.own_branch + self.other_branch
     }
@@ -73,7 +78,7 @@ impl<'a> Network<'a> {
         Self { grains, counts, links }
     }
 
-    /// The grains that count, with their indices.
+    /// Iterates over the grains that are not lost and have finite positions, with their indices.
     pub(super) fn grains(&self) -> impl Iterator<Item = (usize, &'a GrainState)> {
         let counted = self.grains.iter().zip(&self.counts).enumerate();
         counted.filter_map(|(index, (grain, &counts))| counts.then_some((index, grain)))
@@ -83,7 +88,7 @@ impl<'a> Network<'a> {
         self.grains().count()
     }
 
-    /// Fraction of the contacts that satisfy a condition; NaN without contacts.
+    /// Returns the fraction of the contacts that satisfy a condition; NaN without contacts.
     pub(super) fn share(&self, is_so: impl Fn(&NetworkContact) -> bool) -> f64 {
         let count = self.links.iter().filter(|&link| is_so(link)).count();
         count as f64 / self.links.len() as f64
@@ -112,22 +117,23 @@ fn link(contact: &ContactState, radius: f64) -> NetworkContact {
     }
 }
 
-/// Least number of contacts that support a grain.
+/// Least number of force-bearing contacts of a grain that transmits forces. A grain with fewer such contacts is a
+/// rattler.
 const HELD_BY: u32 = 2;
 
-/// Contacts per grain, and the rattlers, which do not transmit forces.
+/// Numbers of contacts of the grains, and the rattlers: grains that do not transmit forces.
 ///
-/// A rattler has fewer than two contacts that bear a force. Grains that only rest on rattlers are not supported either.
-/// Rattlers and their contacts are therefore removed until there are no more. The rest is the 2-core of the force
-/// network, in which walls and fixed discs support like any other body. Under gravity this also removes dead ends, such
-/// as a single column.
+/// A rattler has fewer than two contacts that bear a force. Contacts with rattlers do not support a grain, so rattlers
+/// and their contacts are removed repeatedly until no rattler is left. The remaining grains are the 2-core of the force
+/// network, in which walls and fixed discs support grains like any other body. Under gravity this also removes dead
+/// ends, such as a single column of grains.
 pub(super) struct Coordination {
-    /// Contacts of each grain; 0 for a grain that does not count.
+    /// Number of contacts of each grain; 0 for a lost grain, or for a grain without a finite position.
     pub of_grains: Vec<u32>,
     pub rattlers: Vec<bool>,
     /// Mean number of contacts per grain.
     pub mean: f64,
-    /// Mean number of force-bearing contacts per grain, without rattlers.
+    /// Mean number of force-bearing contacts per grain, without rattlers and their contacts.
     pub mean_without_rattlers: f64,
 }
 
@@ -153,7 +159,8 @@ impl Coordination {
     }
 }
 
-/// True for each rattler, and the number of contacts that the other grains keep.
+/// Finds the rattlers, grains that transmit no force. Returns for each grain whether it is a rattler, and the number of
+/// its force-bearing contacts after all rattlers are removed.
 fn rattlers(network: &Network) -> (Vec<bool>, Vec<u32>) {
     let mut left = vec![0; network.grains.len()];
     let mut neighbours = vec![Vec::new(); network.grains.len()];
@@ -186,7 +193,7 @@ fn rattlers(network: &Network) -> (Vec<bool>, Vec<u32>) {
     (rattlers, left)
 }
 
-/// A grain as a member of a union-find set.
+/// Index of a grain, as a key of the union-find structure that finds clusters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Member(u32);
 
@@ -206,11 +213,11 @@ impl UnifyKey for Member {
     }
 }
 
-/// Clusters: sets of grains joined by contacts, with their sizes. Walls and fixed discs do not join grains, so piles on
-/// one floor are separate clusters.
+/// Number and largest size of clusters. A cluster is a set of grains joined by contacts. Walls and fixed discs do not
+/// join grains, so two piles on one floor are separate clusters.
 pub(super) struct Clusters {
     pub count: u32,
-    /// Number of grains of the largest cluster.
+    /// Number of grains in the largest cluster.
     pub largest: u32,
 }
 
@@ -234,14 +241,14 @@ impl Clusters {
     }
 }
 
-/// Distribution of normal forces about their mean: P(f), f = N/⟨|N|⟩, over the contacts that bear a force.
+/// Distribution P(f) of the normal forces N relative to their mean, f = N/⟨|N|⟩, over the contacts that bear a force.
 ///
-/// The mean is that of |N|, because with cohesion the tensile forces may be as large as the compressive ones. Without
-/// cohesion it is the usual mean.
+/// The mean is taken over |N|, because with cohesion the tensile forces may be as large as the compressive forces.
+/// Without cohesion it is the usual mean.
 pub(super) struct ForceDistribution {
-    /// ⟨|N|⟩, N.
+    /// Mean magnitude ⟨|N|⟩ of the normal forces N, in newtons.
     pub mean: f64,
-    /// f of each contact that bears a force.
+    /// Relative normal force f = N/⟨|N|⟩ of each contact that bears a force, dimensionless.
     pub over_mean: Vec<f64>,
 }
 
@@ -253,17 +260,18 @@ impl ForceDistribution {
         Self { mean, over_mean: forces.iter().map(|force| force / mean).collect() }
     }
 
-    /// ⟨|f|^power⟩; NaN without forces.
+    /// Returns the moment ⟨|f|^power⟩ of the relative normal forces f; NaN without forces.
     pub(super) fn moment(&self, power: i32) -> f64 {
         mean(&self.over_mean, |force| force.abs().powi(power))
     }
 
-    /// Largest |f|; NaN without forces.
+    /// Returns the largest magnitude |f| of the relative normal forces; NaN without forces.
     pub(super) fn largest(&self) -> f64 {
         self.over_mean.iter().map(|force| force.abs()).fold(f64::NAN, f64::max)
     }
 
-    /// Fraction of the forces with |f| > 1; NaN without forces.
+    /// Returns the fraction of strong forces, which exceed the mean: |f| > 1 for the relative normal force f. It is NaN
+    /// without forces.
     pub(super) fn strong_share(&self) -> f64 {
         mean(&self.over_mean, |force| f64::from(force.abs() > 1.0))
     }

@@ -1,16 +1,18 @@
-//! Stresses by Love and Weber, compression positive, the fabric of contacts, and invariants of plane tensors.
+//! Computes stresses by the formula of Love and Weber (compression positive), the fabric tensor of contacts, and
+//! invariants of plane tensors.
 //!
-//! If the forces f_c at the points p_c on a body balance, its mean stress is (1/A) Σ f_c ⊗ p_c. Summed over grains
-//! about their centres, each contact contributes f ⊗ ℓ. The branch ℓ joins the two centres, or a centre and the touched
-//! point of a wall or a fixed disc, so the stress in walls is not included. f acts on grain i and ℓ points towards its
-//! centre, so compressive forces are positive. Weight and inertia are not part of it: their mean is the stress that
-//! balances them. In a plane σ is a force per length.
+//! If the forces f_c that act on a body at the points p_c balance, the mean stress in the body is (1/A) Σ f_c ⊗ p_c,
+//! with the area A of the body. Summed over grains, with points relative to the centres of the grains, each contact
+//! contributes f ⊗ ℓ. The branch vector ℓ joins the two centres, or a centre and the touched point of a wall or a fixed
+//! disc, so the stress in walls is not included. The force f acts on grain i and ℓ points towards the centre of grain
+//! i, so compressive stresses are positive. Weight and inertia act at the centres and add no term; the mean contact
+//! stress is the stress that balances them. In a plane a stress σ is a force per length.
 
 use glam::DVec2;
 
 use super::network::Network;
 
-/// Σ f ⊗ ℓ over all contacts, J.
+/// Computes Σ f ⊗ ℓ over all contacts, J, with the contact force f (N) and the branch vector ℓ (m).
 pub(super) fn stress_of_contacts(network: &Network) -> Tensor {
     let mut sum = Tensor::default();
     for link in &network.links {
@@ -19,7 +21,7 @@ pub(super) fn stress_of_contacts(network: &Network) -> Tensor {
     sum
 }
 
-/// The contribution of each grain to this sum, J.
+/// Computes the contribution of each grain to Σ f ⊗ ℓ ([`stress_of_contacts`]), J, in the order of the grains.
 pub(super) fn stress_of_grains(network: &Network) -> Vec<Tensor> {
     let mut sums = vec![Tensor::default(); network.grains.len()];
     for link in &network.links {
@@ -31,7 +33,8 @@ pub(super) fn stress_of_grains(network: &Network) -> Vec<Tensor> {
     sums
 }
 
-/// Mean of n ⊗ n over all contacts, whether they bear a force or not; NaN without contacts.
+/// Computes the fabric tensor, the mean of n ⊗ n over all contacts with the unit normals n. Contacts without a force
+/// count, too. The tensor is NaN without contacts.
 pub(super) fn fabric(network: &Network) -> Tensor {
     let mut sum = Tensor::default();
     for link in &network.links {
@@ -49,7 +52,7 @@ pub(super) struct Tensor {
 }
 
 impl Tensor {
-    /// Adds a ⊗ b.
+    /// Adds the tensor product a ⊗ b.
     pub(super) fn add(&mut self, a: DVec2, b: DVec2) {
         self.xx += a.x * b.x;
         self.xy += a.x * b.y;
@@ -57,24 +60,24 @@ impl Tensor {
         self.yy += a.y * b.y;
     }
 
-    /// Divides by a number.
+    /// Divides all components by a number.
     pub(super) fn over(self, divisor: f64) -> Self {
         let Self { xx, xy, yx, yy } = self;
         Self { xx: xx / divisor, xy: xy / divisor, yx: yx / divisor, yy: yy / divisor }
     }
 
-    /// Mean of the two principal values.
+    /// Returns the mean of the two principal values.
     pub(super) fn mean(self) -> f64 {
         0.5 * (self.xx + self.yy)
     }
 
-    /// Half the difference of the principal values of the symmetric part.
+    /// Returns half the difference of the principal values of the symmetric part.
     pub(super) fn deviator(self) -> f64 {
         self.half_differences().length()
     }
 
-    /// Direction of the larger principal value of the symmetric part, degrees from the x axis, in [0, 180); NaN if it
-    /// is undefined.
+    /// Returns the direction of the larger principal value of the symmetric part, degrees anticlockwise from the x
+    /// axis, in [0, 180). It is NaN if the principal values are equal.
     pub(super) fn direction(self) -> f64 {
         let differences = self.half_differences();
         if differences.length() > 0.0 {
@@ -84,15 +87,16 @@ impl Tensor {
         }
     }
 
-    /// (a, b) of the deviator (a b; b −a), the symmetric part minus its mean.
+    /// Returns the components a and b of the deviator, the matrix (a b; b −a), which is the symmetric part minus the
+    /// mean of its principal values.
     fn half_differences(self) -> DVec2 {
         0.5 * DVec2::new(self.xx - self.yy, self.xy + self.yx)
     }
 }
 
-/// The direction of an axis, degrees in [0, 180), from an angle in rad.
+/// Converts the angle of an axis, rad, to degrees in [0, 180).
 pub(super) fn axis_degrees(angle: f64) -> f64 {
     let degrees = angle.to_degrees().rem_euclid(180.0);
-    // A tiny negative angle is 180 after rounding.
+    // Rounding turns a tiny negative angle into 180.
     if degrees < 180.0 { degrees } else { 0.0 }
 }

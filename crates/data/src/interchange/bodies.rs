@@ -1,5 +1,5 @@
-//! The bodies behind a problem's W and q, for solvers that work on bodies: taken from a simulation, checked, and
-//! converted to a step's problem.
+//! Describes the bodies from which a problem's matrix W and velocities q were computed, for solvers that work on
+//! bodies. The bodies are taken from a simulation, checked, and converted to the contact problem of a step.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -15,43 +15,46 @@ use crate::sim::{ProblemVisitor, RunEnding, Simulation};
 use crate::solver::{Assembled, FixedRow, Model, ModelParts, PairRow, Row, StepProblem};
 use crate::world::{FrictionCone, Grains};
 
-/// Largest relative difference between two forms of a problem. It covers rounding, and files whose numbers were cut to
-/// ten digits.
+/// Largest accepted relative difference between the numbers in a problem file (matrix W, velocities q, cohesion
+/// impulses c₀) and the values computed from its bodies. It allows for rounding, and for files whose numbers were cut
+/// to ten digits.
 pub(super) const DISAGREEMENT: f64 = 1e-9;
 
-/// Discs and their contacts, from which W, q and c₀ were computed. Each list has one entry per body or one per contact.
+/// Discs and their contacts, from which the matrix W, the velocities q and the cohesion impulses c₀ were computed. Each
+/// list has one entry per body or one per contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyForm {
-    /// 1 (all on the x axis) or 2.
+    /// Number of axes along which bodies move: 1 (all bodies are on the x axis) or 2.
     pub axes: u8,
-    /// True if bodies turn.
+    /// True if the bodies can rotate.
     pub rotation: bool,
-    /// Bond·g·Δt, m/s: c₀ = m_n times this.
+    /// Capture speed Bond·g·Δt, m/s: the opening speed that one step of cohesion stops. The cohesion impulse c₀ of a
+    /// contact is its effective mass times the capture speed.
     pub capture_speed: f64,
     /// Mass of each body, kg.
     pub mass: Vec<f64>,
-    /// Moment of inertia of each body, kg·m²: that of a solid disc, ½mr².
+    /// Moment of inertia of each body, kg·m². It must be that of a solid disc, ½mr².
     pub inertia: Vec<f64>,
-    /// Radius of each body, m: the lever arm of all its contacts.
+    /// Radius of each body, m. It is also the lever arm of tangential forces at all contacts of the body.
     pub radius: Vec<f64>,
-    /// (v_x, v_y, ω) of each body without contact impulses, m/s and rad/s.
+    /// Velocity (v_x, v_y, ω) that each body would have at the end of the step without contact impulses, m/s and rad/s.
     pub free_velocity: Vec<[f64; 3]>,
-    /// Bodies i and j of each contact; j is null for a fixed body.
+    /// Indices of the bodies i and j of each contact; j is null for a fixed body.
     pub pair: Vec<(u32, Option<u32>)>,
-    /// n of each contact, from j to i.
+    /// Unit normal n of each contact, pointing from body j to body i.
     pub normal: Vec<[f64; 2]>,
-    /// Term of each contact in q, m/s: from restitution, or gap/Δt for a gap within the touch tolerance, which may
-    /// close.
+    /// Additional term of each contact in its velocity q without contact impulses, m/s. It comes from restitution, or
+    /// it is gap/Δt if the contact has a gap within the touch tolerance, which may close.
     pub restitution_velocity: Vec<f64>,
-    /// Tangential surface speed of the fixed body of each contact, along t (n turned by +90°), m/s; 0 between two
-    /// bodies. Left out if no fixed body moves.
+    /// Speed of the fixed body's surface along the tangent (the normal turned by +90°) at each contact, m/s; 0 for a
+    /// contact between two bodies. The list is empty if no fixed body moves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub surface_speed: Vec<f64>,
 }
 
 impl BodyForm {
-    /// Checks the bodies, and that the file's W, q and c₀ follow from them.
+    /// Checks the bodies, and that the file's matrix W, velocities q and cohesion impulses c₀ follow from the bodies.
     pub(super) fn check(&self, file: &ProblemFile) -> Result<()> {
         let (bodies, contacts) = (self.mass.len(), file.nc);
         let lengths = [
@@ -104,7 +107,8 @@ impl BodyForm {
         with_model!(self.parts(file)?, M => self.check_numbers::<M>(file))
     }
 
-    /// Without friction the tangential rows have no effect and need not agree.
+    /// Checks that the file's matrix W, velocities q and cohesion impulses c₀ agree with the values computed from the
+    /// bodies. Without friction the tangential rows have no effect and need not agree.
     fn check_numbers<M: Model>(&self, file: &ProblemFile) -> Result<()> {
         let problem = self.step_problem::<M>(file);
         let assembled = Assembled::of(&problem)?;
@@ -150,7 +154,8 @@ impl BodyForm {
         Ok(())
     }
 
-    /// The parts that select a model that can solve this problem on its bodies.
+    /// Returns the physical properties (axes, friction, rotation) that select the model with which this problem can be
+    /// solved on its bodies.
     pub(super) fn parts(&self, file: &ProblemFile) -> Result<ModelParts> {
         let friction = self.friction(file)?;
         Ok(ModelParts {
@@ -170,7 +175,8 @@ impl BodyForm {
         }
     }
 
-    /// The step's problem, with rows in the order of the file, contacts with fixed bodies first.
+    /// Returns the contact problem of the step on its bodies. Contacts with fixed bodies come first; apart from this,
+    /// contacts are in the order of the file.
     pub(super) fn step_problem<M: Model>(&self, file: &ProblemFile) -> StepProblem<M> {
         let coordinates = |body: usize| {
             let [x, y, spin] = self.free_velocity[body];
@@ -219,13 +225,13 @@ impl BodyForm {
     }
 }
 
-/// True if two forms of a number agree up to rounding. NaN never agrees.
+/// True if two computed values of the same number agree up to rounding, relative to `scale`. NaN never agrees.
 fn agree(found: f64, expected: f64, scale: f64) -> bool {
     (found - expected).abs() <= DISAGREEMENT * scale
 }
 
-/// The problem of the step that begins at `at_secs`, after the simulation of `scene` has run until then. `progress` is
-/// called with the simulated time, s.
+/// Runs the simulation of `scene` up to the time `at_secs` (s), and returns the contact problem of the step that begins
+/// at that time. `progress` is called with the simulated time, s.
 ///
 /// # Errors
 /// If the time is before the start, if there are no contacts at that time or too many for a file, or if the state or a
@@ -256,10 +262,10 @@ pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> R
     })
 }
 
-/// The problem of a simulation's next step. The simulation does not change.
+/// Returns the contact problem of a simulation's next step. The simulation does not change.
 ///
 /// # Errors
-/// If it has too many contacts for a file.
+/// If the problem has too many contacts for a file.
 pub fn problem_file_of(simulation: &Simulation) -> Result<ProblemFile> {
     let grains = &simulation.world().grains;
     simulation.next_problem(ProblemFileVisitor { grains })
@@ -325,14 +331,14 @@ impl ProblemVisitor for ProblemFileVisitor<'_> {
             q: free_velocities,
             c0: (problem.law.capture_speed() > 0.0).then(|| cohesions().collect()),
             start: Some(starts.collect()),
-            // The body form only has a single capture speed.
+            // `BodyForm` has only a single capture speed, so it is left out if contacts have different capture speeds.
             bodies: problem.rows.captures.is_empty().then_some(bodies),
             matrix,
         })
     }
 }
 
-/// Fails if a file cannot represent the problem.
+/// Fails if a problem file cannot represent the problem.
 fn check_can_be_held<M: Model>(problem: &StepProblem<M>) -> Result<()> {
     let refuse = |field: &str, holds: &str| {
         Err(Error::value(field, "given", format!("left out: files hold problems of {holds}")))

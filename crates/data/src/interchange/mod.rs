@@ -1,11 +1,13 @@
-//! The contact problem of one step as a file, and the solution of problems from other programs.
+//! Writes the contact problem of one step to a file, and reads and solves such files, also those of other programs.
 //!
-//! A problem file is JSON with these fields: `nc`, the number of contacts; `W` as `row`, `col`, `val` (2 nc × 2 nc,
-//! 1/kg, rows and columns in the order N0, T0, N1, T1, …); `q` (2 nc, m/s), the relative velocities without contact
-//! impulses, including restitution; and `mu`, a number or a list. With cohesion it also has `c0`, the cohesion impulse
-//! C₀Δt of each contact (N·s), and `cone`, `"shifted"` or `"compressive"`. A solution is u = W r + q with r = (P_n,
-//! P_t) in N·s; `start` optionally gives initial impulses. Problems that Slump writes also contain their `bodies`
-//! ([`BodyForm`]). Siconos' text files of plane problems can be read as well (`siconos`).
+//! A problem file is JSON with these fields: `nc`, the number of contacts; `W` as `row`, `col`, `val`, the matrix W
+//! that maps contact impulses to changes of relative velocities (2 nc × 2 nc, 1/kg, rows and columns in the order N0,
+//! T0, N1, T1, …); `q` (2 nc, m/s), the relative velocities without contact impulses, including restitution; and `mu`,
+//! the coefficient of friction, as a number or a list. With cohesion it also has `c0`, the cohesion impulse C₀Δt of
+//! each contact (N·s), and `cone`, `"shifted"` or `"compressive"`. A solution consists of contact impulses r = (P_n,
+//! P_t) in N·s and relative velocities u = W r + q; `start` optionally gives initial impulses. Problems that Slump
+//! writes also contain their `bodies` ([`BodyForm`]). Text files of the program Siconos with plane problems can be read
+//! as well (`siconos`).
 
 mod bodies;
 mod several;
@@ -26,10 +28,10 @@ use crate::output::write_file;
 use crate::solver::{DelassusProblem, Triplets};
 use crate::world::FrictionCone;
 
-/// The expected form of a problem file, for messages.
+/// Description of a valid problem file, for messages.
 const FORM: &str = "the JSON of a contact problem, or Siconos' text of a plane one";
 
-/// Coefficient of friction μ, for all contacts together or for each.
+/// Coefficient of friction μ, dimensionless: one value for all contacts, or one value for each contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "mu must be a number or a list of numbers")]
 pub enum Friction {
@@ -39,7 +41,8 @@ pub enum Friction {
     Each(Vec<f64>),
 }
 
-/// Contents of a problem file; see the module for units. Plain data, checked before it is solved.
+/// Content of a problem file. The module describes the fields and their units. The content may be wrong: it is checked
+/// before the problem is solved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProblemFile {
@@ -48,32 +51,33 @@ pub struct ProblemFile {
     pub comment: Option<String>,
     /// Number of contacts.
     pub nc: usize,
-    /// μ.
+    /// Coefficient of friction μ, dimensionless.
     pub mu: Friction,
-    /// The part of the normal impulse that bounds friction.
+    /// Friction cone: the part of the normal impulse that bounds friction.
     #[serde(default)]
     pub cone: FrictionCone,
-    /// q, m/s.
+    /// Relative velocities q without contact impulses, including restitution, m/s: normal and tangential for each
+    /// contact.
     pub q: Vec<f64>,
-    /// C₀Δt of each contact, N·s.
+    /// Cohesion impulse C₀Δt of each contact, N·s; `None` without cohesion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub c0: Option<Vec<f64>>,
-    /// Initial impulses (P_n, P_t) of each contact, N·s.
+    /// Initial guess of the contact impulses: (P_n, P_t) of each contact, N·s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<Vec<f64>>,
-    /// The bodies behind W and q.
+    /// The bodies from which the matrix W and the velocities q were computed; `None` if only W and q are known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bodies: Option<BodyForm>,
-    /// W, 1/kg.
+    /// Matrix W, which maps contact impulses to changes of relative velocities, 1/kg.
     #[serde(rename = "W")]
     pub matrix: Triplets,
 }
 
 impl ProblemFile {
-    /// Reads a problem file, or a text file of Siconos, and checks it.
+    /// Reads a problem file, or a text file of the program Siconos, and checks it.
     ///
     /// # Errors
-    /// One sentence that names the file and the error in it.
+    /// The error is one sentence that names the file and the fault in it.
     pub fn read(path: &Path) -> Result<Self> {
         let text = read_text(path, FORM, MOST_BYTES)?;
         Self::parse(&text).map_err(|error| Error::file(path, error))
@@ -82,7 +86,7 @@ impl ProblemFile {
     /// Writes a problem file.
     ///
     /// # Errors
-    /// If it would be larger than the largest file that is read, or the system refuses.
+    /// If the file would be larger than the largest file that Slump reads, or the system refuses to write it.
     pub fn write(&self, path: &Path) -> Result<()> {
         let text = self.text();
         if text.len() as u64 > MOST_BYTES {
@@ -92,10 +96,10 @@ impl ProblemFile {
         write_file(path, text.as_bytes())
     }
 
-    /// Parses the text of a problem file, or of a text file of Siconos, and checks it.
+    /// Parses the text of a problem file, or of a text file of the program Siconos, and checks it.
     ///
     /// # Errors
-    /// One sentence that names the error.
+    /// The error is one sentence that names the fault.
     pub fn parse(text: &str) -> Result<Self> {
         let file: Self = if text.trim_start().starts_with('{') {
             serde_json::from_str(text).map_err(|error| {
@@ -115,13 +119,13 @@ impl ProblemFile {
         Ok(file)
     }
 
-    /// The text of the file. Numbers are as short as possible and still read back bit for bit.
+    /// Returns the text of the problem file. Numbers are as short as possible and still read back bit for bit.
     pub fn text(&self) -> String {
         // Serialising strings, numbers and lists of them cannot fail.
         serde_json::to_string(self).expect("a problem is always written") + "\n"
     }
 
-    /// μ of each contact.
+    /// Returns the coefficient of friction μ of each contact.
     pub(crate) fn friction(&self) -> Vec<f64> {
         match &self.mu {
             Friction::Same(mu) => vec![*mu; self.nc],
@@ -129,20 +133,20 @@ impl ProblemFile {
         }
     }
 
-    /// C₀Δt of each contact, N·s.
+    /// Returns the cohesion impulse C₀Δt of each contact, N·s; 0 without cohesion.
     pub(crate) fn cohesion_impulses(&self) -> Vec<f64> {
         self.c0.clone().unwrap_or_else(|| vec![0.0; self.nc])
     }
 
-    /// The problem in W, with its initial impulses.
+    /// Returns the contact problem in terms of the matrix W, with the initial impulses of the file.
     ///
     /// # Errors
-    /// Names the field that does not fit.
+    /// The error names the field that does not fit.
     pub fn delassus(&self) -> Result<DelassusProblem> {
         if self.nc == 0 {
             return Err(Error::value("nc", 0, "at least 1"));
         }
-        // Checked before anything is allocated whose size is given by `nc` and not by the size of the file.
+        // This is checked before any memory is allocated whose size is given by `nc` and not by the size of the file.
         if Some(self.q.len()) != self.nc.checked_mul(2) {
             let allowed = format!("{} (2 nc)", 2 * self.nc as u128);
             return Err(Error::value("the length of q", self.q.len(), allowed));
@@ -169,7 +173,7 @@ impl ProblemFile {
     }
 }
 
-/// (normal, tangential) of each contact in a list of both.
+/// Splits a list with a normal and a tangential value for each contact into pairs (normal, tangential).
 fn pairs(list: &[f64]) -> impl ExactSizeIterator<Item = [f64; 2]> {
     list.chunks_exact(2).map(|pair| [pair[0], pair[1]])
 }

@@ -1,4 +1,5 @@
-//! The solutions of a problem file under Coulomb's law, from several initial guesses.
+//! Searches for several solutions of a problem file under Coulomb friction, each from several initial guesses of the
+//! contact impulses.
 
 use slump_core::with_model;
 
@@ -7,31 +8,33 @@ use super::{BodyForm, ProblemFile};
 use crate::error::{Error, Result};
 use crate::solver::{Method, Model, SolutionSearch, SolverSettings, velocity_distance};
 
-/// One of the solutions of a problem file.
+/// One of several solutions of the contact problem in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundSolution {
-    /// The common residual.
+    /// Residual of the contact laws, dimensionless: the same measure for all solvers, 0 if all laws are obeyed.
     pub residual: f64,
-    /// True if the residual is within the tolerance of the search. A result that is not may be close to a solution that
-    /// other initial guesses reached.
+    /// True if the residual is within the tolerance of the search. If it is false, this result is not a solution, and
+    /// may be close to a solution that other initial guesses reached.
     pub is_solved: bool,
-    /// The initial guesses that led to it, counted from 0: the impulses of the file, zero, then random impulses.
+    /// Numbers of the initial guesses that led to this solution. Guess 0 consists of the impulses in the file, guess 1
+    /// of zero impulses, and all further guesses of random impulses.
     pub starts: Vec<u32>,
-    /// Distance of its velocities from those of each earlier solution, m/s: root mean square, weighted with mass.
+    /// Distance of the velocities of this solution from the velocities of each earlier solution in the list, m/s: root
+    /// mean square, weighted with mass.
     pub distances: Vec<f64>,
-    /// The grain whose velocity differs most from the first solution, and that difference, m/s.
+    /// Index of the body whose velocity differs most from its velocity in the first solution, and that difference, m/s.
     pub farthest: (usize, f64),
-    /// (v_x, v_y, ω) of each body at the end of the step, m/s and rad/s.
+    /// Velocity (v_x, v_y, ω) of each body at the end of the step, m/s and rad/s.
     pub velocities: Vec<[f64; 3]>,
 }
 
 /// Largest number of initial guesses in one search.
 pub const MOST_STARTS: u32 = 1_000;
 
-/// Searches for solutions of a file's problem.
+/// Searches for several solutions of the contact problem in a file. The problem must have bodies.
 ///
 /// # Errors
-/// If the file is wrong or has no bodies, or a parameter of the search is outside its range.
+/// If the file contains an error or has no bodies, or a parameter of the search is outside its range.
 pub fn solutions_of_file(
     file: &ProblemFile,
     search: &SolutionSearch,
@@ -40,7 +43,7 @@ pub fn solutions_of_file(
         return Err(Error::value("starts", search.starts, format!("1 to {MOST_STARTS}")));
     }
     SolverSettings::to_residual(Method::Nncg, search.tolerance, search.max_sweeps).validate()?;
-    // Checks the file.
+    // This call only checks the file.
     file.delassus()?;
     match &file.bodies {
         Some(bodies) => Ok(with_model!(bodies.parts(file)?, M => find::<M>(bodies, file, search))),

@@ -1,6 +1,7 @@
-//! Reads plane frictional contact problems in Siconos' text format. Its parts are the dimension, the number of
-//! contacts, the kind of storage, the two sizes of the matrix, the kind of sparse storage, the matrix as CSparse prints
-//! its compressed columns, then q, then μ.
+//! Reads plane frictional contact problems in the text format of the program Siconos. The text contains, in this order,
+//! the dimension, the number of contacts, the kind of storage, the two sizes of the matrix, the kind of sparse storage,
+//! the matrix W as the library CSparse prints its compressed columns, the relative velocities q without contact
+//! impulses, and the coefficients of friction μ.
 
 use std::str::{FromStr, Lines};
 
@@ -9,12 +10,12 @@ use crate::error::{Error, Result};
 use crate::solver::Triplets;
 use crate::world::FrictionCone;
 
-/// Siconos' number for sparse storage.
+/// Number by which Siconos denotes sparse storage of a matrix.
 const SPARSE: usize = 2;
-/// Siconos' number for compressed columns.
+/// Number by which Siconos denotes sparse storage by compressed columns.
 const COMPRESSED_COLUMNS: usize = 2;
 
-/// Parses the text without checking the problem.
+/// Parses a text in Siconos' format. Does not check the problem.
 pub(super) fn parse(text: &str) -> Result<ProblemFile> {
     let mut lines = text.lines();
     let mut number = |what: &str| first_word::<usize>(&mut lines, what);
@@ -52,10 +53,11 @@ pub(super) fn parse(text: &str) -> Result<ProblemFile> {
     })
 }
 
-/// Reads "col 3 : locations 6 to 8" and, below each such line, "row : value" for each location.
+/// Reads the matrix. Each column has a line such as "col 3 : locations 6 to 8" and, below this line, a line "row :
+/// value" for each location.
 fn columns(lines: &mut Lines, count: usize) -> Result<Triplets> {
     let mut matrix = Triplets::default();
-    // Skips CSparse's version, then sizes and norm.
+    // Skips two lines: the version of CSparse, and then sizes and norm of the matrix.
     lines.next();
     lines.next();
     for column in 0..count {
@@ -66,7 +68,7 @@ fn columns(lines: &mut Lines, count: usize) -> Result<Triplets> {
             return Err(unreadable(&what, line));
         };
         only("the number of a column of W", word(number, &what)?, column)?;
-        // An empty column's last location is one before its first.
+        // The last location of an empty column is one before its first location.
         let (first, last): (i64, i64) = (word(first, &what)?, word(last, &what)?);
         for _ in first..=last {
             let line = lines.next().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Solves a problem file: by bodies if the file has them, else by W.
+//! Solves the contact problem in a file: on the bodies if the file has bodies, else with the matrix W.
 
 use std::time::Instant;
 
@@ -14,50 +14,52 @@ use crate::solver::{
     is_ended, solve, solve_delassus,
 };
 
-/// Result of a method for a problem.
+/// Solution of a problem file by one method (solver).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Solution {
     /// Number of contacts.
     pub contacts: usize,
-    /// The method's name.
+    /// Name of the method, as for the option `--solver`.
     pub method: String,
-    /// True if the method worked on bodies, false if only on W.
+    /// True if the method worked on the bodies of the file, false if it had only the matrix W.
     pub on_bodies: bool,
-    /// Sweeps, or iterations of about the same cost.
+    /// Number of sweeps, or of iterations of about the same cost.
     pub sweeps: u32,
-    /// Number of factorised matrices.
+    /// Number of matrices that the method factorised.
     pub factorisations: u32,
-    /// Time of the solve only, s; the least of the repeats.
+    /// Computing time of the solve alone, s: the shortest time of all repeats.
     pub seconds: f64,
-    /// True if the method reached its tolerance, according to the method and to the residual of `r`.
+    /// True if the method reached its tolerance, both by its own measure and by the residual of the impulses `r`.
     pub converged: bool,
-    /// True if it failed because it stalled and not because it was stopped too early. More sweeps would not help.
+    /// True if the method failed because it made no more progress, so that more sweeps would not help. False if the
+    /// method was stopped too early.
     pub stalled: bool,
-    /// The common residual of `r`, from the file's W and q.
+    /// Residual of the contact laws, dimensionless: the same measure for all methods. It is computed from the impulses
+    /// `r` and the file's matrix W and velocities q.
     #[serde(with = "number")]
     pub residual: f64,
-    /// (v_n, v_t) of each contact at the end of the step, W r + q, including restitution, m/s.
+    /// Relative velocity (v_n, v_t) of each contact at the end of the step, m/s: W r + q, which includes restitution.
     pub u: Vec<f64>,
-    /// (P_n, P_t) of each contact, N·s.
+    /// Contact impulses r: (P_n, P_t) of each contact, N·s.
     pub r: Vec<f64>,
-    /// (v_x, v_y, ω) of each body at the end of the step, m/s and rad/s.
+    /// Velocity (v_x, v_y, ω) of each body at the end of the step, m/s and rad/s; `None` if the file has no bodies.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub velocities: Option<Vec<[f64; 3]>>,
 }
 
 impl Solution {
-    /// The text of a solution file.
+    /// Returns the text of a solution file.
     pub fn text(&self) -> String {
         // Serialising strings, numbers and lists of them cannot fail.
         serde_json::to_string(self).expect("a solution is always written") + "\n"
     }
 }
 
-/// Solves a file's problem `repeats` times (at least once) from its initial impulses, with the method and the tolerance
-/// of the settings.
+/// Solves the contact problem in a file `repeats` times (at least once), each time from the initial impulses of the
+/// file, with the method and the tolerance of the settings.
 ///
 /// # Errors
-/// If the file is wrong, or the method cannot solve it.
+/// If the file contains an error, or the method cannot solve the problem.
 pub fn solve_file(file: &ProblemFile, settings: &SolverSettings, repeats: u32) -> Result<Solution> {
     settings.validate()?;
     let mut delassus = file.delassus()?;
@@ -77,7 +79,8 @@ pub fn solve_file(file: &ProblemFile, settings: &SolverSettings, repeats: u32) -
     let TimedSolution { seconds, report, impulses, velocities } = solved;
     delassus.set_impulses(impulses.iter().copied());
     let residual = delassus.residual();
-    // Body velocities lose the digits that the initial impulses used up: after a start of 1e80 N·s they have none.
+    // The method's own test may be wrong. Large initial impulses cost the velocities of the bodies digits by rounding:
+    // with initial impulses of 1e80 N·s no correct digit is left.
     let is_solved = residual <= (2.0 * settings.tolerance).max(DISAGREEMENT);
     Ok(Solution {
         contacts: file.nc,
@@ -98,12 +101,13 @@ pub fn solve_file(file: &ProblemFile, settings: &SolverSettings, repeats: u32) -
 struct TimedSolution {
     seconds: f64,
     report: SolveReport,
-    /// (P_n, P_t) in the order of the file, N·s.
+    /// Contact impulses (P_n, P_t) in the order of the file's contacts, N·s.
     impulses: Vec<[f64; 2]>,
     velocities: Option<Vec<[f64; 3]>>,
 }
 
-/// Solves copies of a problem. Returns the least time (s), the result of the solve, and the problem after it.
+/// Solves `repeats` copies of a problem. Returns the shortest time (s), the result of that solve, and the problem after
+/// that solve.
 fn least_time<P: Clone, T>(
     repeats: u32,
     problem: &P,
@@ -118,7 +122,7 @@ fn least_time<P: Clone, T>(
     let mut best = once();
     for _ in 1..repeats {
         let next = once();
-        // The time of an interrupted solve is not comparable.
+        // The time of a solve that was stopped before its end is not comparable.
         if is_ended(SolveProgress { sweeps: 0, residual: None }) {
             break;
         }
@@ -150,7 +154,7 @@ fn solve_bodies<M: Model>(
     TimedSolution { seconds, report, impulses, velocities: Some(velocities) }
 }
 
-/// (v_x, v_y, ω) of each body of a problem, m/s and rad/s.
+/// Returns the velocity (v_x, v_y, ω) of each body of a problem, m/s and rad/s.
 pub(super) fn body_velocities<M: Model>(
     problem: &StepProblem<M>,
     bodies: &BodyForm,

@@ -1,4 +1,5 @@
-//! Files that are written completely or not at all, their destinations, and the texts stored in them.
+//! Writes files completely or not at all, checks the destinations of files, and collects the texts that are stored in
+//! files.
 
 use std::borrow::Cow;
 use std::ffi::OsStr;
@@ -12,17 +13,18 @@ use std::path::{Path, PathBuf};
 use crate::draft::{DraftFile, nameless_file};
 use crate::error::{Error, Result};
 
-/// Ending of the name of an incomplete file.
+/// Ending of the name of a draft, an incomplete file.
 const ENDING_OF_DRAFT: &str = ".part";
-/// Longest name, bytes, that all common file systems accept, minus the additions for a draft: `.` in front, and `.`,
-/// six letters and the ending behind.
+/// Longest name of a file whose draft has a name that all common file systems accept, bytes. Such a name has at most
+/// 255 bytes, and a draft adds `.` in front, and `.`, six letters and the ending behind.
 #[cfg(not(target_arch = "wasm32"))]
 const MOST_OF_NAME: usize = 255 - 8 - ENDING_OF_DRAFT.len();
-/// Largest number of symbolic links that are followed. The system follows fewer, so more links are a cycle.
+/// Largest number of symbolic links that are followed. The system follows fewer links, so more links form a cycle.
 const MOST_LINKS: usize = 40;
 
-/// The intended name of a file if `name` is that of a draft that a killed process left, `.NAME.LETTERS.part`, which is
-/// hidden so that programs that read whole folders skip it. Otherwise `name` itself.
+/// Returns the intended name of a file if `name` is that of its draft, `.NAME.LETTERS.part`, which a killed process
+/// left. Other names are returned unchanged. Drafts are hidden files, so that programs that read whole folders skip
+/// them.
 pub fn final_name(name: &str) -> &str {
     let inner = name.strip_prefix('.').and_then(|rest| rest.strip_suffix(ENDING_OF_DRAFT));
     match inner.and_then(|rest| rest.rsplit_once('.')) {
@@ -36,20 +38,20 @@ pub fn final_name(name: &str) -> &str {
 }
 
 /// A file that gets its name only when it is complete. A run that is stopped therefore leaves no incomplete file and
-/// destroys no existing one. Devices and pipes are written directly.
+/// destroys no existing file. Devices and pipes are written directly.
 pub struct PendingFile {
-    /// The path as the user wrote it.
+    /// The path of the file as the user wrote it.
     path: PathBuf,
     destination: Destination,
-    /// The file has no name until it is complete, so it disappears with the process, however the process ends.
+    /// The incomplete file. It has no name, so it disappears with the process, however the process ends.
     file: DraftFile,
 }
 
 impl PendingFile {
-    /// Starts a file.
+    /// Starts a file that will have the path `path`.
     ///
     /// # Errors
-    /// Names the file and the system's message.
+    /// The error names the file and gives the system's message.
     pub fn start(path: &Path) -> Result<Self> {
         let destination = Destination::of(path)?;
         let file = destination
@@ -58,24 +60,24 @@ impl PendingFile {
         Ok(Self { path: path.to_owned(), destination, file })
     }
 
-    /// The file to write to.
+    /// Returns the file, to be written to.
     pub fn file(&mut self) -> &mut DraftFile {
         &mut self.file
     }
 
-    /// Writes bytes.
+    /// Writes bytes to the file.
     ///
     /// # Errors
-    /// Names the file and the system's message.
+    /// The error names the file and gives the system's message.
     pub fn write(&mut self, bytes: &[u8]) -> Result<()> {
         self.file.write_all(bytes).map_err(|error| Error::file(&self.path, error))
     }
 
-    /// Gives the file its name. With `safe` the data is on the disk before the name, so that even a crash of the
-    /// machine leaves the old file or the new one.
+    /// Gives the file its name. If `safe` is true, the data are on the disk before the file gets its name, so that even
+    /// a crash of the machine leaves either the old file or the new file.
     ///
     /// # Errors
-    /// Names the file and the system's message.
+    /// The error names the file and gives the system's message.
     pub fn finish(mut self, safe: bool) -> Result<()> {
         if self.destination.is_special {
             return Ok(());
@@ -83,20 +85,20 @@ impl PendingFile {
         self.put(safe).map_err(|error| Error::file(&self.path, error))
     }
 
-    /// Stores the file in memory, from where it can be fetched.
+    /// Stores the file in memory, from which the web page can fetch it.
     #[cfg(target_arch = "wasm32")]
     fn put(&mut self, _safe: bool) -> std::io::Result<()> {
         crate::memory::keep_written(&self.destination.path, &self.file);
         Ok(())
     }
 
-    /// Copies the file to a hidden name in the destination's folder and then renames it in a single operation.
+    /// Copies the data to a hidden draft in the destination's folder and then renames the draft in a single operation.
     #[cfg(not(target_arch = "wasm32"))]
     fn put(&mut self, safe: bool) -> std::io::Result<()> {
         let Destination { path, permissions, .. } = &self.destination;
         let name = shortened(path.file_name().unwrap_or_default());
         let prefix = [".".as_ref(), &*name, ".".as_ref()].join(OsStr::new(""));
-        // The umask sets the permissions, as for any new file.
+        // The draft is created with the usual permissions of a new file, which the umask sets.
         let mut draft = tempfile::Builder::new()
             .prefix(&prefix)
             .suffix(ENDING_OF_DRAFT)
@@ -124,16 +126,16 @@ fn shortened(name: &OsStr) -> Cow<'_, OsStr> {
     Cow::Owned(text[..text.floor_char_boundary(MOST_OF_NAME)].into())
 }
 
-/// The folder of a file.
+/// Returns the folder of a file; `.` if the path has no folder.
 pub fn folder_of(path: &Path) -> &Path {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     folder.unwrap_or(Path::new("."))
 }
 
-/// The destination of a path, after all symbolic links.
+/// Destination of a path after all symbolic links are followed.
 struct Destination {
     path: PathBuf,
-    /// Permissions of the existing file.
+    /// Permissions of the file that already exists, if any.
     permissions: Option<Permissions>,
     /// True if the destination is not a plain file but a device, a pipe or a socket, which must not be replaced.
     is_special: bool,
@@ -150,7 +152,8 @@ impl Destination {
                 let permissions = there.filter(Metadata::is_file).map(|there| there.permissions());
                 return Ok(Self { path: path_there, permissions, is_special });
             };
-            // Links of open files do not lead to a path; only the system can follow them.
+            // Links in /proc and /dev to open files do not contain a path that can be followed; only the system can
+            // follow them.
             if path_there.starts_with("/proc") || path_there.starts_with("/dev") {
                 return Ok(Self { path: path_there, permissions: None, is_special: true });
             }
@@ -159,7 +162,8 @@ impl Destination {
         Err(Error::file(path, "is a symbolic link that leads back to itself"))
     }
 
-    /// A file without a name for a plain file; for any other destination, the destination itself.
+    /// Returns the file to write to: a file without a name if the destination is a plain file, else the destination
+    /// itself.
     fn draft(&self) -> std::io::Result<DraftFile> {
         #[cfg(not(target_arch = "wasm32"))]
         if self.is_special {
@@ -169,11 +173,11 @@ impl Destination {
     }
 }
 
-/// Creates `folder` if it is missing and checks that files can be written in it. `field` is the name of the option, for
-/// messages.
+/// Creates `folder` if it does not exist, and checks that files can be written in it. `field` is the name of the
+/// option, for messages.
 ///
 /// # Errors
-/// Names the field and the folder, with the system's message.
+/// The error names the option and the folder, and gives the system's message.
 pub fn check_writable(field: &str, folder: &Path) -> Result<()> {
     if folder.as_os_str().is_empty() {
         return Err(Error::value(field, "''", "the name of a folder"));
@@ -184,11 +188,11 @@ pub fn check_writable(field: &str, folder: &Path) -> Result<()> {
     })
 }
 
-/// Checks that a file can be written at `path`, and creates its folder if it is missing. `field` is the name of the
-/// option, for messages.
+/// Checks that a file can be written at `path`, and creates the folder of the file if it does not exist. `field` is the
+/// name of the option, for messages.
 ///
 /// # Errors
-/// Names the field and the file, and the reason.
+/// The error names the option and the file, and gives the reason.
 pub fn check_file(field: &str, path: &Path) -> Result<()> {
     let refuse = |allowed: &str| Err(Error::value(field, path.display(), allowed));
     let destination = Destination::of(path)?;
@@ -209,11 +213,11 @@ pub fn check_file(field: &str, path: &Path) -> Result<()> {
         .or_else(|error| refuse(&format!("a file in a folder that can be written to ({error})")))
 }
 
-/// Checks as [`check_file`] does. Also refuses a file at `path` that is not empty, unless it may be replaced
-/// (`overwrite`).
+/// Like [`check_file`], but also fails if the file at `path` exists and is not empty, unless `overwrite` allows its
+/// replacement.
 ///
 /// # Errors
-/// Names the field and the file, and the reason.
+/// The error names the option and the file, and gives the reason.
 pub fn check_new_file(field: &str, path: &Path, overwrite: bool) -> Result<()> {
     check_file(field, path)?;
     let is_there = std::fs::metadata(path).is_ok_and(|there| there.is_file() && there.len() > 0);
@@ -224,10 +228,11 @@ pub fn check_new_file(field: &str, path: &Path, overwrite: bool) -> Result<()> {
     Err(Error::value(field, path.display(), allowed))
 }
 
-/// Removes the drafts that killed processes left in a folder, if the corresponding files are complete by now.
+/// Removes the drafts (incomplete files) that killed processes left in a folder, if the corresponding complete files
+/// exist by now.
 ///
 /// # Errors
-/// Names the file and the system's message.
+/// The error names the file and gives the system's message.
 pub fn remove_drafts(folder: &Path) -> Result<()> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Ok(()) };
     for name in entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()) {
@@ -239,14 +244,14 @@ pub fn remove_drafts(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The unique path of the file behind a path, so that two paths of one file are equal. `None` for a device or a pipe,
-/// which accepts all data.
+/// Returns the unique path of the file to which a path leads, so that two paths of one file are equal. Returns `None`
+/// for a device or a pipe, which accepts all data.
 ///
 /// # Errors
 /// If the links form a cycle.
 pub fn resolved(path: &Path) -> Result<Option<PathBuf>> {
     let Destination { path, is_special, .. } = Destination::of(path)?;
-    // Without the folder there is no file.
+    // If the folder does not exist, the file does not exist either, and its path is not resolved further.
     let folder = folder_of(&path).canonicalize().unwrap_or_else(|_| folder_of(&path).to_owned());
     Ok((!is_special).then(|| folder.join(path.file_name().unwrap_or_default())))
 }
@@ -258,10 +263,10 @@ fn try_to_write(folder: &Path) -> std::io::Result<()> {
     nameless_file(folder).map(drop)
 }
 
-/// Writes a file in a single operation: a run that is stopped leaves no incomplete file and destroys no existing one.
+/// Writes a file in a single operation: a run that is stopped leaves no incomplete file and destroys no existing file.
 ///
 /// # Errors
-/// Names the file and the system's message.
+/// The error names the file and gives the system's message.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut file = PendingFile::start(path)?;
     file.write(bytes)?;
@@ -271,7 +276,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
 /// Removes a file if it exists.
 ///
 /// # Errors
-/// Names the file and the system's message.
+/// The error names the file and gives the system's message.
 pub fn remove_if_there(path: &Path) -> Result<()> {
     match std::fs::remove_file(path) {
         Err(error) if error.kind() != NotFound => Err(Error::file(path, error)),
@@ -279,12 +284,13 @@ pub fn remove_if_there(path: &Path) -> Result<()> {
     }
 }
 
-/// Keywords with texts, in order. Keywords are ASCII with at most 79 characters, as PNG requires.
+/// Texts that are stored in a file, each with a keyword, in order. Keywords are ASCII with at most 79 characters, as
+/// PNG requires.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texts(Vec<(String, String)>);
 
 impl Default for Texts {
-    /// Only the program and its version.
+    /// Creates texts that name only the program and its version.
     fn default() -> Self {
         let program = concat!("slump ", env!("CARGO_PKG_VERSION"));
         Self(vec![("Software".into(), program.into())])
@@ -297,18 +303,18 @@ impl Texts {
         self.0.push((keyword.into(), text.into()));
     }
 
-    /// The text of a keyword.
+    /// Returns the text of a keyword.
     #[cfg(test)]
     pub(crate) fn get(&self, keyword: &str) -> Option<&str> {
         self.0.iter().find(|(name, _)| name == keyword).map(|(_, text)| text.as_str())
     }
 
-    /// All keywords with their texts.
+    /// Iterates over all keywords with their texts.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &str)> {
         self.0.iter().map(|(keyword, text)| (keyword.as_str(), text.as_str()))
     }
 
-    /// One line for each: keyword, colon, text.
+    /// Returns one line for each text: keyword, colon, text.
     pub fn lines(&self) -> String {
         self.iter().map(|(keyword, text)| format!("{keyword}: {text}\n")).collect()
     }

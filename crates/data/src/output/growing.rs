@@ -1,4 +1,4 @@
-//! Text files that grow by whole rows.
+//! Writes text files that grow by whole rows.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::locks::is_at;
 use crate::error::{Error, Result};
 
-/// Size of a memory page on most machines, bytes; on all others the page is a multiple of it.
+/// Size of a memory page on most machines, bytes. On all other machines the page size is a multiple of this number.
 const PAGE: u64 = 4096;
 
 /// A file that grows by whole rows, so that it stays a readable table if the run is killed or the disk is full.
@@ -19,20 +19,21 @@ pub struct GrowingFile {
 }
 
 impl GrowingFile {
-    /// Starts an empty file.
+    /// Creates an empty file.
     ///
     /// # Errors
-    /// Names the file and the system's message.
+    /// The error names the file and gives the system's message.
     pub fn start(path: PathBuf) -> Result<Self> {
         let file = File::create(&path)
             .map_err(|error| Error::file(&path, format!("cannot be written ({error})")))?;
         Ok(Self { path, file, whole: 0 })
     }
 
-    /// Continues a file after its first `whole` bytes and drops the rest. If `whole` is 0, the file need not exist.
+    /// Opens a file to continue it after its first `whole` bytes, and drops the rest. If `whole` is 0, the file need
+    /// not exist.
     ///
     /// # Errors
-    /// Names the file and the system's message, or says that it is shorter.
+    /// The error names the file and gives the system's message, or says that the file is shorter.
     pub fn go_on(path: PathBuf, whole: u64) -> Result<Self> {
         let refuse = |error| Error::file(&path, error);
         let file = OpenOptions::new().write(true).create(whole == 0).truncate(false).open(&path);
@@ -47,33 +48,34 @@ impl GrowingFile {
         Ok(Self { path, file, whole })
     }
 
-    /// Length of the complete rows in the file, bytes.
+    /// Returns the length of the complete rows in the file, bytes.
     pub fn length(&self) -> u64 {
         self.whole
     }
 
-    /// The path of the file.
+    /// Returns the path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Writes rows, each with its line end.
+    /// Writes rows at the end of the file. Each row includes its line end.
     ///
     /// # Errors
-    /// Names the file and the system's message; the file then still ends with a complete row.
+    /// The error names the file and gives the system's message. The file still ends with a complete row.
     pub(crate) fn add(&mut self, rows: &[u8]) -> Result<()> {
         self.add_rows(rows).map_err(|error| Error::file(&self.path, error))
     }
 
-    /// Writes rows, each with its line end.
+    /// Writes rows at the end of the file. Each row includes its line end.
     ///
     /// # Errors
-    /// The system's message; the file then still ends with a complete row.
+    /// The error gives the system's message. The file still ends with a complete row.
     pub fn add_rows(&mut self, mut rows: &[u8]) -> std::io::Result<()> {
         while !rows.is_empty() {
             let (now, later) = rows.split_at(self.uncut(rows));
             if let Err(error) = self.file.write_all(now) {
-                // A part of a row may have been written. It is cut off; a pipe ignores this.
+                // A part of a row may have been written and is cut off. A pipe cannot be shortened, so this result is
+                // ignored.
                 let _ = self.file.set_len(self.whole);
                 return Err(error);
             }
@@ -83,19 +85,19 @@ impl GrowingFile {
         Ok(())
     }
 
-    /// Writes rows with a head, each with its line end, so that all of it appears in one operation. The rows are first
-    /// written below a line that begins with `draft`, which readers must skip with the rows below it. Finally the head
-    /// replaces that line.
+    /// Writes a head and rows, which include their line ends, so that all of them appear in the file in one operation.
+    /// The rows are first written below a draft line that begins with `draft`. Readers must skip this line and the rows
+    /// below it. Finally the head replaces the draft line.
     ///
-    /// A kill can only interrupt a write at the end of a page of the file. A head that spans two pages is therefore
-    /// written from its end: the part in the second page still belongs to the draft until the part in the first page
-    /// has changed, which happens completely or not at all. If the first page ends within the word of the draft,
-    /// letters of the head may follow the rest of that word. If it ends within the common beginning of `draft` and the
-    /// head, the second page decides. A reader must therefore recognise a draft by the first letter that no head has at
-    /// that position.
+    /// If the program is killed, a write can only be interrupted at the end of a page of the file. A head that spans
+    /// two pages is therefore written from its end, the second page first. The rows remain a draft until the first page
+    /// is written, which happens completely or not at all. If the first page ends within the text `draft`, letters of
+    /// the head may follow the beginning of that text. If the first page ends within the characters with which both
+    /// `draft` and the head begin, the second page decides. A reader must therefore recognise a draft by the first
+    /// letter that no head has at that position.
     ///
     /// # Errors
-    /// Names the file and the system's message; then the file contains nothing of the rows or the head.
+    /// The error names the file and gives the system's message. The file then contains neither the rows nor the head.
     pub(crate) fn add_at_once(&mut self, draft: &str, head: &str, rows: &str) -> Result<()> {
         let below_draft = below_draft(draft, head, rows);
         let written = self
@@ -111,14 +113,15 @@ impl GrowingFile {
         Ok(())
     }
 
-    /// Overwrites the bytes after the complete rows, the last page first.
+    /// Writes bytes after the complete rows, over the bytes that are already there, the last page first.
     fn put_from_its_end(&mut self, bytes: &[u8]) -> std::io::Result<()> {
         self.pages_from_the_last(bytes.len())
             .into_iter()
             .try_for_each(|part| self.put(part.start, &bytes[part]))
     }
 
-    /// Splits `length` bytes after the complete rows into parts that lie in one page each, the last first.
+    /// Splits `length` bytes after the complete rows into ranges that lie in one page each. Returns the last range
+    /// first.
     fn pages_from_the_last(&self, length: usize) -> Vec<std::ops::Range<usize>> {
         let room = (PAGE - self.whole % PAGE) as usize;
         let starts = std::iter::once(0).chain((room..length).step_by(PAGE as usize));
@@ -128,15 +131,15 @@ impl GrowingFile {
         pages
     }
 
-    /// Writes bytes at an offset after the complete rows.
+    /// Writes bytes at the offset `behind` after the complete rows.
     fn put(&mut self, behind: usize, bytes: &[u8]) -> std::io::Result<()> {
         self.file.seek(SeekFrom::Start(self.whole + behind as u64))?;
         self.file.write_all(bytes)
     }
 
-    /// Number of bytes to write in one operation. A kill can interrupt a write only at the end of a page of the file.
-    /// Rows within one page are therefore written together, and a row that spans two pages is written alone, which
-    /// leaves about 0.1 µs in which it can be cut.
+    /// Returns the number of bytes of `rows` to write in one operation. If the program is killed, a write can only be
+    /// interrupted at the end of a page of the file. Rows within one page are therefore written together. A row that
+    /// spans two pages is written alone, which leaves about 0.1 µs in which the row can be cut.
     fn uncut(&self, rows: &[u8]) -> usize {
         let room = (PAGE - self.whole % PAGE) as usize;
         let first = || rows.iter().position(|&byte| byte == b'\n').map(|last| last + 1);
@@ -148,7 +151,7 @@ impl GrowingFile {
     /// # Errors
     /// If the file is no longer at its path.
     pub fn sync(&self) -> Result<()> {
-        // Pipes and devices do not support this.
+        // Pipes and devices do not support synchronisation, so its result is ignored.
         let _ = self.file.sync_all();
         if is_at(&self.file, &self.path) {
             return Ok(());
@@ -158,13 +161,14 @@ impl GrowingFile {
     }
 }
 
-/// Rows below a draft line that is as long as the head. The padding of `format!` is limited to 65,535 characters.
+/// Returns rows below a draft line that is as long as the head. The line is filled by `repeat`, because the padding of
+/// `format!` is limited to 65,535 characters.
 fn below_draft(draft: &str, head: &str, rows: &str) -> String {
     let room = head.len().saturating_sub(draft.len() + 1);
     format!("{draft}{}\n{rows}", " ".repeat(room))
 }
 
-/// End of the last complete row.
+/// Returns the end of the last complete row in `rows`, bytes; `None` without a complete row.
 pub fn end_of_last(rows: &[u8]) -> Option<usize> {
     rows.iter().rposition(|&byte| byte == b'\n').map(|last| last + 1)
 }
@@ -173,7 +177,7 @@ pub fn end_of_last(rows: &[u8]) -> Option<usize> {
 mod tests {
     use super::*;
 
-    /// Checks the file after every write of a head, for every position of the page end.
+    /// Checks the file after every single write of a head, for every position of a page end within the head.
     #[test]
     fn a_head_over_the_end_of_a_page_is_a_draft_until_it_is_whole() {
         let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! Locks for folders and files that only one run may write at a time.
+//! Locks folders and files that only one run may write at a time.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use super::terminal::note_line;
 use crate::error::{Error, Result, place};
 
-/// Kinds of output that only one run at a time may write into a folder. Each has the name of a file that the run locks.
-/// The lock ends with the process, however the process ends; a file that is left behind locks nothing.
+/// Kind of output that only one run at a time may write into a folder. The run locks a file in that folder; the name of
+/// this lock file depends on the kind of output. The lock ends with the process, however the process ends. A lock file
+/// that is left behind locks nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Locked {
     /// Pictures and the files that accompany them.
@@ -25,21 +26,21 @@ impl Locked {
     }
 }
 
-/// Opens the file whose lock protects `path`, an existing file or folder: `path` itself, so that nobody can remove only
-/// the lock.
+/// Opens the file whose lock protects `path`, an existing file or folder. This is `path` itself, because a separate
+/// lock file could be removed while `path` remains.
 ///
 /// # Errors
-/// If the system does not open it.
+/// If the system does not open the file.
 #[cfg(not(windows))]
 pub fn lock_of(path: &Path) -> std::io::Result<File> {
     File::open(path)
 }
 
-/// Opens the file whose lock protects `path`, an existing file or folder. Windows does not lock folders, and prevents
-/// even the owner of a lock from reading the file by another handle, so the lock is a separate file.
+/// Opens the file whose lock protects `path`, an existing file or folder. Windows does not lock folders, and even
+/// prevents the owner of a lock from reading the file by another handle, so the lock is a separate file.
 ///
 /// # Errors
-/// If the system does not open it.
+/// If the system does not open the file.
 #[cfg(windows)]
 pub fn lock_of(path: &Path) -> std::io::Result<File> {
     let lock = if path.is_dir() {
@@ -61,7 +62,7 @@ impl SharedFolder {
     /// Locks an existing folder for shared use.
     ///
     /// # Errors
-    /// If another process has locked it exclusively, or it cannot be opened.
+    /// If another process has locked the folder exclusively, or the folder cannot be opened.
     pub fn of(path: &Path) -> Result<Self> {
         let folder = lock_of(path).map_err(|error| Error::file(path, error))?;
         let shared = Self { path: path.to_owned(), folder };
@@ -72,13 +73,13 @@ impl SharedFolder {
         }
     }
 
-    /// Calls a function while no other process uses the folder. Returns `None`, without a call, if another process uses
-    /// it.
+    /// Calls a function while no other process uses the folder. If another process uses the folder, returns `None`
+    /// without calling the function.
     ///
     /// # Errors
-    /// The errors of the function, and an error if another process locked the folder exclusively in between.
+    /// The errors of the function. Also fails if another process locked the folder exclusively in the meantime.
     pub fn alone<T>(&self, act: impl FnOnce() -> Result<T>) -> Result<Option<T>> {
-        // A shared lock cannot be upgraded, so it is released first.
+        // A shared lock cannot be turned into an exclusive lock, so it is released first.
         let _ = self.folder.unlock();
         let done = if self.is_taken(self.folder.try_lock()) { None } else { Some(act()) };
         let _ = self.folder.unlock();
@@ -89,7 +90,7 @@ impl SharedFolder {
         }
     }
 
-    /// The error that the folder is in use.
+    /// Returns the error that another program uses the folder.
     pub fn in_use(&self) -> Error {
         in_use(&self.path)
     }
@@ -106,12 +107,13 @@ impl SharedFolder {
     }
 }
 
-/// The error that another program must end before a file or a folder can be written.
+/// Returns the error that another program is writing a file or a folder and must end first.
 pub fn in_use(path: &Path) -> Error {
     Error::file(path, "is being written by another program, which must end first")
 }
 
-/// Some file systems have no locks. Writing without a lock is better than not writing at all.
+/// Reports that a folder cannot be locked, because some file systems have no locks. Writing without a lock is better
+/// than not writing at all.
 fn note_unlocked(folder: &Path, error: &std::io::Error) {
     let folder = place(folder);
     note_line(format_args!(
@@ -129,7 +131,7 @@ impl FolderLock {
     /// Locks an existing folder.
     ///
     /// # Errors
-    /// If another process has locked it, or no file can be written in it.
+    /// If another process has locked the folder, or no file can be written in the folder.
     pub fn of(folder: &Path, what: Locked) -> Result<Self> {
         let path = folder.join(what.name());
         loop {
@@ -143,7 +145,7 @@ impl FolderLock {
                 }
                 Err(TryLockError::Error(error)) => note_unlocked(folder, &error),
             }
-            // Between opening and locking, another run may have removed the file.
+            // Between opening and locking, another run may have removed the lock file. Then a new lock file is created.
             if is_at(&file, &path) {
                 return Ok(Self { path, _file: file });
             }
@@ -153,7 +155,7 @@ impl FolderLock {
 
 impl Drop for FolderLock {
     fn drop(&mut self) {
-        // Removed while it is still locked. A file that remains does no harm.
+        // The lock file is removed while it is still locked. If it cannot be removed, it does no harm.
         let _ = std::fs::remove_file(&self.path);
     }
 }

@@ -1,5 +1,5 @@
-//! Services for all long work: files that are written completely or not at all, output to streams that may be closed,
-//! signals that ask the program to end, and progress.
+//! Provides services for all long work: files that are written completely or not at all, output to streams that may be
+//! closed, signals that ask the program to end, and progress.
 
 mod files;
 mod growing;

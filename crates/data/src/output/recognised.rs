@@ -1,5 +1,5 @@
-//! Recognises files that Slump wrote by their first bytes. A name, or a list that anyone can edit, is not sufficient
-//! evidence for removing a file.
+//! Recognises files that Slump wrote by their first bytes. The name of a file, or a list of files that anyone can edit,
+//! is not sufficient evidence for removing a file.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -8,14 +8,16 @@ use std::path::Path;
 use super::files::final_name;
 use crate::error::{Error, Result};
 
-/// Length of the beginning of a file that identifies it, bytes, including any description of its run.
+/// Number of bytes at the beginning of a file by which the file is recognised. They include a description of its run,
+/// if any.
 const MOST_OF_HEAD: u64 = 1 << 20;
-/// Length of the end of a Parquet file that names the program that wrote it, bytes.
+/// Number of bytes at the end of a Parquet file that contain the name of the program that wrote it.
 const TAIL: u64 = 4096;
 
-/// First bytes of a line of a journal.
+/// First bytes of a line of a study's journal.
 const OF_JOURNAL: &[u8] = b"{\"checksum\":\"";
-/// First bytes of files that Slump writes, with other bytes that must also occur in the beginning of the file.
+/// First bytes of files that Slump writes. The second bytes of each pair must also occur at the beginning of the file;
+/// they are empty if the first bytes are sufficient.
 const BEGINNINGS: [(&[u8], &[u8]); 13] = [
     (b"\x89PNG\r\n\x1a\n", b"tEXtSoftware\0slump "),
     (b"{\n  \"program\": \"slump\",\n", b""),
@@ -35,21 +37,21 @@ const BEGINNINGS: [(&[u8], &[u8]); 13] = [
         b" Name=\"smoothing_width\" ",
     ),
 ];
-/// First bytes of formats that have no field for the program that wrote them.
+/// First bytes of VTK files of Slump, in which no field names the program.
 const OF_VTK: [&[u8]; 2] = [
     b"<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" \
         byte_order=\"LittleEndian\">\n<Collection>\n",
     b"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" \
         header_type=\"UInt64\">\n  <PolyData>\n    <FieldData>\n      <DataArray type=\"Int64\" Name=\"step\" ",
 ];
-/// First bytes, after its length, of a state that waits to be drawn.
+/// Bytes that follow the length of the data at the beginning of a file with a state that waits to be drawn.
 const STATE: &[u8] = b"\x82\xa6number";
 
-/// True if this program wrote a file, even if a kill cut it short. A blank file is also recognised, because it is of no
-/// use to anybody.
+/// True if Slump wrote the file, even if the file was cut because the program was killed. A blank file is also
+/// recognised, because it is of no use to anybody.
 ///
 /// # Errors
-/// If it cannot be read.
+/// If the file cannot be read.
 pub fn is_recognised(path: &Path) -> Result<bool> {
     recognised(path).map_err(|error| Error::file(path, error))
 }
@@ -85,11 +87,11 @@ fn recognised(path: &Path) -> std::io::Result<bool> {
         || head.get(8..).is_some_and(|state| state.starts_with(STATE)))
 }
 
-/// Refuses a file that is to be removed or overwritten but that this program did not write. `option` is the name of the
-/// option.
+/// Fails if Slump did not write a file that is to be removed or overwritten. `option` is the name of the option that
+/// asks for this, for the message.
 ///
 /// # Errors
-/// Names the file.
+/// The error names the file.
 pub fn check_recognised(path: &Path, option: &str) -> Result<()> {
     if is_recognised(path)? {
         return Ok(());

@@ -1,9 +1,9 @@
-//! Files that only this program reads: one line that describes the content, then the content.
+//! Writes and reads files that only Slump reads: one line that describes the content, followed by the content.
 //!
 //! > ⟨magic⟩ ⟨format⟩ ⟨version of the program⟩ ⟨bytes that follow⟩ ⟨their BLAKE3 checksum⟩
 //!
-//! The content is MessagePack with the names of all fields. It is not parsed before its checksum has been verified, and
-//! a file of another version is never parsed, because the meaning of a number or the result of the next step may
+//! The content is MessagePack with the names of all fields. It is parsed only after its checksum has been verified. A
+//! file of another version of Slump is never parsed, because the meaning of a number or the result of the next step may
 //! differ.
 
 use std::io::{BufRead, BufReader, Read};
@@ -21,23 +21,23 @@ const MOST_OF_LINE: u64 = 256;
 /// Message for a file whose content does not match its checksum.
 const DAMAGED: &str = "is damaged: its checksum is not that of its content, but must be, as it was when it was written";
 
-/// The header of files of one kind, and the words for them in messages.
+/// Header of files of one kind, and the words for such files in messages.
 pub struct Seal {
-    /// The first word and the space after it.
+    /// The first word of the file and the space after it.
     pub magic: &'static str,
-    /// Number of the format. It is increased when the content of a file or its meaning changes within a version of the
-    /// program.
+    /// Number of the format. It is increased if the content of a file or its meaning changes while the version of the
+    /// program remains the same.
     pub format: u32,
-    /// The content of a file, in a word.
+    /// One word for the content of a file in messages, such as `state`.
     pub what: &'static str,
-    /// The rest of that phrase, after the word.
+    /// Text that follows the word `what` in messages, such as ` of a run`.
     pub of: &'static str,
-    /// The expected form of a file.
+    /// Description of a valid file, for messages.
     pub form: &'static str,
 }
 
 impl Seal {
-    /// The bytes of a file. Equal content gives equal bytes.
+    /// Returns the bytes of a file with the given content. Equal content gives equal bytes.
     ///
     /// # Errors
     /// If the content cannot be serialised.
@@ -50,7 +50,7 @@ impl Seal {
     /// Reads the content of a file.
     ///
     /// # Errors
-    /// If it cannot be read, is damaged, is of another version, or is not a file of this kind.
+    /// If the file cannot be read, is damaged, is of another version, or is not a file of this kind.
     pub fn open<T: DeserializeOwned>(&self, path: &Path) -> Result<T> {
         self.read(BufReader::new(open(path, self.form)?), path)
     }
@@ -62,7 +62,7 @@ impl Seal {
         read.is_ok_and(|read| read.is_ok()) && start == self.magic.as_bytes()
     }
 
-    /// Reads the content from a source; `path` is for messages.
+    /// Reads the content of a file from an open source. `path` is for messages.
     pub(crate) fn read<T: DeserializeOwned>(
         &self,
         mut file: impl BufRead,
@@ -72,7 +72,7 @@ impl Seal {
         let mut line = Vec::new();
         file.by_ref().take(MOST_OF_LINE).read_until(b'\n', &mut line).map_err(unread)?;
         let length = self.length_of_content(&line).map_err(|reason| Error::file(path, reason))?;
-        // Reads at most one byte too many, and never allocates more than the file has.
+        // Reads at most one byte too many, and never allocates more memory than the file needs.
         let mut content = Vec::new();
         file.take(length.saturating_add(1)).read_to_end(&mut content).map_err(unread)?;
         if (content.len() as u64) < length {
@@ -84,7 +84,7 @@ impl Seal {
             return Err(Error::file(path, DAMAGED));
         }
         rmp_serde::from_slice(&content).map_err(|error| {
-            // The list of all known names would be longer than the rest of the message.
+            // The list of all known names is left out, because it would be longer than the rest of the message.
             let said = error.to_string();
             let error = said.split(", expected one of").next().unwrap_or(&said);
             let Self { what, form, .. } = self;
@@ -93,14 +93,14 @@ impl Seal {
         })
     }
 
-    /// The first line of a file with that content.
+    /// Returns the first line of a file with the given content.
     fn first_line(&self, content: &[u8]) -> String {
         let (length, checksum) = (content.len(), blake3::hash(content));
         format!("{}{} {VERSION} {length} {checksum}\n", self.magic, self.format)
     }
 
-    /// The number of bytes after a first line, or, as the rest of a sentence, the reason why it is not a line of this
-    /// version.
+    /// Returns the number of bytes that follow the first line `line`. The error is the reason why the line is not valid
+    /// in this version, as the rest of a sentence.
     fn length_of_content(&self, line: &[u8]) -> std::result::Result<u64, String> {
         let Self { magic, what, of, form, .. } = self;
         let Some(said) = line.strip_prefix(magic.as_bytes()) else {

@@ -1,4 +1,5 @@
-//! Messages of long work on streams that may be closed or full, its progress, and signals that ask it to end.
+//! Writes messages and progress of long work to streams that may be closed or full, and receives signals that ask the
+//! work to end.
 
 use std::fmt::Display;
 use std::io::{ErrorKind, IsTerminal, Write};
@@ -10,7 +11,7 @@ use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 
 use crate::error::escaped;
 
-/// The error of the first failed write to stdout.
+/// Message of the first failed write to stdout; empty if no write has failed.
 static LOST: OnceLock<String> = OnceLock::new();
 
 /// Writes a line to stdout, with control characters escaped.
@@ -30,11 +31,12 @@ pub fn note_printed(outcome: std::io::Result<()>) {
 
 /// Writes a line to stderr, with control characters escaped.
 pub fn note_line(line: impl Display) {
-    // There is no other place to report a failure.
+    // A failure to write to stderr cannot be reported anywhere.
     let _ = writeln!(std::io::stderr(), "{}", escaped(&line.to_string()));
 }
 
-/// A sentence about a failed write to stdout, if any. A reader that closes the stream early is not a failure.
+/// Returns a sentence about the first failed write to stdout, if any. If a reader closed the stream early, this is not
+/// a failure.
 pub fn lost_stdout() -> Option<String> {
     remember(std::io::stdout().flush());
     LOST.get().map(|reason| format!("stdout did not take all that was written to it ({reason})"))
@@ -48,7 +50,7 @@ fn remember(outcome: std::io::Result<()>) {
     }
 }
 
-/// "1 frame", "2 frames".
+/// Returns a number with its noun in singular or plural, such as "1 frame" or "2 frames".
 pub fn counted(count: u64, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
@@ -60,14 +62,14 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Starts work of `length` units of any kind. `what` is shown in front of the bar.
+    /// Shows the progress of work with `length` units of any kind. `what` is written in front of the bar.
     pub fn new(what: &str, length: u64) -> Self {
         let bar = if std::io::stderr().is_terminal() {
             let template = "{prefix} {wide_bar} {percent:>3} %  {left}";
             let style = ProgressStyle::with_template(template)
                 .unwrap_or_else(|_| ProgressStyle::default_bar())
                 .with_key("left", |state: &ProgressState, out: &mut dyn std::fmt::Write| {
-                    // A failure to write to a terminal is no reason to stop.
+                    // A failure to write to a terminal is no reason to stop the work.
                     let _ = out.write_str(&left(state.pos(), state.eta()));
                 });
             let bar = ProgressBar::new(length).with_style(style).with_prefix(escaped(what));
@@ -79,7 +81,7 @@ impl Progress {
         Self { bar }
     }
 
-    /// Adds completed units.
+    /// Adds completed units to the progress.
     pub fn advance(&self, units: u64) {
         self.bar.inc(units);
     }
@@ -99,13 +101,13 @@ impl Progress {
         self.bar.suspend(|| note_line(line));
     }
 
-    /// Ends the work and removes the bar.
+    /// Ends the display of progress and removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
     }
 }
 
-/// Estimated remaining time, in words; empty if nothing is done yet.
+/// Returns the estimated remaining time in words; empty if no unit is completed yet.
 fn left(done: u64, estimate: Duration) -> String {
     match done {
         0 => String::new(),
@@ -114,7 +116,8 @@ fn left(done: u64, estimate: Duration) -> String {
     }
 }
 
-/// Number of steps above which a warning is written before they begin. Even for the smallest scene they take minutes.
+/// Number of steps above which a warning is written before a run begins. Even for the smallest scene so long a run
+/// takes minutes.
 const MANY_STEPS: u64 = 100_000_000;
 
 /// Warns on stderr if a very large number of steps was requested.
@@ -124,7 +127,7 @@ pub fn warn_of_steps(steps: u64) {
     }
 }
 
-/// The first signal that arrived; 0 if none.
+/// Number of the first signal that arrived; 0 if no signal has arrived.
 static CAUGHT: AtomicI32 = AtomicI32::new(0);
 
 /// A signal that asks the program to end.
@@ -132,12 +135,12 @@ static CAUGHT: AtomicI32 = AtomicI32::new(0);
 pub struct Signal(u8);
 
 impl Signal {
-    /// The exit code that a shell shows if the signal had ended the program.
+    /// Returns the exit code that a shell would show if the signal had ended the program.
     pub fn exit_code(self) -> u8 {
         128 + self.0
     }
 
-    /// The name of the signal.
+    /// Returns the name of the signal.
     pub fn name(self) -> &'static str {
         match self.0 {
             1 => "SIGHUP",
@@ -147,13 +150,13 @@ impl Signal {
     }
 }
 
-/// The first signal that arrived since [`heed_signals`].
+/// Returns the first signal that arrived since [`heed_signals`] was called.
 pub fn caught_signal() -> Option<Signal> {
     u8::try_from(CAUGHT.load(Ordering::Relaxed)).ok().filter(|&number| number > 0).map(Signal)
 }
 
-/// From now on the first INT, TERM or HUP is only recorded; a second one ends the program at once. Signals that were
-/// ignored when the program started, as under `nohup`, remain ignored.
+/// Makes the program record the first signal INT, TERM or HUP instead of ending. A second signal ends the program at
+/// once. Signals that were ignored when the program started, as under `nohup`, remain ignored.
 #[cfg(unix)]
 pub fn heed_signals() {
     extern "C" fn note(signal: libc::c_int) {
@@ -177,18 +180,19 @@ pub fn heed_signals() {
     }
 }
 
-/// From now on a file that exceeds the system's size limit makes its write fail instead of ending the program.
+/// Makes a write fail if the file exceeds the system's size limit. Otherwise a signal would end the program.
 #[cfg(unix)]
 pub fn ignore_file_size_signal() {
-    // SAFETY: no handler is installed, and none runs.
+    // SAFETY: this call installs no signal handler, so no handler runs.
     unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
 }
 
-/// There is no such signal on this system.
+/// Does nothing, because this system has no signal for files that are too large.
 #[cfg(not(unix))]
 pub fn ignore_file_size_signal() {}
 
-/// From now on the first Ctrl-C, Ctrl-Break or closed console is only recorded; a second one ends the program at once.
+/// Makes the program record the first Ctrl-C, Ctrl-Break or closing of the console instead of ending. A second event
+/// ends the program at once.
 #[cfg(windows)]
 pub fn heed_signals() {
     use windows_sys::Win32::System::Console::{
@@ -207,7 +211,7 @@ pub fn heed_signals() {
     unsafe { SetConsoleCtrlHandler(Some(note), 1) };
 }
 
-/// The browser version receives no signals.
+/// Does nothing, because the browser version receives no signals.
 #[cfg(not(any(unix, windows)))]
 pub fn heed_signals() {}
 

@@ -1,4 +1,5 @@
-//! The result of a budget: one row per cause, the limit of small time steps, and a verdict.
+//! Assembles the result of an error budget for one quantity: one row per possible cause (such as the time step or the
+//! contact law), the limit of small time steps, and a verdict.
 
 use super::causes::{Cause, Variant};
 use super::collect::{BudgetEnd, Runs};
@@ -7,8 +8,9 @@ use super::rows::{CauseRow, Design, QuantityBudget, Trust};
 use super::words::paragraph;
 use crate::statistics::Mean;
 
-/// Slack in the test for a limit, as a fraction of the requested width: contrasts of successive halvings within it
-/// count as zero.
+/// Tolerance of the test for convergence as the time step Δt goes to 0, as a fraction of the requested half-width of
+/// the intervals. A deviation from the expected decrease of the effects counts as zero if its interval comes this close
+/// to 0.
 const SLACK: f64 = 0.25;
 pub(super) fn budget_of(
     runs: &Runs,
@@ -87,7 +89,7 @@ fn row(runs: &Runs, variant: &Variant, series: usize, quantity: usize) -> CauseR
     }
 }
 
-/// The series of Δt/2, Δt/4 and Δt/8, if all were run.
+/// Returns the indices of the three series of runs with the time steps Δt/2, Δt/4 and Δt/8, if all three gave a value.
 fn halvings(runs: &Runs, design: &Design<'_>, quantity: usize) -> Option<[usize; 3]> {
     let all = design.variants.iter().zip(1..);
     let of_steps = all.filter(|(variant, series)| {
@@ -98,12 +100,12 @@ fn halvings(runs: &Runs, design: &Design<'_>, quantity: usize) -> Option<[usize;
     of_steps.map(|(_, series)| series).collect::<Vec<_>>().try_into().ok()
 }
 
-/// The effect of Δt → 0, by Richardson's extrapolation.
+/// Estimates the change of a quantity Q in the limit Δt → 0, by Richardson's extrapolation.
 ///
-/// With an error a Δt^p, the changes q₁ = Q(Δt/2) − Q(Δt), q₂ and q₃ of three halvings decrease by a factor 2^p each,
-/// and the remaining change after the third is q₃/(2^p − 1). The function tests for p = 1, then for p = 2, whether q₂ −
-/// q₁/2^p and q₃ − q₂/2^p are compatible with 0. If neither p passes, the value does not converge in this way, and no
-/// limit is given.
+/// If the error of Q is proportional to Δt^p, the changes q₁ = Q(Δt/2) − Q(Δt), q₂ and q₃ in three successive halvings
+/// of Δt decrease by a factor 2^p each, and the remaining change after the third halving is q₃/(2^p − 1). The function
+/// tests for p = 1, then for p = 2, whether q₂ − q₁/2^p and q₃ − q₂/2^p are compatible with 0. If neither p passes, Q
+/// does not converge in this way, and the function returns `None`.
 fn limit(runs: &Runs, design: &Design<'_>, quantity: usize) -> Option<Mean> {
     let [half, quarter, eighth] = halvings(runs, design, quantity)?;
     let slack = SLACK * runs.within[quantity];
@@ -134,8 +136,9 @@ mod tests {
     use super::*;
     use crate::scene::{NewPile, built_in};
 
-    /// A budget of synthetic runs of a cohesive pile. `of` is the effect of a variant on the value at Δt → 0, and
-    /// `scatter` is the scatter of runs in addition to the common effect of their initial state.
+    /// Returns the error budget of synthetic runs of a cohesive pile. The value of a run is the sum of four numbers:
+    /// 0.3; the effect that `of` returns for the run's change of the scene; a random number that all runs from the same
+    /// initial state share; and a random number of this run with the standard deviation `scatter`.
     fn made_up(
         seed: u64,
         scatter: f64,
@@ -146,7 +149,7 @@ mod tests {
         made_up_at(seed, scatter, limits, of, &as_expected)
     }
 
-    /// Like `made_up`, where a run of each variant takes `cost_of`, s.
+    /// Like `made_up`. In addition, `cost_of` returns the computing time of a run, s.
     fn made_up_at(
         seed: u64,
         scatter: f64,
@@ -158,7 +161,7 @@ mod tests {
         scene.parameters.bond = 20.0;
         let variants = variants(&scene, Some(&NewPile::default()), true);
         let run = |SeriesRun { series, start }: SeriesRun| {
-            // The sum of twelve uniform numbers is sufficiently normal here.
+            // The sum of twelve uniform random numbers is sufficiently close to a normal distribution here.
             let normal = |number: u64| {
                 let mut random = Pcg64::seed_from_u64(number);
                 (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>()
@@ -200,7 +203,7 @@ mod tests {
                 || budget.limit_adds.is_some_and(is_seen)
         };
         let share = share(sees_any);
-        // With 1,000 budgets, 5 % would be 50 ± 7.
+        // If the rate is 5 %, 50 ± 7 of 1,000 budgets see an effect (± is the standard deviation).
         assert!(share <= 0.07, "{share} of budgets see an effect where there is none");
     }
 
@@ -269,7 +272,7 @@ mod tests {
         let [limit, ..] = budget.limit_adds.expect("a limit");
         assert!((limit + 0.1).abs() < 1e-4, "{limit}");
         assert!(budget.answer.contains("Δt ≤ 2.5e-4 s, 4.0 times the cost"), "{}", budget.answer);
-        // A value that changes by the same amount at each halving has no limit.
+        // A value that changes by the same amount at each halving of Δt has no limit for Δt → 0.
         let logarithmic = |variant: Option<&Variant>| {
             0.05 * variant.map_or(1e-3, |one| one.settings.parameters.time_step_secs).ln()
         };
@@ -296,7 +299,8 @@ mod tests {
         assert_eq!(budget.trust, Trust::NotKnownYet);
     }
 
-    /// Synthetic runs cost what the budget expects, except runs under another law, which cost ten times as much.
+    /// Checks how the computing time is distributed. Runs under another contact law take ten times as long as the
+    /// budget expects. All other runs take the expected time.
     #[test]
     fn a_law_that_is_dearer_than_expected_does_not_take_the_time_of_all_else() {
         let is_dear = |variant: &Variant| variant.cause == Cause::ContactLaw;

@@ -1,4 +1,5 @@
-//! Possible causes of an effect on a result: the causes that can matter in a scene, and the change that tests each.
+//! Lists the possible causes of an effect on a result, such as the time step, the solver or the contact law, as far as
+//! they can matter in a scene. Each cause is tested by one change of the scene.
 
 use crate::chart::{PALETTE, Rgb};
 use crate::fracture_work::{fracture_work, with_fracture_work};
@@ -7,15 +8,15 @@ use crate::sim::{Settings, Stepper};
 use crate::solver::{FrictionModel, Method, SolverSettings};
 use crate::world::FrictionCone;
 
-/// The part of a budget that a cause belongs to.
+/// Group of causes in an error budget: grains, contact law, or numerical method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Share {
-    /// Grains: their number and initial state.
+    /// Causes in the grains: their number and their initial state.
     Grains,
-    /// Laws that contacts obey.
+    /// Causes in the laws that contacts obey.
     Law,
-    /// Method: time step, unsolved steps, and initial guesses of solves.
+    /// Causes in the numerical method: the time step, unsolved steps, and the initial guesses of the solver.
     Method,
 }
 
@@ -28,7 +29,7 @@ impl Share {
         }
     }
 
-    /// Colour in pictures.
+    /// Returns the colour of this group of causes in pictures.
     pub(crate) fn colour(self) -> Rgb {
         PALETTE[match self {
             Self::Grains => 3,
@@ -53,7 +54,8 @@ pub(crate) enum Cause {
 }
 
 impl Cause {
-    /// The part, the name, and the subject of sentences, in which `{}` stands for the change.
+    /// Returns the group of the cause, its name, and the subject of sentences about it, in which `{}` stands for the
+    /// change.
     const fn row(self) -> (Share, &'static str, &'static str) {
         match self {
             Self::TimeStep => (Share::Method, "time step", "the {}"),
@@ -86,32 +88,36 @@ impl Cause {
     }
 }
 
-/// The scene with one change.
+/// A variant of a scene: one change that tests one possible cause.
 #[derive(Clone, Debug)]
 pub(crate) struct Variant {
     pub cause: Cause,
-    /// The changed value, in words.
+    /// Description of the change, for example the new time step.
     pub label: String,
     pub settings: Settings,
-    /// Other grains, if the grains are changed.
+    /// Pile that replaces the grains of the scene; `None` if the grains are not changed.
     pub pile: Option<NewPile>,
-    /// Expected cost of a run, relative to the unchanged scene, until it is measured.
+    /// Expected computing time of a run, divided by the time of a run of the unchanged scene. The expectation is used
+    /// until a run has been measured.
     pub cost: f64,
 }
 
-/// Divisors of Δt.
+/// Divisors of the time step Δt: an error budget also runs the scene with Δt/2, Δt/4 and Δt/8.
 pub(crate) const DIVISORS: [u32; 3] = [2, 4, 8];
-/// Factor by which steps are solved more tightly than by default, to measure the effect of unsolved steps. Because of
-/// rounding, some steps cannot be solved to 1e-7 √(g d).
+/// Factor on the default tolerance of the solver, with which an error budget measures the effect of unsolved steps. A
+/// smaller factor would not help: because of rounding, some steps cannot be solved to 1e-7 √(g d), with gravity g and
+/// mean diameter d.
 const TIGHTER: f64 = 1e-2;
-/// An alternative touch tolerance, in mean diameters: larger than the residual gaps of a step, smaller than the
-/// roughness of grains.
+/// Touch tolerance that an error budget tries instead of the scene's own, in mean diameters: contacts pull up to this
+/// gap. It is larger than the residual gaps of a step and smaller than the roughness of grains.
 const TOUCH_TOLERANCE: f64 = 1e-3;
-/// An alternative restitution threshold, in g·Δt. Bounces slower than about this are not visible.
+/// Restitution threshold that an error budget tries instead of none, in units of g·Δt, the speed that gravity adds in
+/// one step: slower contacts do not bounce. Bounces slower than about this threshold are not visible.
 const THRESHOLD: f64 = 2.0;
 
-/// All variants that can matter to a scene and that it accepts. `pile` describes its grains, if they are generated;
-/// `resizes` is true if their number can be changed.
+/// Returns all variants of a scene that the scene supports and that can have an effect. A variant is the scene with one
+/// change. `pile` describes the grains of the scene, if they are generated. `resizes` is true if the number of grains
+/// can be changed.
 pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> Vec<Variant> {
     let base = scene.settings();
     let (parameters, solver) = (base.parameters, base.solver);
@@ -119,7 +125,7 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
     let mut add = |cause, label: &str, cost, settings: Settings| {
         let mut changed = scene.clone();
         changed.set_settings(settings);
-        // A change that the scene refuses is not a cause.
+        // If the scene does not support a change, there is no variant with this change.
         if settings != base && changed.simulation().is_ok() {
             all.push(Variant { cause, label: label.to_owned(), settings, pile: None, cost });
         }
@@ -134,7 +140,7 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
         let settings = tighter(base, is_driven);
         let label = format!("steps solved by {}", settings.solver.method);
         add(Cause::Unsolved, &label, 4.0, settings);
-        // A step of a flowing pile has several solutions; the initial guess decides which one a solve finds.
+        // A step of a flowing pile has several solutions. The initial guess decides which solution the solver finds.
         let label = if solver.warm_start { "cold starts" } else { "warm starts" };
         add(Cause::Start, label, 4.0, by(&|it| it.solver.warm_start ^= true));
     }
@@ -194,7 +200,7 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
     if resizes {
         let larger = NewPile {
             grains: 2 * pile.grains,
-            // A box of the same shape.
+            // The width grows with the square root of the number of grains, so that the larger pile has the same shape.
             box_width_in_diameters: 2f64.sqrt() * pile.box_width_in_diameters,
             ..pile.clone()
         };
@@ -203,7 +209,7 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
     all
 }
 
-/// The same settings, with steps solved so tightly that their errors are negligible.
+/// Returns the settings with a solver so accurate that the errors of solved steps are negligible.
 fn tighter(mut settings: Settings, is_driven: bool) -> Settings {
     let solver = settings.solver;
     let method = match solver.friction_model {
@@ -222,8 +228,8 @@ fn tighter(mut settings: Settings, is_driven: bool) -> Settings {
     settings
 }
 
-/// Settings with another contact law under which breaking a bond takes the same work as under the scene's own. If the
-/// scene's law does not define this work, the settings are those of `range` with the scene's debonding distance.
+/// Returns settings with another contact law under which breaking a bond takes the same work as under the scene's own
+/// law. If the scene's law does not define this work, it is the work under `range` with the scene's debonding distance.
 fn at_equal_work(scene: &Scene, stepper: Stepper) -> Settings {
     let settings = Settings { stepper, ..scene.settings() }.with_only_what_is_taken();
     if !(scene.physics.cohesion && settings.parameters.bond > 0.0) {
@@ -237,7 +243,7 @@ fn at_equal_work(scene: &Scene, stepper: Stepper) -> Settings {
     joules.map_or(settings, |joules| with_fracture_work(scene, settings, joules))
 }
 
-/// A number in a short form for readers.
+/// Formats a number with at most four significant digits.
 pub(crate) fn short(number: f64) -> String {
     let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
     if rounded != 0.0 && !(1e-2..1e4).contains(&rounded.abs()) {
@@ -288,7 +294,7 @@ mod tests {
         assert_eq!(causes(&pile, None), left);
         let drum = built_in("drum").unwrap();
         assert!(!causes(&drum, None).contains(&Cause::NumberOfGrains));
-        // Few steppers support walls that a force drives.
+        // Few steppers support walls that a force drives, so the stepper `avbd` must not be a variant of this scene.
         let biaxial = variants(&built_in("biaxial").unwrap(), None, false);
         assert!(biaxial.iter().all(|variant| variant.label != "avbd"));
         for scene in crate::scene::SCENES {

@@ -1,6 +1,6 @@
-//! The order of a budget's runs: first every variant from a few initial states, the cheapest first; then more initial
-//! states for the variant with the widest interval, until all intervals are as narrow as requested or the time is
-//! spent.
+//! Chooses and computes the runs of an error budget. At first, every variant (the scene with one change) is run from a
+//! few initial states, the cheapest variant first. Then the variant with the widest confidence interval is run from
+//! more initial states, until all intervals are as narrow as requested or the computing time is used up.
 
 use std::ops::ControlFlow;
 
@@ -11,86 +11,92 @@ use crate::error::Result;
 use crate::output::Progress;
 use crate::statistics::{Mean, mean, mean_with};
 
-/// Least number of initial states of a series. A series ends when its interval is narrow, so one whose few values are
-/// close together by chance ends too early. With 4 initial states, 7.7 % of 3,000 synthetic budgets without any effect
-/// report one; with 6, 5.4 %.
+/// Least number of initial states of a series, which consists of all runs with the same change of the scene. A series
+/// ends when its confidence interval is narrow, so a series whose few values are close together by chance ends too
+/// early. With 4 initial states, 7.7 % of 3,000 synthetic budgets without any effect report an effect; with 6 initial
+/// states, 5.4 %.
 const FIRST: usize = 6;
-/// Fraction of budgets in which at least one interval may miss the true value.
+/// Fraction of error budgets in which at least one confidence interval may miss the true value.
 pub(super) const OUTSIDE: f64 = 0.05;
-/// Default width, as a fraction of the value.
+/// Default half-width of a confidence interval, as a fraction of the value.
 const PART: f64 = 0.1;
 
-/// A run of series number `series` (0 is the unchanged scene) from initial state number `start`, counted from 0.
+/// Identifies a run of an error budget: the run of series number `series` (0 is the unchanged scene) from initial state
+/// number `start`, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SeriesRun {
     pub series: usize,
     pub start: usize,
 }
 
-/// A run and the time that it took, including its initial state, s.
+/// Results of a finished run, and the computing time that the run and its initial state took, s.
 #[derive(Clone, Debug)]
 pub(super) struct Ran {
     pub values: RunValues,
     pub secs: f64,
-    /// True if another part has run it, so that its time does not count for this budget.
+    /// True if another part of the budget, for example on another machine, has computed the run. The time of the run
+    /// then does not count for this part.
     pub is_free: bool,
 }
 
-/// Limits of a budget.
+/// Limits of an error budget.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
-    /// Core seconds.
+    /// Largest computing time, core seconds.
     pub cost_secs: f64,
-    /// Half the width of every interval, in the quantity's unit.
+    /// Requested half-width of every confidence interval, in the unit of the quantity; `None` for a tenth of the value.
     pub within: Option<f64>,
-    /// Number of parts into which the budget is divided. Together they have this many times the initial states of one
-    /// part.
+    /// Number of parts into which the error budget is divided, for example for several machines. All parts together
+    /// have this many times the initial states of one part.
     pub parts: usize,
-    /// True to show progress in a bar on stderr.
+    /// True to show a progress bar on stderr.
     pub shows_progress: bool,
 }
 
-/// The reason for the end of a budget.
+/// Reason why an error budget ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum BudgetEnd {
-    /// Every interval is as narrow as requested.
+    /// Every confidence interval is as narrow as requested.
     Within,
-    /// The time is spent.
+    /// The computing time is used up.
     Cost,
-    /// The observer stopped it.
+    /// The function that watches the computation stopped the budget.
     Stopped,
-    /// Runs of the unchanged scene gave no value.
+    /// The runs of the unchanged scene gave no value.
     Failed,
 }
 
-/// The runs so far.
+/// All runs of an error budget that are finished so far.
 pub(super) struct Runs {
-    /// Indexed by series, then by initial state.
+    /// Finished runs, indexed by series (all runs with the same change of the scene; 0 is the unchanged scene), then by
+    /// initial state.
     pub all: Vec<Vec<Ran>>,
     pub quantities: usize,
-    /// Requested half-width of the intervals, by quantity.
+    /// Requested half-width of the intervals of each quantity, in the unit of the quantity.
     pub within: Vec<f64>,
-    /// Expected cost of a run of each series before one was measured, relative to the first series.
+    /// Expected computing time of a run of each series, divided by the time of a run of the first series. The
+    /// expectation is used until a run of the series has been measured.
     costs: Vec<f64>,
 }
 
 impl Runs {
-    /// `costs` are the expected costs of all series, the first of which is the unchanged scene.
+    /// Returns an empty collection of runs. `costs` contains the expected computing time of a run of each series,
+    /// divided by the time of a run of the first series, which is the unchanged scene.
     fn new(costs: Vec<f64>, quantities: usize) -> Self {
         let all = costs.iter().map(|_| Vec::new()).collect();
         Self { all, quantities, within: Vec::new(), costs }
     }
 
-    /// Confidence of a single interval. It is high enough that all intervals together contain the true values in all
-    /// samples except [`OUTSIDE`] (Bonferroni).
+    /// Returns the confidence level of a single interval. It is so high that all intervals together contain the true
+    /// values in all budgets except the fraction [`OUTSIDE`] (Bonferroni).
     pub(super) fn confidence(&self) -> f64 {
-        // In addition to one interval per series there is the interval at Δt → 0.
+        // There is one interval per series, and one more for the limit Δt → 0 of the time step.
         1.0 - OUTSIDE / ((self.all.len() + 1) * self.quantities) as f64
     }
 
-    /// Mean over the initial states for which all of `series` have a value of the quantity; `of` combines these values
-    /// to one number.
+    /// Returns the mean over those initial states for which each of `series` has a value of the quantity. For each
+    /// initial state, `of` combines the values of these series into one number.
     pub(super) fn over_starts(
         &self,
         series: &[usize],
@@ -112,7 +118,8 @@ impl Runs {
         values.values[quantity].filter(|_| values.failure.is_none())
     }
 
-    /// The quantity in the unchanged scene, or the effect of a series on it.
+    /// Returns the mean of a quantity in the unchanged scene (series 0), or the mean effect of another series on the
+    /// quantity, with its interval.
     pub(super) fn interval(&self, series: usize, quantity: usize) -> Mean {
         if series == 0 {
             self.over_starts(&[0], quantity, |values| values[0])
@@ -121,7 +128,8 @@ impl Runs {
         }
     }
 
-    /// The reason why a series gives no value, if it fails: the number of failed runs, and the first reason.
+    /// Returns the reason why a series gives no value of a quantity: the number of failed runs, and the message of the
+    /// first failed run. Returns `None` if all runs gave a value.
     pub(super) fn failure(&self, series: usize, quantity: usize) -> Option<String> {
         let runs = &self.all[series];
         let failed =
@@ -132,7 +140,8 @@ impl Runs {
         Some(format!("{count} of {} runs came to nothing: {reason}", runs.len()))
     }
 
-    /// Cost of a series, relative to the unchanged scene with the same initial states.
+    /// Returns the computing time of a series of runs, divided by the time of the unchanged scene from the same initial
+    /// states.
     pub(super) fn cost_ratio(&self, series: usize) -> f64 {
         let shared = self.all[series].len().min(self.all[0].len());
         let secs =
@@ -140,7 +149,7 @@ impl Runs {
         secs(series) / secs(0)
     }
 
-    /// True if a series has enough runs to be reported.
+    /// True if a series of runs is long enough to be reported.
     pub(super) fn is_begun(&self, series: usize) -> bool {
         self.all[series].len() >= FIRST
     }
@@ -161,7 +170,8 @@ impl Runs {
         self.all.iter().flatten().filter(|ran| !ran.is_free).map(|ran| ran.secs).sum()
     }
 
-    /// Ratio of the widest interval of a series to the requested width; 0 if it need not become narrower.
+    /// Returns the ratio of the widest interval of a series to the requested width. The ratio is 0 if no interval has
+    /// to become narrower, because there are no values or no scatter.
     pub(super) fn excess(&self, series: usize) -> f64 {
         let of = |quantity: usize| {
             if [0, series].iter().any(|&one| self.failure(one, quantity).is_some()) {
@@ -175,7 +185,8 @@ impl Runs {
     }
 }
 
-/// Computes runs until all intervals are narrow, the time is spent, or `watch` breaks.
+/// Computes runs until all intervals are as narrow as requested, the computing time is used up, or `watch` returns
+/// `Break`.
 pub(super) fn collect(
     costs: Vec<f64>,
     quantities: usize,
@@ -195,7 +206,8 @@ pub(super) fn collect(
     take(&mut runs, first(0).collect(), limits.shows_progress, run)?;
     runs.within = (0..quantities)
         .map(|quantity| limits.within.unwrap_or_else(|| width(&runs, quantity)))
-        // The width of an interval decreases with the square root of the number of initial states.
+        // The width of an interval decreases with the square root of the number of initial states. One part has only a
+        // fraction of the initial states, so its own intervals may be wider than requested.
         .map(|within| within * (limits.parts as f64).sqrt())
         .collect();
     if (0..quantities).all(|quantity| runs.failure(0, quantity).is_some()) {
@@ -217,12 +229,12 @@ pub(super) fn collect(
     }
 }
 
-/// The runs of a series from its first initial states.
+/// Returns the first runs of a series, one from each of the first [`FIRST`] initial states.
 fn first(series: usize) -> impl Iterator<Item = SeriesRun> {
     (0..FIRST).map(move |start| SeriesRun { series, start })
 }
 
-/// The default width, rounded to one digit.
+/// Returns the default half-width of the intervals of a quantity, rounded to one digit.
 fn width(runs: &Runs, quantity: usize) -> f64 {
     let values: Vec<f64> = (0..FIRST).filter_map(|start| runs.value(0, start, quantity)).collect();
     let mean = mean(&values);
@@ -231,9 +243,9 @@ fn width(runs: &Runs, quantity: usize) -> f64 {
     format!("{rough:.0e}").parse().unwrap_or(rough)
 }
 
-/// First runs of the series that fit into the remaining time, the cheapest first. Before one run was measured, the cost
-/// under an expensive law is only known to a factor of ten. A series therefore begins with one run, and gets the others
-/// later if they fit.
+/// Returns the first runs of all series that fit into the remaining time (s), the cheapest series first. Before one run
+/// has been measured, the cost under an expensive contact law is only known to a factor of ten. So each series begins
+/// with one run, and its other first runs follow later if they fit.
 fn begun(
     runs: &Runs,
     left_secs: f64,
@@ -254,8 +266,8 @@ fn begun(
     Ok(jobs)
 }
 
-/// More runs for the series with the widest interval that is affordable; none if all intervals are narrow, or if no
-/// series is affordable.
+/// Returns more runs for the series with the widest interval that fits into the remaining time (s). Returns the reason
+/// for the end of the budget if all intervals are narrow, or if no series fits.
 fn widened(
     runs: &Runs,
     left_secs: f64,
@@ -273,8 +285,8 @@ fn widened(
     wide.sort_by(|one, other| other.0.total_cmp(&one.0));
     for (excess, series) in wide {
         let count = runs.all[series].len();
-        // The width decreases with the square root of the number. The number is at most doubled, because the scatter is
-        // not known well.
+        // The width of an interval decreases with the square root of the number of runs. The number is at most doubled
+        // at once, because the scatter is not known well.
         let needed = (count as f64 * (excess * excess - 1.0)).ceil().clamp(1.0, count as f64);
         let missing = |one: usize, to: usize| {
             (runs.all[one].len()..to).map(move |start| SeriesRun { series: one, start })
@@ -293,7 +305,7 @@ fn widened(
     Ok(Err(BudgetEnd::Cost))
 }
 
-/// Computes runs on all cores, the longest first, and stores their results.
+/// Computes runs on all cores, the longest run first, and stores their results.
 fn take(
     runs: &mut Runs,
     mut jobs: Vec<SeriesRun>,
@@ -328,7 +340,8 @@ mod tests {
 
     #[test]
     fn a_quantity_that_the_scene_does_not_have_takes_no_time_from_one_that_it_has() {
-        // Only the variant has a value of the second quantity, like the energy of bonds under range.
+        // Only the variant has a value of the second quantity, just as only runs with the stepper `range` have an
+        // energy of bonds.
         let run = |SeriesRun { series, start }: SeriesRun| {
             let only_of_the_variant = (series > 0).then_some(1.0);
             let values = vec![Some(0.01 * (start % 3) as f64), only_of_the_variant];

@@ -1,8 +1,9 @@
-//! Error budgets: how much of a result is due to the grains, to the contact law and to the method.
+//! Computes error budgets: estimates how much of a result is due to the grains, to the contact law and to the numerical
+//! method.
 //!
-//! Each possible cause is changed alone, from the same initial states as the unchanged scene. Its effect is a mean of
-//! paired differences with an interval. The intervals of a budget are simultaneous: together they contain the true
-//! values.
+//! Each possible cause is tested by one change of the scene, from the same initial states as the unchanged scene. The
+//! effect of the change is the mean of paired differences, with a confidence interval. The intervals of a budget are
+//! simultaneous: all of them together contain the true values.
 
 mod answer;
 mod causes;
@@ -34,70 +35,71 @@ use crate::output::{check_writable, note_line, print_line, print_text, remove_dr
 use crate::scene::Scene;
 use crate::sim::Settings;
 
-/// Options of a budget.
+/// Options of an error budget.
 #[derive(Clone, Debug)]
 pub struct BudgetOptions {
-    /// The scene.
+    /// Scene whose results are examined, with its settings.
     pub config: Config,
-    /// Columns of the tables `steps` and `measures`, or `mean(…)`, `min(…)`, `max(…)`, `total(…)` of them. Empty for
-    /// the slump.
+    /// Quantities to examine: columns of the tables `steps` and `measures`, or `mean(…)`, `min(…)`, `max(…)`,
+    /// `total(…)` of such a column over a window of time. The slump is examined if the list is empty.
     pub quantities: Vec<String>,
-    /// Begin of the window, s; `None` for 0.
+    /// Simulated time at which the window of examined results begins, s; `None` for 0.
     pub from_secs: Option<f64>,
-    /// End of the window, s; `None` for the scene's end.
+    /// Simulated time at which the window of examined results ends, s; `None` for the end of the scene.
     pub to_secs: Option<f64>,
-    /// Half the width of every interval, in the quantity's unit; `None` for a tenth of the value.
+    /// Requested half-width of every confidence interval, in the unit of the quantity; `None` for a tenth of the value.
     pub within: Option<f64>,
-    /// Computing time over all cores, s.
+    /// Limit of the computing time with all cores in use, s.
     pub cost_secs: f64,
-    /// The part of the initial states to run on this machine; `None` for all of them.
+    /// The part of the initial states to run on this machine; `None` for all initial states.
     pub shard: Option<Shard>,
 }
 
-/// A budget of some quantities of a scene.
+/// An error budget of some quantities of a scene.
 #[derive(Debug, Serialize)]
 pub struct ErrorBudget {
     program: &'static str,
     version: &'static str,
-    /// The command that repeats the budget, without its time limit.
+    /// Command that repeats the budget, without the option of the time limit.
     command: String,
     scene: String,
-    /// Stepper and solver, in a few words.
+    /// Stepper, Bond number, time step, restitution and friction, in a few words.
     stepped: String,
     from_secs: f64,
     to_secs: f64,
     ended: BudgetEnd,
-    /// All values of the scene except its grains.
+    /// All settings of the scene. Its grains are not included.
     config: Config,
     quantities: Vec<QuantityBudget>,
 }
 
 impl ErrorBudget {
-    /// The answer on the first quantity.
+    /// Returns the answer on the first examined quantity.
     pub fn first_answer(&self) -> Option<BudgetAnswer> {
         self.quantities.first().map(QuantityBudget::for_window)
     }
 
-    /// The budget in the form of `budget.json`.
+    /// Returns the budget as JSON, as in the file `budget.json`.
     ///
     /// # Errors
-    /// If it cannot be written as JSON.
+    /// If the budget cannot be written as JSON.
     pub fn to_json(&self) -> Result<String> {
         serde_json::to_string_pretty(self).map_err(|error| Error::file("budget.json", error))
     }
 }
 
-/// Name of the journal of the budget's runs.
+/// Name of the journal that stores the runs of a budget.
 const JOURNAL: &str = "budget";
-/// The default quantity.
+/// Name of the quantity that is examined if the user gives none.
 const QUANTITY: &str = "slump";
 
-/// Computes an error budget in `folder`: `report.md`, a picture, `budget.csv` and `budget.json`. The same call resumes
-/// a budget that was stopped. Runs that its parts have already computed there cost no time. A part only adds its runs.
+/// Computes an error budget and writes `report.md`, a picture, `budget.csv` and `budget.json` to `folder`. The same
+/// call resumes a budget that was stopped. Runs that other parts of the budget have already stored in the folder cost
+/// no time. A call for one part (`options.shard`) only adds the runs of this part to the folder and writes no report.
 ///
 /// # Errors
-/// Names the quantity, time or setting that is not allowed, or the folder that cannot be written. Also fails if a pile
-/// does not come to rest.
+/// If a quantity, time or setting is not allowed, or if the folder cannot be written; the error names the cause. Also
+/// fails if a pile does not come to rest.
 pub fn budget(options: &BudgetOptions, folder: &Path) -> Result<ErrorBudget> {
     let go_on = |_: &ErrorBudget| ControlFlow::Continue(());
     let budget = made_showing(true, options, folder, &folder.join("states"), go_on)?;
@@ -115,11 +117,12 @@ pub fn budget(options: &BudgetOptions, folder: &Path) -> Result<ErrorBudget> {
     Ok(budget)
 }
 
-/// Like [`budget`], but only writes the files from which it can resume. Initial states of piles are stored in `states`.
-/// `watch` is called with the budget after each stage and stops it by breaking.
+/// Like [`budget`], but only writes the files that are needed to resume. Initial states of piles are stored in
+/// `states`. After each stage, `watch` is called with the budget so far. The computation ends if `watch` returns
+/// `Break`.
 ///
 /// # Errors
-/// As [`budget`].
+/// Returns the errors of [`budget`].
 pub fn made(
     options: &BudgetOptions,
     folder: &Path,
@@ -164,7 +167,7 @@ fn made_showing(
         Some(_) if options.shard.is_none() => Some(ran(&key(None, None)?, &|| starts.itself())?),
         _ => None,
     };
-    // Parts divide the initial states among themselves, so they need not communicate.
+    // Each part of a budget has its own initial states, so parts on different machines need not communicate.
     let (part, parts) = options.shard.map_or((1, 1), |shard| (shard.index, shard.count));
     let of_job = |SeriesRun { series, start }: SeriesRun| {
         let variant = series.checked_sub(1).map(|one| &variants[one]);
@@ -214,20 +217,20 @@ fn made_showing(
     Ok(of(&runs, ended))
 }
 
-/// A runner that knows the runs of all parts in a folder, and the keys of the runs of other parts.
+/// Returns a runner that knows the finished runs of all parts in a folder, and the keys of the runs of other parts.
 fn runner_of(shard: Option<Shard>, folder: &Path) -> Result<(Runner<RunValues>, HashSet<String>)> {
     let name = shard.map_or_else(|| JOURNAL.to_owned(), |shard| shard.journal(JOURNAL));
     let journal = Journal::open(folder, &name)?;
     let own = journal::path_of(folder, &name);
     let (mut finished, mut others) = (HashMap::new(), HashSet::new());
     let mut paths = journal::journals(&[folder.to_owned()])?;
-    // Other journals in the folder do not belong to a budget.
+    // The folder can contain other journals, which do not belong to a budget.
     let is_of_a_part = |path: &PathBuf| {
         let name = path.file_stem().and_then(|name| name.to_str());
         name.is_some_and(|name| name.starts_with(JOURNAL))
     };
     paths.retain(is_of_a_part);
-    // The own journal is last: a run in two journals counts as its own.
+    // The journal of this part is read last, so that a run in two journals counts as a run of this part.
     paths.sort_by_key(|path| *path == own);
     for path in paths {
         for case in journal::read::<FinishedCase<RunValues>>(&path)? {

@@ -1,5 +1,5 @@
-//! The quantity of an error budget: a column of the tables `steps` and `measures`, or the shape of a heap, at one time or
-//! over a window.
+//! Defines the quantities of an error budget, and evaluates them during a run. A quantity is a column of the tables
+//! `steps` or `measures`, or a property of the shape of a heap, at one time or over a window of time.
 
 use crate::column_spec::{CellValue, ColumnSpec};
 use crate::data::STEP_COLUMNS;
@@ -7,16 +7,16 @@ use crate::error::{Error, Result};
 use crate::granular::{HeapShape, PileMeasures};
 use crate::sim::{Observables, Simulation};
 
-/// Number of moments in a window at which the table `measures` is evaluated. One evaluation takes as long as several
-/// steps.
+/// Number of moments in a window of time at which columns of the table `measures` are evaluated. The number is small,
+/// because one evaluation takes as long as several steps.
 const MOMENTS: u64 = 100;
 
-/// A statistic of the values in a window.
+/// A statistic of the values in a window of time, such as their mean.
 type Statistic = fn(&Found) -> f64;
 
 const STATISTICS: [(&str, Statistic); 4] = [
     ("mean", |found| found.sum / found.count as f64),
-    // Comparisons with NaN are false in either order.
+    // Comparisons with NaN are false, so the stored minimum and maximum can miss a NaN. The sum cannot.
     ("min", |found| if found.sum.is_nan() { f64::NAN } else { found.least }),
     ("max", |found| if found.sum.is_nan() { f64::NAN } else { found.most }),
     ("total", |found| found.sum),
@@ -29,14 +29,14 @@ enum RecordedColumn {
     Shape(&'static ColumnSpec<HeapShape>),
 }
 
-/// A numeric result of a run.
+/// A quantity of an error budget: a numeric result of a run.
 #[derive(Clone)]
 pub(crate) struct BudgetQuantity {
-    /// Name as the user gave it.
+    /// Name of the quantity as the user wrote it.
     pub name: String,
-    /// Unit; empty for a dimensionless quantity.
+    /// Unit of the quantity; empty for a dimensionless quantity.
     pub unit: &'static str,
-    /// `None` for the last value.
+    /// Statistic over the window of time; `None` for the last value in the window.
     statistic: Option<Statistic>,
     column: RecordedColumn,
 }
@@ -63,7 +63,7 @@ impl std::str::FromStr for BudgetQuantity {
     }
 }
 
-/// True for numeric columns, except those of the run's clock.
+/// True if a column contains numbers and is not one of the columns `step`, `time` and `time_step`.
 fn is_number<Row>(column: &ColumnSpec<Row>) -> bool {
     !matches!(column.name, "step" | "time" | "time_step")
         && !matches!(column.value, CellValue::Word(..) | CellValue::Name(_))
@@ -75,7 +75,7 @@ fn names() -> impl Iterator<Item = &'static str> {
     of_steps.chain(measures_of_moment().filter(is_new))
 }
 
-/// Names of the quantities that a picture of the grains and their forces shows.
+/// Returns the names of the quantities that can be computed from the grains and contact forces at a single moment.
 pub(crate) fn measures_of_moment() -> impl Iterator<Item = &'static str> {
     let measures = PileMeasures::COLUMNS.iter().map(|column| column.name);
     measures.chain(HeapShape::COLUMNS.iter().map(|column| column.name))
@@ -93,14 +93,14 @@ fn column_of(name: &str) -> Option<(RecordedColumn, &'static str)> {
     Some((RecordedColumn::Measures(column), column.unit))
 }
 
-/// A part of a run, in simulated time.
+/// A window of simulated time in a run, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Window {
     pub from_secs: f64,
     pub to_secs: f64,
 }
 
-/// Evaluates quantities during a run.
+/// Evaluates the quantities of an error budget during a run.
 pub(super) struct QuantityWatch<'a> {
     quantities: &'a [BudgetQuantity],
     first: u64,
@@ -131,7 +131,7 @@ impl<'a> QuantityWatch<'a> {
         Self { quantities, first, last, stride, found: vec![none; quantities.len()] }
     }
 
-    /// Number of steps to take from the start.
+    /// Returns the number of steps from the start of the run to the end of the window of time.
     pub(super) fn steps(&self) -> u64 {
         self.last
     }
@@ -162,14 +162,14 @@ impl<'a> QuantityWatch<'a> {
             let value = value.unwrap_or(f64::NAN);
             found.sum += value;
             found.count += 1;
-            // NaN remains NaN.
+            // If `value` is NaN, both comparisons are false, and the NaN is stored.
             found.least = if value >= found.least { found.least } else { value };
             found.most = if value <= found.most { found.most } else { value };
             found.latest = value;
         }
     }
 
-    /// The values of the quantities, which may be NaN or infinite.
+    /// Returns the values of all quantities. A value can be NaN or infinite.
     pub(super) fn values(&self) -> Vec<f64> {
         let of = |(quantity, found): (&BudgetQuantity, &Found)| {
             quantity.statistic.map_or(found.latest, |statistic| statistic(found))

@@ -1,4 +1,4 @@
-//! The files of a budget: the answer in words, a picture, and the table as CSV and JSON.
+//! Writes the files of an error budget: the answer in words, a picture, and the table as CSV and JSON.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -28,7 +28,7 @@ pub(super) fn write(budget: &ErrorBudget, folder: &Path) -> Result<()> {
     for (one, number) in budget.quantities.iter().zip(1..) {
         let table = table(one);
         let rows = table.to_csv()?;
-        // All tables share one header.
+        // The tables of all quantities are in one CSV file and share one header line.
         let skipped = if csv.is_empty() {
             0
         } else {
@@ -53,7 +53,8 @@ pub(super) fn write(budget: &ErrorBudget, folder: &Path) -> Result<()> {
     write_file(&folder.join(REPORT), text.as_bytes())
 }
 
-/// One row per cause, with all that is known of it.
+/// Returns the table of an error budget, with one row per possible cause: its effect with the interval, the fraction of
+/// unsolved steps, the relative computing time, and the reason of a failure.
 pub(super) fn table(budget: &QuantityBudget) -> ReportTable {
     let columns = "quantity share cause changed starts adds low high unsolved cost note";
     let number =
@@ -82,8 +83,8 @@ pub(super) fn table(budget: &QuantityBudget) -> ReportTable {
     ReportTable::new("budget", columns, rows)
 }
 
-/// A bar chart of the causes, the largest effect first, next to a chart of the tested time steps by cost and remaining
-/// error.
+/// Draws a bar chart of the effects of all causes, the largest effect first. A second chart shows the remaining error
+/// of the tested time steps against their computing time.
 fn sheet(budget: &ErrorBudget, one: &QuantityBudget) -> Sheet {
     let rows = one.effects();
     let reach = rows.iter().flat_map(|(_, ends)| *ends).map(f64::abs).filter(|end| end.is_finite());
@@ -129,7 +130,8 @@ fn sheet(budget: &ErrorBudget, one: &QuantityBudget) -> Sheet {
     Sheet { size: (width, 200 + 50 * rows.len().max(4) as u32), charts, caption }
 }
 
-/// Differences between the tested time steps and the smallest of them, by cost.
+/// Draws, for each tested time step, the difference of the quantity to its value at the smallest tested time step,
+/// against the computing time.
 fn by_cost(one: &QuantityBudget, label: &str) -> Option<Chart> {
     let tried: Vec<Point> = one
         .left_by_time_step

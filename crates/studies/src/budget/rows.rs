@@ -1,48 +1,52 @@
-//! The rows and the verdict of a budget.
+//! Defines the rows and the verdict of an error budget.
 
 use serde::Serialize;
 
 use super::causes::{Cause, Share, Variant, short};
 use crate::chart::Rgb;
 
-/// The effect of one change on the value.
+/// A row of an error budget: the effect of one change of the scene on a quantity.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct CauseRow {
-    /// The part of the budget that the cause belongs to.
+    /// Group of the cause: grains, contact law or numerical method.
     pub share: Share,
     pub cause: &'static str,
-    /// The change.
+    /// Description of the change, for example the new time step.
     pub changed: String,
-    /// Number of initial states for which both runs gave a value.
+    /// Number of initial states for which both the changed and the unchanged scene gave a value.
     pub starts: usize,
-    /// The effect on the value, and its interval; `None` if it was not run, or if a run failed.
+    /// Mean effect on the quantity, and both ends of its interval; `None` if the changed scene was not run, or if a run
+    /// failed.
     pub adds: Option<[f64; 3]>,
-    /// Fraction of the variant's steps that were unsolved.
+    /// Fraction of the steps of the changed scene that missed their tolerance.
     pub unsolved: f64,
-    /// Time relative to the unchanged scene. It differs between machines and repetitions.
+    /// Computing time divided by the computing time of the unchanged scene. The ratio differs between machines and
+    /// repetitions.
     pub cost: Option<f64>,
-    /// The reason if there is no value.
+    /// Reason why the effect is not known; `None` if it is known.
     pub failure: Option<String>,
     #[serde(skip)]
     pub(super) kind: Cause,
 }
 
-/// Verdict on a result: whether it is due to the grains and their law and not to the method.
+/// Verdict on a result: tells whether the result is due to the grains and their contact law and not to the numerical
+/// method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Trust {
-    /// Neither the method nor the choice of a law changes it by more than the user allows.
+    /// Neither the numerical method nor the choice of a contact law changes the result by more than the user allows.
     Yes,
-    /// The method does not change it by more. The choice of a law does, or its effect is not yet known.
+    /// The numerical method does not change the result by more than the user allows. The choice of a contact law does,
+    /// or its effect is not yet known.
     Mostly,
-    /// The method changes it by more.
+    /// The numerical method changes the result by more than the user allows.
     No,
-    /// The intervals are too wide to decide.
+    /// The confidence intervals are too wide to decide.
     NotKnownYet,
 }
 
 impl Trust {
-    /// The words of the verdict.
+    /// Returns the verdict in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Yes => "yes",
@@ -53,70 +57,74 @@ impl Trust {
     }
 }
 
-/// The budget of one quantity.
+/// The error budget of one quantity: its value, the effect of each possible cause, and a verdict.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct QuantityBudget {
     pub quantity: String,
     pub unit: &'static str,
-    /// Requested half-width of the intervals, which is also the largest acceptable effect of the method.
+    /// Requested half-width of the intervals, in the unit of the quantity. It is also the largest acceptable effect of
+    /// the numerical method.
     pub within: f64,
-    /// Number of initial states of the unchanged scene.
+    /// Number of initial states from which the unchanged scene was run.
     pub starts: usize,
-    /// Mean over initial states, and its interval; `None` if a run failed.
+    /// Mean of the quantity over the initial states, and both ends of its interval; `None` if a run failed.
     pub value: Option<[f64; 3]>,
-    /// Standard deviation between initial states.
+    /// Standard deviation of the quantity between initial states.
     pub spread: Option<f64>,
-    /// The value of the scene that the user requested, if it is not one of the initial states.
+    /// Value of the quantity in the scene that the user requested, if that scene is not one of the initial states.
     pub itself: Option<f64>,
-    /// The effect of Δt → 0, if it is known.
+    /// Effect on the quantity of letting the time step Δt go to 0, and both ends of its interval, if it is known.
     pub limit_adds: Option<[f64; 3]>,
-    /// For Δt, Δt/2 and Δt/4: time relative to Δt, and difference to Δt/8.
+    /// One entry for each of the time steps Δt, Δt/2 and Δt/4. An entry contains the computing time divided by the
+    /// computing time of Δt, and the difference between the quantity at this time step and at Δt/8, with both ends of
+    /// its interval.
     pub left_by_time_step: Vec<(f64, [f64; 3])>,
     pub trust: Trust,
     pub answer: String,
     pub causes: Vec<CauseRow>,
 }
 
-/// The answer of a budget on one quantity, for a window.
+/// The answer of an error budget on one quantity, in the form that the program's graphical window displays.
 #[derive(Clone, Debug)]
 pub struct BudgetAnswer {
-    /// Verdict.
+    /// Verdict on the quantity.
     pub trust: Trust,
     /// Name of the quantity.
     pub quantity: String,
-    /// Largest acceptable effect of the method, in the unit of the quantity.
+    /// Largest acceptable effect of the numerical method, in the unit of the quantity.
     pub within: f64,
-    /// Largest acceptable effect of the method in words, with its unit.
+    /// Largest acceptable effect of the numerical method as text, with its unit.
     pub within_text: String,
-    /// Everything that was found, in words.
+    /// All findings in words.
     pub text: String,
-    /// The known effects, the largest first.
+    /// Known effects of changes of the scene, the largest effect first.
     pub effects: Vec<BudgetEffect>,
 }
 
 /// The effect of one change on a quantity.
 #[derive(Clone, Debug)]
 pub struct BudgetEffect {
-    /// The part of the budget that it belongs to: grains, law or method.
+    /// Group of the cause: grains, law or method.
     pub share: &'static str,
-    /// Colour of this part in pictures.
+    /// Colour of the group of causes in pictures.
     pub colour: Rgb,
-    /// The change.
+    /// Description of the change, for example the new time step.
     pub changed: String,
-    /// Effect and both ends of its interval, in the unit of the quantity.
+    /// Mean effect on the quantity and both ends of its interval, in the unit of the quantity.
     pub adds: [f64; 3],
 }
 
-/// Everything in a budget except its runs.
+/// The design of an error budget: everything except its runs.
 pub(super) struct Design<'a> {
     pub variants: &'a [Variant],
-    /// True if initial states are piles with different seeds; false if grains are displaced by 1e-9 d.
+    /// True if the initial states are piles made from different seeds. False if they are copies of one scene whose
+    /// grains are displaced by at most 1e-9 mean diameters d.
     pub has_seeds: bool,
     pub time_step_secs: f64,
 }
 
-/// Largest spread between minimally displaced initial states that does not count as chaos, as a fraction of the
-/// requested width.
+/// Largest standard deviation of a quantity, between initial states with minimally displaced grains, at which a scene
+/// does not count as chaotic. It is a fraction of the requested half-width of the intervals.
 pub(super) const SMOOTH: f64 = 0.01;
 
 pub(super) fn is_inside([_, low, high]: [f64; 3], within: f64) -> bool {
@@ -132,7 +140,7 @@ pub(super) fn is_seen([_, low, high]: [f64; 3]) -> bool {
 }
 
 impl QuantityBudget {
-    /// The causes with a known effect, the largest first.
+    /// Returns the causes whose effect is known, with their effects, the largest effect first.
     pub(super) fn effects(&self) -> Vec<(&CauseRow, [f64; 3])> {
         let mut rows: Vec<(&CauseRow, [f64; 3])> =
             self.causes.iter().filter_map(|row| Some((row, row.adds?))).collect();
@@ -140,7 +148,7 @@ impl QuantityBudget {
         rows
     }
 
-    /// The answer, for a window.
+    /// Returns the answer in the form that the program's graphical window displays.
     pub(super) fn for_window(&self) -> BudgetAnswer {
         let effect = |(row, adds): (&CauseRow, [f64; 3])| BudgetEffect {
             share: row.share.word(),
@@ -158,27 +166,29 @@ impl QuantityBudget {
         }
     }
 
-    /// The smallest time step with a value, or else the smallest time step.
+    /// Returns the row of the smallest time step with a value. If no time step has a value, returns the row of the
+    /// smallest time step.
     pub(super) fn smallest_step(&self) -> Option<&CauseRow> {
         let of_steps = || self.causes.iter().filter(|row| row.kind == Cause::TimeStep);
         of_steps().rfind(|row| row.adds.is_some()).or_else(|| of_steps().next_back())
     }
 
-    /// True if a cause in this part of the budget changes the value by more than allowed.
+    /// True if a cause of this group changes the quantity by more than the user allows.
     pub(super) fn is_any_outside(&self, share: Share) -> bool {
         let of_share = self.causes.iter().filter(|row| row.share == share);
         of_share.filter_map(|row| row.adds).any(|ends| is_outside(ends, self.within))
     }
 
-    /// A number in words, with the quantity's unit.
+    /// Appends the unit of the quantity to a number, which is given as text.
     pub(super) fn with_unit(&self, number: &str) -> String {
         if self.unit.is_empty() { number.to_owned() } else { format!("{number} {}", self.unit) }
     }
 
     pub(super) fn judged(&self) -> Trust {
         let of = |share: Share| self.causes.iter().filter(move |row| row.share == share);
-        // The smallest time step shows most of the whole effect. A scene that fails under another law gives no doubt
-        // about its own law.
+        // Of all time steps only the smallest counts, because it shows most of the effect of Δt. If the scene fails
+        // under another contact law, this does not put the scene's own law in doubt, so the row of the other law does
+        // not count.
         let smallest = self.smallest_step().map(|row| &row.changed);
         let counts = |row: &&CauseRow| match row.kind {
             Cause::TimeStep => Some(&row.changed) == smallest,

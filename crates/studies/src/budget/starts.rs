@@ -1,4 +1,5 @@
-//! The initial states that all variants of a scene share, and their runs.
+//! Provides the initial states of an error budget, which the unchanged and the changed scenes share, and runs scenes
+//! from these states.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -18,37 +19,39 @@ use crate::scene::{NewPile, Scene};
 use crate::sim::{RunEnding, Settings, Tally};
 use crate::states::settled_pile;
 
-/// Displacement of grains for another initial state of the same scene, in mean diameters. In a chaotic scene it grows.
+/// Largest displacement of the grains, in mean diameters, that makes another initial state of the same scene. In a
+/// chaotic scene the difference between two such runs grows.
 const MOVED_IN_DIAMETERS: f64 = 1e-9;
 
-/// Results of a run.
+/// Results of a run of an error budget.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RunValues {
-    /// The quantities, in order; `None` if the run has no such value.
+    /// Values of the quantities, in the order of the budget; `None` if the run has no finite value of a quantity.
     pub values: Vec<Option<f64>>,
-    /// The reason why the values are invalid: the state was no longer finite, or grains were lost.
+    /// Reason why the values are invalid: the state was no longer finite, or grains were lost. `None` if the values are
+    /// valid.
     pub failure: Option<String>,
-    /// Fraction of unsolved steps.
+    /// Fraction of the steps that missed their tolerance.
     #[serde(with = "number")]
     pub unsolved: f64,
-    /// Duration without the preparation of the initial state, s.
+    /// Computing time of the run without the preparation of its initial state, s.
     #[serde(with = "number")]
     pub run_secs: f64,
 }
 
-/// The initial states of a budget: piles with other seeds if the scene generates its grains, else the scene itself and
-/// copies with minimally displaced grains.
+/// The initial states of an error budget: piles with different seeds if the scene generates its grains, otherwise the
+/// scene itself and copies of it with minimally displaced grains.
 pub(crate) struct Starts {
     config: Config,
     base: BaseScene,
-    /// The requested scene.
+    /// The scene that the user requested.
     pub scene: Scene,
     pub pile: Option<NewPile>,
     states: PathBuf,
 }
 
 impl Starts {
-    /// The initial states of a request. Those of piles are stored in `states`.
+    /// Returns the initial states of a requested scene. Initial states of piles are stored in the folder `states`.
     pub(crate) fn of(config: &Config, states: &Path) -> Result<Self> {
         let base = config.base_scene()?;
         let scene = config.change(&base)?;
@@ -64,7 +67,7 @@ impl Starts {
         Ok(starts)
     }
 
-    /// True if piles with another number of grains can be made.
+    /// True if the pile can also be made with another number of grains.
     pub(super) fn resizes(&self) -> bool {
         self.pile.is_some() && self.is_default_scene()
     }
@@ -73,14 +76,15 @@ impl Starts {
         self.config.named() == Config::DEFAULT_SCENE
     }
 
-    /// The seed of an initial state; `None` if grains are displaced. The seed of the shipped pile, which was chosen for
-    /// illustration, is never used.
+    /// Returns the seed of the pile for an initial state; `None` if initial states differ by displaced grains instead.
+    /// The seed of the shipped pile is never used, because that pile was chosen for illustration.
     fn seed(&self, start: u64) -> Option<u64> {
         let chosen = NewPile::default().seed;
         self.pile.as_ref().map(|_| if start < chosen { start } else { start + 1 })
     }
 
-    /// The scene of an initial state, counted from 1, with the settings and the pile of a variant.
+    /// Returns the scene with initial state number `start`, counted from 1, and with the settings and the pile of a
+    /// variant.
     pub(crate) fn scene(&self, start: u64, variant: Option<&Variant>) -> Result<Scene> {
         let settings = variant.map_or_else(|| self.scene.settings(), |variant| variant.settings);
         let pile = variant.and_then(|variant| variant.pile.as_ref()).or(self.pile.as_ref());
@@ -101,12 +105,13 @@ impl Starts {
         Ok(scene)
     }
 
-    /// The requested scene.
+    /// Returns the scene that the user requested, with its own initial state.
     pub(super) fn itself(&self) -> Result<Scene> {
         self.config.scene_on(self.base.clone(), |_| true)
     }
 
-    /// The key of a run from an initial state, or of the scene itself: a hash of everything that affects its result.
+    /// Returns the key of a run: a hash of everything that affects the result of the run. `start` is the number of the
+    /// initial state; `None` for the requested scene itself.
     pub(crate) fn key(
         &self,
         start: Option<u64>,
@@ -141,7 +146,7 @@ impl Starts {
     }
 }
 
-/// Runs a scene to the end of the window.
+/// Runs a scene from time 0 to the end of the window of time, and returns the values of the quantities in this window.
 pub(crate) fn run(
     scene: &Scene,
     quantities: &[BudgetQuantity],
@@ -169,7 +174,7 @@ pub(crate) fn run(
     Ok(RunValues { values, failure, unsolved, run_secs: begun.elapsed().as_secs_f64() })
 }
 
-/// Stepper and solver of a scene, in a few words.
+/// Describes the stepper, the Bond number, the time step, restitution and friction in a few words.
 pub(super) fn said_of(settings: &Settings) -> String {
     let parameters = &settings.parameters;
     format!(

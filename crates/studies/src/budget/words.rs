@@ -1,15 +1,15 @@
-//! The answer of a budget in words: one sentence template for each possible finding.
+//! Writes the answer of an error budget in words. There is a template of a sentence for each possible finding.
 
 use super::causes::{Cause, DIVISORS, Share, short};
 use super::collect::{BudgetEnd, OUTSIDE, Runs};
 use super::rows::{CauseRow, Design, QuantityBudget, SMOOTH, Trust, is_inside, is_seen};
 
-/// Rounds a number to the decimals that are meaningful for an interval of half-width `half`.
+/// Rounds a number to the decimals that are meaningful if its confidence interval has the half-width `half`.
 fn rounded(number: f64, half: f64) -> String {
     if !(half > 0.0 && half.is_finite()) {
         return short(number);
     }
-    // Two digits if the half-width begins with 1, else one digit.
+    // The half-width has two digits if it begins with 1, otherwise one digit.
     let power = half.log10().floor();
     let digits = if half / 10f64.powf(power) < 1.95 { 1.0 } else { 0.0 };
     let decimals = digits - power;
@@ -29,7 +29,7 @@ fn rounded(number: f64, half: f64) -> String {
     format!("{number:.*e}", digits as usize)
 }
 
-/// "One, another and a third".
+/// Joins names to an enumeration, as in "time step, cone and friction model".
 fn listed(names: &[String]) -> String {
     match names.split_last() {
         Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
@@ -37,18 +37,19 @@ fn listed(names: &[String]) -> String {
     }
 }
 
-/// A cause as the subject of a sentence.
+/// Returns a cause as the subject of a sentence.
 fn subject(row: &CauseRow) -> String {
     row.kind.subject().replace("{}", &row.changed)
 }
 
-/// The text with its first letter changed by a function.
+/// Returns the text with its first letter changed by a function, for example to a capital letter.
 fn with_first(text: &str, change: fn(&char) -> char) -> String {
     let mut letters = text.chars();
     letters.next().iter().map(change).chain(letters).collect()
 }
 
-/// The answer. `is_halved` is true if all halvings of the time step gave a value.
+/// Returns the answer of an error budget on one quantity as a paragraph. `is_halved` is true if the quantity has a
+/// value with all halved time steps.
 pub(super) fn paragraph(
     budget: &QuantityBudget,
     (runs, ended): (&Runs, BudgetEnd),
@@ -65,24 +66,26 @@ pub(super) fn paragraph(
     said.join(" ")
 }
 
-/// The sentences of the answer.
+/// The sentences of the answer on one quantity.
 impl QuantityBudget {
-    /// A number whose interval has this half-width. Its precision is limited by the largest change that counts as none.
+    /// Formats a number whose interval has the half-width `half`. Decimals below the largest negligible change,
+    /// [`SMOOTH`] times the requested half-width, are left out.
     fn number(&self, number: f64, half: f64) -> String {
         rounded(number, half.max(SMOOTH * self.within))
     }
 
-    /// The largest size of an effect.
+    /// Returns the largest size of an effect that its interval allows.
     fn most([_, low, high]: [f64; 3]) -> f64 {
         low.abs().max(high.abs())
     }
 
-    /// True if an effect is significant and larger than the largest change that counts as none.
+    /// True if an effect is statistically significant and larger than the largest negligible change.
     fn is_told(&self, ends: [f64; 3]) -> bool {
         is_seen(ends) && Self::most(ends) > SMOOTH * self.within
     }
 
-    /// The largest possible size of an effect that is not significant; empty if the effect is exactly 0.
+    /// Returns the largest possible size of an effect that is not significant, in words; empty if the effect is exactly
+    /// 0.
     fn at_most(&self, ends: [f64; 3]) -> String {
         let (most, least) = (Self::most(ends), SMOOTH * self.within);
         match most {
@@ -128,7 +131,8 @@ impl QuantityBudget {
         let smallest = self.smallest_step()?;
         let [mean, low, high] = smallest.adds?;
         let [base, ..] = self.value.unwrap_or([f64::NAN; 3]);
-        // The scatter of the mean value differs from that of a paired difference, whose interval is given.
+        // The decimals follow from the interval of the paired difference between two time steps. The mean value has
+        // another scatter.
         let value = self.with_unit(&self.number(base + mean, high - mean));
         let end = match self.limit_adds {
             Some([mean, low, high]) if is_seen([mean, low, high]) => {
@@ -151,8 +155,8 @@ impl QuantityBudget {
         if mean > 0.0 { format!("adds {size}") } else { format!("takes {size} away") }
     }
 
-    /// One sentence for each significant effect, the largest first; one for all others; and one for each reason why
-    /// effects are missing.
+    /// Returns one sentence for each significant effect, the largest effect first; one sentence for all other effects;
+    /// and one sentence for each reason why effects are not known.
     fn of_causes(&self) -> Vec<String> {
         let smallest = self.smallest_step().map(|row| &row.changed);
         let (mut seen, mut unseen) = (Vec::new(), Vec::new());
@@ -160,11 +164,12 @@ impl QuantityBudget {
         for row in &self.causes {
             let is_of_step = row.kind == Cause::TimeStep;
             match row.adds {
-                // The sentence about the time step covers these.
+                // The sentence about the time step covers these rows.
                 Some(_) if is_of_step => {}
                 None if is_of_step && Some(&row.changed) == smallest => {}
                 Some([mean, low, high]) if self.is_told([mean, low, high]) => {
-                    // The change is a tighter solve, so the effect of unsolved steps has the opposite sign.
+                    // The variant solves its steps more accurately, so the effect of unsolved steps is the opposite of
+                    // the effect of this variant.
                     let is_undone = row.kind == Cause::Unsolved;
                     let ends = if is_undone { [-mean, -high, -low] } else { [mean, low, high] };
                     let subject = with_first(&subject(row), char::to_ascii_uppercase);
@@ -218,7 +223,8 @@ impl QuantityBudget {
         }
     }
 
-    /// The cheapest tested time step whose effect on the value is small enough.
+    /// Returns a sentence about the cheapest tested time step whose effect on the quantity is small enough. Returns
+    /// `None` if no shorter time step is needed.
     fn of_cost(&self, within: &str, time_step_secs: f64) -> Option<String> {
         if self.trust != Trust::No || self.left_by_time_step.is_empty() {
             return None;

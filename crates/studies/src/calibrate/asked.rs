@@ -1,4 +1,4 @@
-//! Targets and parameters as a user writes them.
+//! Parses the targets and the varied parameters of a calibration from the text that a user writes.
 
 use std::str::FromStr;
 
@@ -7,11 +7,11 @@ use crate::config::Config;
 use crate::error::{self, Error, Result};
 use crate::setting::Value;
 
-/// A measured value.
+/// A measured value that the scene should reproduce.
 pub(super) struct Target {
     pub quantity: BudgetQuantity,
     pub value: f64,
-    /// Its standard error, above 0.
+    /// Standard error of the measured value, above 0.
     pub error: f64,
 }
 
@@ -34,9 +34,9 @@ impl FromStr for Target {
     }
 }
 
-/// A parameter and its range.
+/// A parameter to vary, with its range.
 pub(super) struct Varied {
-    /// Its name in files.
+    /// Name of the parameter in files.
     pub name: String,
     pub range: [f64; 2],
 }
@@ -53,7 +53,7 @@ impl FromStr for Varied {
         let (from, to) = range.split_once("..").ok_or_else(refuse)?;
         let range = [from, to].map(|text| text.trim().parse().unwrap_or(f64::NAN));
         let is_range = range[0] < range[1] && (range[1] - range[0]).is_finite();
-        // Long names of options are replaced by the names in files.
+        // Users can also write the long name of a command-line option. It is replaced by the name in files.
         let config = Config::of_options([(name.trim(), from.trim())])?;
         let known = serde_json::to_value(&config).unwrap_or_default();
         let name = known.as_object().and_then(|known| known.keys().next()).ok_or_else(refuse)?;
@@ -62,7 +62,7 @@ impl FromStr for Varied {
     }
 }
 
-/// Checks that the names of targets or of parameters differ.
+/// Checks that the names of all targets, or of all varied parameters, differ.
 pub(super) fn check_distinct(field: &str, names: &[&String]) -> Result<()> {
     let twice = names.iter().enumerate().find(|(number, name)| names[..*number].contains(name));
     let said = twice.map_or_else(String::new, |(_, name)| format!("{name} twice"));

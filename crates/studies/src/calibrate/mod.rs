@@ -1,5 +1,6 @@
-//! Calibration: the parameters with which a scene reproduces measured values. Runs fill the box of the parameters, each
-//! from its own initial state. Polynomials fitted to them give a confidence region.
+//! Calibrates a scene: finds the parameters with which the scene reproduces measured values. Runs fill the box of the
+//! varied parameters evenly, each run from its own initial state. Polynomials fitted to the results of these runs give
+//! a confidence region of the parameters.
 
 mod asked;
 mod region;
@@ -23,37 +24,39 @@ use crate::output::{check_writable, print_line, print_text, remove_drafts};
 use crate::setting::Value;
 use crate::statistics::mean;
 
-/// Name of the journal of the runs.
+/// Name of the journal that stores the runs of a calibration.
 const JOURNAL: &str = "calibrate";
-/// Default number of runs per coefficient of a cubic polynomial.
+/// Default number of runs per coefficient of a cubic polynomial in the varied parameters.
 const RUNS_PER_COEFFICIENT: usize = 10;
-/// Largest numbers of parameters and of runs. More are probably a mistake.
+/// Largest allowed numbers of varied parameters and of runs. Larger numbers are probably a mistake.
 const MOST: [usize; 2] = [4, 100_000];
-/// Number of initial states for the effects of time step and solver.
+/// Number of initial states from which the effects of the time step and of the solver are measured.
 const PAIRS: usize = 6;
 
 /// Options of a calibration.
 #[derive(Clone, Debug)]
 pub struct CalibrateOptions {
-    /// The scene. Its seed, 1 by default, is that of the first run.
+    /// Scene to calibrate, with its settings. Its seed, 1 by default, is the seed of the first run. Further runs use
+    /// the following seeds.
     pub config: Config,
-    /// Measured values, as in `slump=0.35±0.02`: a quantity at the end of a run, and its standard error.
+    /// Measured values, as in `slump=0.35±0.02`: a quantity at the end of a run, its value, and its standard error.
     pub targets: Vec<String>,
-    /// Parameters with their ranges, as in `bond=0..50`.
+    /// Parameters to vary, with their ranges, as in `bond=0..50`.
     pub vary: Vec<String>,
-    /// Number of runs; `None` for ten per coefficient of a cubic polynomial.
+    /// Number of runs; `None` for ten runs per coefficient of a cubic polynomial in the parameters.
     pub runs: Option<usize>,
 }
 
-/// A run: initial states, the number of one of them, and a change of the method.
+/// Setup of one run: the initial states of the scene, the number of the initial state to use, a change of the numerical
+/// method (if any), and the window of time in which results are evaluated.
 type Setup = (Starts, u64, Option<Variant>, Window);
 
-/// Computes a calibration in `folder`: `report.md` and a picture of the region. The same call resumes a
-/// calibration that was stopped; a call for more runs adds to those in the folder.
+/// Calibrates a scene, and writes `report.md` and a picture of the confidence region to `folder`. The same call resumes
+/// a calibration that was stopped. A call for more runs adds to the runs in the folder.
 ///
 /// # Errors
-/// Names the target, parameter or setting that is not allowed, or the folder that cannot be written. Also fails if a
-/// pile does not come to rest, or too few runs give a result.
+/// If a target, parameter or setting is not allowed, or if the folder cannot be written; the error names the cause.
+/// Also fails if a pile does not come to rest, or if too few runs give a result.
 pub fn calibrate(options: &CalibrateOptions, folder: &Path) -> Result<Region> {
     let targets: Vec<Target> =
         options.targets.iter().map(|it| it.parse()).collect::<Result<_>>()?;
@@ -63,7 +66,7 @@ pub fn calibrate(options: &CalibrateOptions, folder: &Path) -> Result<Region> {
     check_distinct("vary", &vary.iter().map(|varied| &varied.name).collect::<Vec<_>>())?;
     let allowed = format!("{} parameters at most", MOST[0]);
     error::check(vary.len() <= MOST[0], "vary", vary.len(), allowed)?;
-    // Each target takes one degree of freedom from the residuals.
+    // Each target takes one degree of freedom from the residuals of the fit, so more targets need more runs.
     let terms = coefficients(vary.len(), 2);
     let least = terms + terms.max(targets.len());
     let count = options.runs.unwrap_or(RUNS_PER_COEFFICIENT * coefficients(vary.len(), 3));
@@ -71,7 +74,8 @@ pub fn calibrate(options: &CalibrateOptions, folder: &Path) -> Result<Region> {
     error::check((least..=MOST[1]).contains(&count), "runs", count, allowed)?;
     let settings = options.config.without_settling()?.settings();
     let mut config = options.config.clone();
-    // The key of a run has the number of its initial state, which calibrations with other first seeds share.
+    // The seed is taken out of the settings. The key of a run contains the number of its initial state instead, so that
+    // calibrations with different first seeds share runs.
     let first = config.source.seed.take().unwrap_or(1);
     error::check(first <= u64::from(u32::MAX), "seed", first, "at most 4294967295")?;
     let with = |point: &[f64]| {
@@ -88,7 +92,8 @@ pub fn calibrate(options: &CalibrateOptions, folder: &Path) -> Result<Region> {
     }
     check_writable("out", folder)?;
 
-    // Other quantities, which further measurements could give, cost no further runs.
+    // The runs also record all quantities that are not targets. They cost no further runs, and the report names those
+    // whose measurement would narrow the region most.
     let is_other = |name: &&str| targets.iter().all(|target| target.quantity.name != *name);
     let mut quantities: Vec<BudgetQuantity> =
         targets.iter().map(|target| target.quantity.clone()).collect();
@@ -118,7 +123,7 @@ pub fn calibrate(options: &CalibrateOptions, folder: &Path) -> Result<Region> {
     let all = all.into_iter().zip(finished).filter(|(_, run)| gave_targets(&run.result));
     let (points, runs): (Vec<_>, Vec<_>) =
         all.map(|(point, run)| (point, run.result.values)).unzip();
-    // A quantity that some runs lack has no polynomial.
+    // A quantity that is missing in some runs gets no polynomial.
     let whole: Vec<usize> = (0..quantities.len())
         .filter(|&number| runs.iter().all(|values| values[number].is_some()))
         .collect();
@@ -172,7 +177,8 @@ pub fn calibrate(options: &CalibrateOptions, folder: &Path) -> Result<Region> {
     Ok(region)
 }
 
-/// The changes of the method whose effects are reported: steps that are solved more tightly, and half the time step.
+/// Returns the changes of the numerical method whose effects are reported: steps that are solved to a smaller
+/// tolerance, and half the time step.
 fn methods(starts: &Starts) -> Vec<Variant> {
     let all = variants(&starts.scene, None, false);
     let first = |cause| all.iter().find(|variant| variant.cause == cause).cloned();

@@ -1,29 +1,33 @@
-//! The parameters that agree with targets: a confidence region in the box of the varied parameters.
+//! Computes the confidence region of a calibration: the points in the box of the varied parameters that agree with the
+//! measured targets.
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use super::surrogate::{Surrogate, inverted, times};
 
-/// Confidence of the region.
+/// Confidence level of the region.
 const CONFIDENCE: f64 = 0.9;
-/// Number of points that fill the box evenly. The fraction of the box has an error of about 0.1 %.
+/// Number of points that fill the box of the varied parameters evenly. With this number, the fraction of the box that
+/// belongs to the region has an error of about 0.1 %.
 const POINTS: usize = 16_384;
 
-/// A confidence region of parameters: with Hotelling's T² of the differences between surrogate and targets, whose
-/// covariance is that of the surrogate plus that of the targets.
+/// A confidence region of parameters. It consists of the points at which Hotelling's T² of the differences between the
+/// fitted polynomials and the targets is below a limit. The covariance in T² is the sum of the covariances of the
+/// polynomials and of the targets.
 #[derive(Clone, Debug)]
 pub struct Region {
     space: Vec<[f64; 2]>,
     targets: Vec<[f64; 2]>,
     pub(super) surrogate: Surrogate,
     limit: f64,
-    /// Points of the box, each with its [`Region::misfit`].
+    /// Points that fill the box, each with its [`Region::misfit`].
     pub(super) points: Vec<(Vec<f64>, f64)>,
 }
 
 impl Region {
-    /// The region in a box with these ends of each parameter. Targets have a value and its standard error. Each run has
-    /// a point of the box and results, first those with targets. Returns `None` if there are too few runs.
+    /// Computes the region in a box. `space` contains the range of each parameter, `targets` the value and the standard
+    /// error of each target. Each run has a point of the box in `points`, and a list in `results` that begins with the
+    /// quantities of the targets. Returns `None` if there are too few runs.
     pub fn new(
         space: &[[f64; 2]],
         targets: &[[f64; 2]],
@@ -47,7 +51,8 @@ impl Region {
         Some(region)
     }
 
-    /// T² of a point divided by its limit: at most 1 in the region.
+    /// Returns T² (Hotelling's measure of disagreement with the targets) of a point, divided by the limit of T²: at
+    /// most 1 in the region.
     pub fn misfit(&self, point: &[f64]) -> f64 {
         let place = place_of(&self.space, point);
         let values = self.surrogate.values(&place);
@@ -66,31 +71,31 @@ impl Region {
         self.points.iter().filter(|(_, misfit)| *misfit <= 1.0).map(|(point, _)| &**point)
     }
 
-    /// Fraction of the box.
+    /// Returns the fraction of the box that belongs to the region.
     pub fn share(&self) -> f64 {
         self.inside().count() as f64 / POINTS as f64
     }
 
-    /// The point that agrees best.
+    /// Returns the point of the box that agrees best with the targets.
     pub fn best(&self) -> &[f64] {
         let best = self.points.iter().min_by(|(_, one), (_, other)| one.total_cmp(other));
         best.map_or(&[], |(point, _)| point)
     }
 
-    /// Least and largest value of a parameter in the region; NaN if the region is empty.
+    /// Returns the least and the largest value of a parameter in the region; NaN if the region is empty.
     pub(super) fn range(&self, parameter: usize) -> [f64; 2] {
         let values = || self.inside().map(|point| point[parameter]);
         [f64::min, f64::max].map(|best| values().fold(f64::NAN, best))
     }
 
-    /// Value of a result at a point, and its standard error.
+    /// Returns the fitted value of a result at a point, and the standard error of this value.
     pub(super) fn value(&self, point: &[f64], result: usize) -> [f64; 2] {
         let place = place_of(&self.space, point);
         let variance = self.surrogate.covariance(&place, result + 1)[result][result];
         [self.surrogate.values(&place)[result], variance.sqrt()]
     }
 
-    /// Standard deviation of a result over the region.
+    /// Returns the standard deviation of a fitted result over the region.
     pub(super) fn spread(&self, result: usize) -> f64 {
         let value = |point| self.surrogate.values(&place_of(&self.space, point))[result];
         let values: Vec<f64> = self.inside().map(value).collect();
@@ -98,15 +103,16 @@ impl Region {
     }
 }
 
-/// A point of the box as a place in the cube from −1 to 1.
+/// Converts a point of the box (values of the varied parameters) into a place in the cube from −1 to 1, in which the
+/// polynomials are defined.
 fn place_of(space: &[[f64; 2]], point: &[f64]) -> Vec<f64> {
     let place = |([from, to], x): (&[f64; 2], &f64)| 2.0 * (x - from) / (to - from) - 1.0;
     space.iter().zip(point).map(place).collect()
 }
 
-/// Point number `number` of a sequence that fills the box evenly, however many points are taken: multiples of powers of
-/// 1/φ modulo 1, where φ generalises the golden ratio (M. Roberts, "The Unreasonable Effectiveness of Quasirandom
-/// Sequences", 2018).
+/// Returns point number `number` of a sequence that fills the box evenly, however many points are taken: multiples of
+/// powers of 1/φ modulo 1, with the generalised golden ratio φ (M. Roberts, "The Unreasonable Effectiveness of
+/// Quasirandom Sequences", 2018).
 pub(super) fn point_of_box(space: &[[f64; 2]], number: usize) -> Vec<f64> {
     let root = 1.0 / (space.len() + 1) as f64;
     let ratio = (0..60).fold(2.0, |ratio: f64, _| (1.0 + ratio).powf(root));

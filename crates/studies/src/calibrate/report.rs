@@ -1,4 +1,4 @@
-//! The files of a calibration: the answer in words and tables, and a picture of the region.
+//! Writes the files of a calibration: the answer in words and tables, and a picture of the confidence region.
 
 use std::path::Path;
 
@@ -12,30 +12,30 @@ use crate::output::write_file;
 use crate::statistics::Mean;
 
 pub(super) const REPORT: &str = "report.md";
-/// Cells along an axis of the picture.
+/// Number of cells along each axis of the picture.
 const CELLS: usize = 40;
-/// Number of separating quantities in the report.
+/// Number of further quantities that the report recommends to measure, because they would narrow the region most.
 const MOST_SEPARATING: usize = 3;
-/// Distance from an end of the box, as a fraction of its width, within which the region reaches the end.
+/// Distance from an end of a parameter's range, as a fraction of the range, within which the region reaches the end.
 const NEAR: f64 = 0.01;
 
-/// The result of a calibration.
+/// The result of a calibration, as the report needs it.
 pub(super) struct Found<'a> {
     pub command: String,
     pub targets: &'a [Target],
     pub vary: &'a [Varied],
-    /// The points of all runs that gave a result.
+    /// Points of all runs that gave a value of each target.
     pub points: &'a [Vec<f64>],
-    /// Number of runs.
+    /// Number of all runs, also of those that failed.
     pub count: usize,
     pub region: &'a Region,
-    /// Effects at the best point: target, change, and mean difference.
+    /// Effects of changes of the numerical method at the best point: the target, the change, and the mean difference.
     pub effects: Vec<(String, String, Mean)>,
-    /// The quantities of the region's results, those of the targets first.
+    /// Quantities of the results in the region. The quantities of the targets come first.
     pub quantities: &'a [&'a BudgetQuantity],
 }
 
-/// Writes all files and returns the answer.
+/// Writes all files of a calibration and returns the answer in words.
 pub(super) fn write(found: &Found<'_>, folder: &Path) -> Result<String> {
     let Found { command, targets, vary, points, count, region, .. } = found;
     let best = region.best();
@@ -107,14 +107,14 @@ pub(super) fn write(found: &Found<'_>, folder: &Path) -> Result<String> {
     Ok(text)
 }
 
-/// Darker with the fraction of a cell that belongs to the region.
+/// Returns the colour of a cell of the map. The colour is darker if more of the cell belongs to the region.
 fn colour(fraction: f64) -> Rgb {
     let (red, green, blue) = PALETTE[1];
     let mix = |end: u8| (255.0 - (255.0 - f64::from(end)) * (0.25 + 0.75 * fraction)).round() as u8;
     (mix(red), mix(green), mix(blue))
 }
 
-/// A map of the region for each pair of parameters; a single parameter is paired with itself.
+/// Draws a map of the region for each pair of parameters. A single parameter is drawn against itself.
 fn sheet(found: &Found<'_>) -> Sheet {
     let last = found.vary.len() - 1;
     let pairs = (0..=last).flat_map(|y| (0..y.max(usize::from(last == 0))).map(move |x| (x, y)));

@@ -1,31 +1,34 @@
-//! A surrogate of runs: polynomials in the varied parameters, fitted by least squares, with the covariance of their
-//! values.
+//! Fits a surrogate model, which predicts the results of runs: polynomials in the varied parameters, by least squares,
+//! with the covariance of their values.
 
-/// Runs per coefficient from which on polynomials are cubic instead of quadratic. With fewer runs, the scatter of a
-/// cubic polynomial is larger than the error of a quadratic one for the slump of small piles.
+/// Number of runs per coefficient from which on the polynomials are cubic instead of quadratic. With fewer runs, the
+/// random scatter of a cubic polynomial is larger than the error of a quadratic polynomial (measured for the slump of
+/// small piles).
 const RUNS_PER_COEFFICIENT: usize = 6;
 
-/// Polynomials of several results of the same runs. Places are in the cube from −1 to 1.
+/// Polynomials for several results of the same runs. The parameters are scaled to places in the cube from −1 to 1.
 #[derive(Clone, Debug)]
 pub(super) struct Surrogate {
     degree: usize,
-    /// Basis functions of each run: the rows of a matrix X.
+    /// Values of the basis functions for each run: the rows of a matrix X.
     rows: Vec<Vec<f64>>,
-    /// (XᵀX)⁻¹.
+    /// The matrix (XᵀX)⁻¹, with the matrix X of the basis functions.
     inverse: Vec<Vec<f64>>,
-    /// Coefficients of each result.
+    /// Coefficients of the polynomial of each result.
     coefficients: Vec<Vec<f64>>,
-    /// Residuals of each run, for each result, if the run is left out of the fit: e/(1 − h) with its leverage h.
+    /// Residuals of each run, one per result, as if the run were left out of the fit: e/(1 − h), with the residual e of
+    /// the full fit and the leverage h of the run.
     residuals: Vec<Vec<f64>>,
 }
 
-/// Number of coefficients of a polynomial.
+/// Returns the number of coefficients of a polynomial of this degree in this many parameters.
 pub(super) fn coefficients(parameters: usize, degree: usize) -> usize {
     (1..=degree).fold(1, |count, k| count * (parameters + k) / k)
 }
 
 impl Surrogate {
-    /// Fits the results of runs at these places; `None` if there are too few different places.
+    /// Fits polynomials to the results of runs at these places of the cube from −1 to 1. Returns `None` if there are
+    /// too few different places.
     pub(super) fn fit(places: &[Vec<f64>], results: &[Vec<f64>]) -> Option<Self> {
         let parameters = places.first()?.len();
         let is_cubic = places.len() >= RUNS_PER_COEFFICIENT * coefficients(parameters, 3);
@@ -53,7 +56,7 @@ impl Surrogate {
         Some(Self { degree, rows, inverse, coefficients, residuals })
     }
 
-    /// Degrees of freedom of the residuals.
+    /// Returns the number of degrees of freedom of the residuals: the number of runs minus the number of coefficients.
     pub(super) fn freedom(&self) -> usize {
         self.rows.len() - self.inverse.len()
     }
@@ -62,15 +65,15 @@ impl Surrogate {
         self.degree
     }
 
-    /// All results at a place.
+    /// Returns the values of all polynomials at a place.
     pub(super) fn values(&self, place: &[f64]) -> Vec<f64> {
         let row = basis(place, self.degree);
         self.coefficients.iter().map(|fit| dot(fit, &row)).collect()
     }
 
-    /// Covariance of the first `count` results at a place: Σ w² e eᵀ over the runs, with the weights w of the runs in
-    /// the value and their residuals e. It does not assume that all places scatter alike (HC3: J. G. MacKinnon, H. White,
-    /// J. Econometrics 29, 305, 1985).
+    /// Returns the covariance of the first `count` results at a place: the sum of w² e eᵀ over the runs, with the
+    /// weight w of a run in the value at the place and its vector e of residuals. This formula does not assume that the
+    /// results scatter equally at all places (HC3: J. G. MacKinnon, H. White, J. Econometrics 29, 305, 1985).
     pub(super) fn covariance(&self, place: &[f64], count: usize) -> Vec<Vec<f64>> {
         let direction = times(&self.inverse, &basis(place, self.degree));
         let mut sums = vec![vec![0.0; count]; count];
@@ -85,14 +88,15 @@ impl Surrogate {
         sums
     }
 
-    /// Root mean square error with which a result of one run is predicted without that run.
+    /// Returns the root mean square error with which the fit to all other runs predicts a result of one run.
     pub(super) fn scatter(&self, result: usize) -> f64 {
         let squares = self.residuals.iter().map(|residuals| residuals[result].powi(2));
         (squares.sum::<f64>() / self.residuals.len() as f64).sqrt()
     }
 }
 
-/// Products of Legendre polynomials up to a total degree of at most 3.
+/// Returns the basis functions at a place: all products of Legendre polynomials up to the total degree `degree`, which
+/// is at most 3.
 fn basis(place: &[f64], degree: usize) -> Vec<f64> {
     let mut products = vec![(1.0, 0)];
     for &x in place {
@@ -113,13 +117,14 @@ pub(super) fn times(matrix: &[Vec<f64>], vector: &[f64]) -> Vec<f64> {
     matrix.iter().map(|row| dot(row, vector)).collect()
 }
 
-/// Inverse of a symmetric positive definite matrix (Gauss and Jordan); `None` if it is singular.
+/// Returns the inverse of a symmetric positive definite matrix, by Gauss–Jordan elimination; `None` if the matrix is
+/// singular.
 pub(super) fn inverted(mut matrix: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
     let size = matrix.len();
     let largest = (0..size).map(|k| matrix[k][k]).fold(0.0, f64::max);
     for k in 0..size {
         let pivot = matrix[k][k];
-        // Also for NaN.
+        // A pivot that is NaN also counts as singular.
         if pivot.partial_cmp(&(1e-14 * largest)) != Some(std::cmp::Ordering::Greater) {
             return None;
         }

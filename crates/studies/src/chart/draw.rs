@@ -1,4 +1,4 @@
-//! Draws sheets with plotters, in the font that is included in the program.
+//! Draws sheets of charts with the crate plotters, in the font that is included in the program.
 
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -14,29 +14,29 @@ use crate::error::{Error, Result};
 use crate::output::Texts;
 use crate::png::png_of_rgb;
 
-/// Sizes of words, pixels.
+/// Sizes of text, pixels: title of a chart, labels of axes, caption of the sheet, and words within a chart.
 const TITLE: u32 = 27;
 const WORDS: u32 = 24;
 const CAPTION: u32 = 20;
 const WITHIN: u32 = 18;
-/// Space for the text beside the vertical axis, and for each character of longer text, pixels.
+/// Least width of the space for labels left of the vertical axis, and width of a character of longer labels, pixels.
 const BESIDE: u32 = 104;
 const CHARACTER: u32 = 12;
 /// Sizes of the legend, pixels: space above its first entry, height of a line of text (also in the caption), space
-/// between entries, width of an entry's symbol; and the width of a character of the caption.
+/// between entries, and width of an entry's symbol. The last size is the width of a character of the caption.
 const ABOVE: u32 = 70;
 const CAPTION_LINE: u32 = 28;
 const BETWEEN: u32 = 8;
 const KEY: u32 = 70;
 const CAPTION_CHARACTER: u32 = 10;
-/// Half the height of a horizontal bar, relative to the height of its row.
+/// Half the height of a horizontal bar, as a fraction of the height of its row.
 const BAR: f64 = 0.32;
-/// Name of the font; browsers know it too, for the SVG.
+/// Name of the font. Browsers also know this name, so that they can display the text of an SVG file.
 const FONT: &str = "sans-serif";
 
 type Context<'a, DB> = ChartContext<'a, DB, Cartesian2d<AxisCoordinates, AxisCoordinates>>;
 
-/// The sheet as PNG. The file contains the command that draws it.
+/// Returns the sheet as a PNG file that also contains the command that draws the sheet.
 ///
 /// # Errors
 /// If plotters or the encoder fails.
@@ -53,7 +53,7 @@ pub fn png(sheet: &Sheet, command: &str) -> Result<Vec<u8>> {
     png_of_rgb(&image, &texts)
 }
 
-/// The sheet as SVG.
+/// Returns the sheet as an SVG file.
 ///
 /// # Errors
 /// If plotters fails.
@@ -64,11 +64,11 @@ pub fn svg(sheet: &Sheet) -> Result<String> {
     Ok(text)
 }
 
-/// Positions of the parts of a sheet: its charts, a legend to their right, and the caption below.
+/// Layout of a sheet: its charts, a legend to their right, and the caption below.
 struct Layout<'a> {
     sheet: &'a Sheet,
     size: (u32, u32),
-    /// Curves in the legend, each name once.
+    /// Entries of the legend: name, colour and style of each curve. Each name occurs once.
     legend: Vec<(&'a str, Rgb, Look)>,
     caption: Vec<String>,
 }
@@ -119,7 +119,7 @@ fn failed(error: impl std::fmt::Display) -> Error {
 fn register_fonts() -> Result<()> {
     static DONE: OnceLock<bool> = OnceLock::new();
     let regular = include_bytes!("../../../../assets/fonts/DejaVuSansCondensed.ttf");
-    // The browser version has no charts, and its text is in the browser's fonts.
+    // The browser version of the program draws no charts, so it does not register a font.
     #[cfg(target_arch = "wasm32")]
     let register = |_: &[u8]| false;
     #[cfg(not(target_arch = "wasm32"))]
@@ -137,7 +137,7 @@ fn draw<DB: DrawingBackend>(layout: &Layout<'_>, area: DrawingArea<DB, Shift>) -
     for (line, y) in caption.iter().zip((below as i32..).step_by(CAPTION_LINE as usize)) {
         area.draw_text(line, &style, (16, y)).map_err(failed)?;
     }
-    // Charts share the width of the sheet in proportion to their own widths.
+    // The charts divide the width of the sheet among themselves in proportion to their own widths.
     let total: f64 = sheet.charts.iter().map(|chart| chart.width).sum();
     let mut before = 0.0;
     for chart in &sheet.charts {
@@ -280,12 +280,12 @@ fn draw_curve<'a, DB: DrawingBackend + 'a>(
     Ok(())
 }
 
-/// Width of a line style, 0 if it has no line, and radius and style of its dots.
+/// Returns the width of the line of a style, 0 if the style has no line, and the radius and style of its dots.
 fn strokes(look: Look, colour: RGBColor) -> (u32, Option<(u32, ShapeStyle)>) {
     match look {
         Look::Line(width) | Look::Dashes(width) => (width, None),
         Look::LineAndDots => (3, Some((5, colour.filled()))),
-        // In the legend only; on a chart, bars are drawn separately.
+        // This width is only used in the legend. On a chart, bars are drawn as rectangles.
         Look::Bars => (14, None),
         Look::Dots(radius) => (0, Some((radius, colour.filled()))),
         Look::Rings(radius) => (0, Some((radius, colour.stroke_width(2)))),
@@ -296,10 +296,10 @@ fn rgb((red, green, blue): Rgb) -> RGBColor {
     RGBColor(red, green, blue)
 }
 
-/// Largest distance from a tick mark, as a fraction of the axis, at which a coordinate is taken for it.
+/// Largest distance between a coordinate and a tick mark, as a fraction of the axis, at which both count as equal.
 const NEAR: f64 = 1e-6;
 
-/// Coordinates along an axis (`Scale::place`) and its tick marks.
+/// Range of the coordinates along an axis, as given by `Scale::place`, and the tick marks of the axis.
 struct AxisCoordinates {
     range: Range<f64>,
     marks: Vec<(f64, String)>,
@@ -326,7 +326,7 @@ impl Ranged for AxisCoordinates {
 
     fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
         let share = (value - self.range.start) / (self.range.end - self.range.start);
-        // Points outside the axis are drawn at its end.
+        // Points beyond an end of the axis are drawn at that end.
         from + (f64::from(to - from) * share.clamp(0.0, 1.0)).round() as i32
     }
 
@@ -344,7 +344,7 @@ impl Ranged for AxisCoordinates {
 
 impl ValueFormatter<f64> for AxisCoordinates {
     fn format_ext(&self, place: &f64) -> String {
-        // An axis may be reversed.
+        // The axis may be reversed, so its length is an absolute value.
         let span = (self.range.end - self.range.start).abs();
         let mark = self.marks.iter().find(|(mark, _)| (mark - place).abs() < NEAR * span);
         mark.map_or(String::new(), |(_, words)| words.clone())

@@ -1,6 +1,6 @@
-//! Lines with the same width for every slope. plotters fills lines as polygons with whole-pixel corners, so a line of
-//! three pixels may become two or four pixels wide. Here each pixel is coloured in proportion to the part of it that
-//! the line covers.
+//! Draws lines with the same width for every slope. The crate plotters fills lines as polygons with whole-pixel
+//! corners, so a line of three pixels may become two or four pixels wide. Here each pixel is coloured in proportion to
+//! the part of its area that the line covers.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use glam::DVec2;
 use plotters::prelude::{BitMapBackend, DrawingBackend};
 use plotters_backend::{BackendColor, BackendCoord, BackendStyle, DrawingErrorKind};
 
-/// A bitmap backend that draws such lines.
+/// A bitmap backend that draws lines with the same width for every slope.
 pub(super) struct EvenLines<'a>(pub BitMapBackend<'a>);
 
 type Outcome<'a> = Result<(), DrawingErrorKind<<BitMapBackend<'a> as DrawingBackend>::ErrorType>>;
@@ -55,8 +55,8 @@ impl<'a> DrawingBackend for EvenLines<'a> {
     }
 }
 
-/// The pixels of a line and the fraction of each that it covers. A pixel whose centre is half the width away is half
-/// covered.
+/// Returns the pixels of a line, each with the fraction of its area that the line covers. The fraction is one half for
+/// a pixel whose centre is half the line's width away from the middle of the line.
 fn covered(path: &[BackendCoord], width: f64) -> BTreeMap<BackendCoord, f64> {
     let place = |(x, y): BackendCoord| DVec2::new(f64::from(x), f64::from(y));
     let reach = (0.5 * width + 1.0).ceil() as i32;
@@ -86,7 +86,8 @@ fn covered(path: &[BackendCoord], width: f64) -> BTreeMap<BackendCoord, f64> {
 mod tests {
     use super::*;
 
-    /// Sum of the covered fractions over the length of a line, without its round ends.
+    /// Returns the mean width of a line: the sum of the covered fractions without the round ends, divided by the
+    /// length.
     fn mean_width(to: BackendCoord, width: f64) -> f64 {
         let area: f64 = covered(&[(0, 0), to], width).values().sum();
         let length = f64::from(to.0).hypot(f64::from(to.1));

@@ -1,9 +1,10 @@
-//! The Pareto front of points of cost and error.
+//! Computes the Pareto front of methods: the best combinations of speed and error.
 
-/// The points (speed, error) that no other point beats in both, by increasing speed. Of equal points the first is kept.
+/// Returns the indices of those points (speed, error) for which no other point is at least as fast and at least as
+/// accurate, by increasing speed. Of equal points, the first is returned.
 pub fn pareto_front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
-    // Fastest first; among equally fast points, the most accurate first.
+    // The fastest point comes first. Among equally fast points, the most accurate point comes first.
     order.sort_by(|&one, &other| {
         let ((speed, error), (other_speed, other_error)) = (points[one], points[other]);
         other_speed.total_cmp(&speed).then(error.total_cmp(&other_error))

@@ -1,5 +1,5 @@
-//! Charts as plain data, independent of how they are drawn. The PNG, the SVG and the CSV are made from the same data,
-//! so the CSV contains every point.
+//! Describes charts as plain data, independent of how they are drawn. PNG, SVG and CSV files are made from the same
+//! data, so the CSV file contains every point.
 
 mod draw;
 mod even_lines;
@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 pub type Rgb = (u8, u8, u8);
 
 pub(crate) const INK: Rgb = (40, 40, 40);
-/// Colours that people with any colour vision can distinguish (Okabe and Ito 2008).
+/// Colours of curves that people with any type of colour vision can distinguish (Okabe and Ito 2008).
 pub const PALETTE: [Rgb; 7] = [
     (0, 0, 0),
     (0, 114, 178),
@@ -25,7 +25,7 @@ pub const PALETTE: [Rgb; 7] = [
     (213, 94, 0),
 ];
 
-/// Distance between curves that are drawn side by side, in widths of the chart.
+/// Distance between curves that are drawn side by side, as a fraction of the width of the chart.
 const ASIDE: f64 = 0.006;
 
 /// One axis of a chart.
@@ -35,50 +35,50 @@ pub struct Axis {
     pub(crate) scale: Scale,
     pub(crate) from: f64,
     pub(crate) to: f64,
-    /// Tick positions with their own labels; if empty, round numbers are used.
+    /// Positions of tick marks with their labels. If the list is empty, the marks are at round numbers.
     pub(crate) ticks: Vec<(f64, String)>,
 }
 
 impl Axis {
-    /// A linear axis.
+    /// Returns a linear axis.
     pub fn linear(label: impl Into<String>, from: f64, to: f64) -> Self {
         Self { label: label.into(), scale: Scale::Linear, from, to, ticks: Vec::new() }
     }
 
-    /// A logarithmic axis.
+    /// Returns a logarithmic axis.
     pub fn log(label: impl Into<String>, from: f64, to: f64) -> Self {
         Self { label: label.into(), scale: Scale::Log, from, to, ticks: Vec::new() }
     }
 }
 
-/// A point, with its interval if it has one.
+/// A point of a curve, with its confidence interval if it has one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// On the x axis.
+    /// Coordinate on the x axis.
     pub x: f64,
-    /// On the y axis.
+    /// Coordinate on the y axis.
     pub y: f64,
-    /// Lower and upper end of the interval in y.
+    /// Lower and upper end of the confidence interval in y.
     pub interval: Option<(f64, f64)>,
 }
 
-/// Points without intervals.
+/// Returns points without confidence intervals, from their coordinates x and y.
 pub(crate) fn points(places: impl IntoIterator<Item = (f64, f64)>) -> Vec<Point> {
     places.into_iter().map(|(x, y)| Point { x, y, interval: None }).collect()
 }
 
-/// A filled rectangle.
+/// A filled rectangle of a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapCell {
-    /// Value on the x axis, and the left and right edges.
+    /// Value on the x axis, and the left and right edges of the rectangle.
     pub x: (f64, [f64; 2]),
-    /// Value on the y axis, and the lower and upper edges.
+    /// Value on the y axis, and the lower and upper edges of the rectangle.
     pub y: (f64, [f64; 2]),
-    /// Value that the colour shows.
+    /// Value that the colour of the rectangle shows.
     pub value: f64,
 }
 
-/// How a layer is drawn.
+/// Style in which a curve is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
     /// A line of this width, pixels.
@@ -91,7 +91,7 @@ pub enum Look {
     Rings(u32),
     /// A line through filled discs.
     LineAndDots,
-    /// Horizontal bars from 0 to x, with intervals in x.
+    /// Horizontal bars from 0 to x, with confidence intervals in x.
     Bars,
 }
 
@@ -104,13 +104,14 @@ pub enum Layer {
         name: String,
         /// True if the curve is in the legend.
         in_legend: bool,
-        /// The points, in order.
+        /// Points, in the order in which a line connects them.
         points: Vec<Point>,
-        /// The colour.
+        /// Colour of the curve.
         colour: Rgb,
-        /// The style.
+        /// Style of the curve.
         look: Look,
-        /// Horizontal offset, in widths of the chart, so that intervals of several curves do not hide each other.
+        /// Horizontal shift of the curve, as a fraction of the width of the chart, so that the intervals of several
+        /// curves do not hide each other.
         aside: f64,
     },
     /// Filled rectangles, each with the value that its colour shows.
@@ -119,12 +120,12 @@ pub enum Layer {
         name: String,
         /// The rectangles.
         cells: Vec<MapCell>,
-        /// Colour of a value.
+        /// Function that returns the colour of a value.
         colour: fn(f64) -> Rgb,
     },
-    /// A label.
+    /// A text label within the chart.
     Words {
-        /// Position of its beginning, in the axes' units.
+        /// Position at which the text begins, in the units of the axes.
         at: (f64, f64),
         /// The text.
         text: String,
@@ -134,12 +135,12 @@ pub enum Layer {
 }
 
 impl Layer {
-    /// A curve that is in the legend.
+    /// Returns a curve that is in the legend.
     pub fn curve(name: impl Into<String>, points: Vec<Point>, colour: Rgb, look: Look) -> Self {
         Self::Curve { name: name.into(), in_legend: true, points, colour, look, aside: 0.0 }
     }
 
-    /// This curve, shifted as number `index` of `count` curves side by side.
+    /// Returns this curve, shifted horizontally as number `index` of `count` curves that are drawn side by side.
     pub fn beside(mut self, index: usize, count: usize) -> Self {
         if let Self::Curve { aside, .. } = &mut self {
             *aside = ASIDE * (index as f64 - 0.5 * (count as f64 - 1.0));
@@ -147,35 +148,35 @@ impl Layer {
         self
     }
 
-    /// A curve that is not in the legend.
+    /// Returns a curve that is not in the legend.
     pub fn quiet(name: impl Into<String>, points: Vec<Point>, colour: Rgb, look: Look) -> Self {
         Self::Curve { name: name.into(), in_legend: false, points, colour, look, aside: 0.0 }
     }
 }
 
-/// One pair of axes.
+/// A chart: a pair of axes with its layers of curves, cells and labels.
 #[derive(Clone, Debug)]
 pub struct Chart {
     pub(crate) title: String,
     pub(crate) x: Axis,
     pub(crate) y: Axis,
-    /// From back to front.
+    /// Layers of the chart, from back to front.
     pub layers: Vec<Layer>,
-    /// Relative width on the sheet.
+    /// Width on the sheet, relative to the other charts.
     pub(crate) width: f64,
 }
 
 impl Chart {
-    /// An empty chart.
+    /// Returns a chart without layers.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
         Self { title: title.into(), x, y, layers: Vec::new(), width: 1.0 }
     }
 }
 
-/// Charts side by side, with a legend of all curves to their right and a caption below.
+/// A sheet: charts side by side, with a legend of all curves to their right and a caption below.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    /// Size of all charts without legend and caption, pixels.
+    /// Width and height of all charts together, without legend and caption, pixels.
     pub size: (u32, u32),
     /// The charts, from left to right.
     pub charts: Vec<Chart>,
@@ -188,7 +189,7 @@ impl Sheet {
         Self { size: (1200, 820), charts: vec![chart], caption: Vec::new() }
     }
 
-    /// Every point of every layer as CSV: panel, layer, x, y, low, high, value.
+    /// Returns every point of every layer as CSV, with the columns panel, layer, x, y, low, high and value.
     ///
     /// # Errors
     /// If a row cannot be written as CSV.
@@ -235,11 +236,13 @@ pub(crate) enum Scale {
 
 const MARKS: f64 = 6.0;
 
-/// If a logarithmic axis ends below this many times its beginning, 2 and 5 also have labels.
+/// Ratio of the ends of a logarithmic axis below which not only powers of ten have labels, but also 2 and 5 times these
+/// powers.
 const SHORT: f64 = 80.0;
 
 impl Scale {
-    /// Position of a number, in a unit that grows evenly along the axis.
+    /// Returns the coordinate of a number along the axis: the number itself, or its decimal logarithm on a logarithmic
+    /// axis.
     fn place(self, number: f64) -> f64 {
         match self {
             Self::Linear => number,
@@ -247,7 +250,7 @@ impl Scale {
         }
     }
 
-    /// Round numbers in an interval, with their labels; minor ticks have no label.
+    /// Returns the round numbers in an interval, with their labels. The labels of minor tick marks are empty.
     fn marks(self, from: f64, to: f64) -> Vec<(f64, String)> {
         match self {
             Self::Linear => linear_marks(from, to),
@@ -290,10 +293,10 @@ fn log_marks(from: f64, to: f64) -> Vec<(f64, String)> {
     marks
 }
 
-/// Exponents of the powers of ten that are written as decimals.
+/// Exponents of those powers of ten that are written as decimals.
 const PLAIN: std::ops::RangeInclusive<i32> = -2..=2;
 
-/// A power of ten: 10⁻⁴, or a decimal from 0.01 to 100.
+/// Formats a power of ten: as 10⁻⁴, for example, or as a decimal from 0.01 to 100.
 fn power_of_ten(exponent: i32) -> String {
     if PLAIN.contains(&exponent) {
         return format!("{}", 10f64.powi(exponent));

@@ -1,6 +1,6 @@
-//! Claims with verdicts, and the rate at which a test accepts a claim by chance. For that rate, the same test is
-//! applied to the same runs after Δt has been shuffled among runs that only differ in Δt. The scatter is then
-//! unchanged, and no effect remains.
+//! Defines claims with verdicts, and computes the rate at which a test accepts a claim by chance. For this rate, the
+//! same test is applied to the same runs after the time step Δt has been shuffled among runs that only differ in Δt.
+//! The shuffle leaves the scatter unchanged and removes every effect of Δt.
 
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -9,19 +9,19 @@ use rand_pcg::Pcg64;
 /// Significance level: p-values below it count as evidence.
 pub(super) const SIGNIFICANT: f64 = 0.05;
 
-/// An interval confirms a value only if the ratio of its ends is at most this.
+/// Largest ratio of the two ends of an interval that can confirm a value. A wider interval decides nothing.
 const NARROW: f64 = 3.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
     Holds,
     Fails,
-    /// The data decide neither way.
+    /// The data decide neither for nor against the claim.
     Open,
 }
 
 impl Verdict {
-    /// The verdict on a claim with p-value `p` whose contrary has p-value `p_contrary`.
+    /// Returns the verdict on a claim with the p-value `p`. The opposite claim has the p-value `p_contrary`.
     pub(super) fn of(p: f64, p_contrary: f64) -> Self {
         match (p < SIGNIFICANT, p_contrary < SIGNIFICANT) {
             (true, _) => Self::Holds,
@@ -30,8 +30,8 @@ impl Verdict {
         }
     }
 
-    /// The verdict on a guess at a ratio. It fails outside the interval, and an interval wider than a factor of
-    /// [`NARROW`] does not decide.
+    /// Returns the verdict on a guessed ratio, from the interval of the measured ratio. The guess fails outside the
+    /// interval. An interval wider than a factor of [`NARROW`] does not decide.
     pub(super) fn of_interval(guess: f64, low: f64, high: f64) -> Self {
         if guess < low || guess > high {
             Self::Fails
@@ -60,14 +60,14 @@ impl From<bool> for Verdict {
 /// A claim, its measurement, and the verdict.
 #[derive(Clone, Debug)]
 pub(super) struct Claim {
-    /// The statement of the paper, or a further question.
+    /// Statement that is tested: one of the paper, or a further one.
     pub said: String,
-    /// The measured value, with its interval or p-value.
+    /// Measured value in words, with its interval or p-value.
     pub measured: String,
     pub verdict: Verdict,
-    /// Rate at which the test accepts the claim by chance; empty if nothing is random.
+    /// Rate at which the test accepts the claim by chance, in words; empty if nothing is random.
     pub by_chance: String,
-    /// Free choices that affect the verdict; empty if they are the same for all runs of the figure.
+    /// Free choices on which the verdict depends; empty if they are the same for all runs of the figure.
     pub hangs_on: String,
 }
 
@@ -86,8 +86,8 @@ impl Claim {
         Self { by_chance: by_chance.into(), ..self }
     }
 
-    /// Adds the rate at which the test accepts the claim after shuffles of `groups`. Each shuffled result gets the
-    /// limiting effect `border` that the claim still allows.
+    /// Adds the rate at which the test accepts the claim after the time steps within each of `groups` have been
+    /// shuffled. `border` is the effect at which the claim is just false. It is added to the shuffled results.
     pub(super) fn shuffled(
         self,
         groups: &[Alike],
@@ -105,14 +105,15 @@ impl Claim {
     }
 }
 
-/// Number of shuffles. The rate of a test at the 5 % level is then known to ± 1.4 %.
+/// Number of shuffles of the time steps, from which the rate of acceptance by chance is computed. The rate of a test at
+/// the 5 % level is then known to ± 1.4 % (95 % interval).
 const SHUFFLES: usize = 1000;
 
-/// Runs that differ in one number only: that number and the result of each run.
+/// A group of runs that differ in one number only: for each run, this number and the result of the run.
 pub(super) type Alike = Vec<(f64, f64)>;
 
-/// Fraction of shuffles of all groups after which the claim `holds`. After a shuffle, `border` adds the largest effect
-/// that the claim still allows.
+/// Returns the fraction of shuffles of all groups after which the claim `holds`. After each shuffle, the effect
+/// `border`, at which the claim is just false, is added to the results.
 fn share_by_chance(
     groups: &[Alike],
     border: impl Fn(f64) -> f64,
@@ -135,7 +136,8 @@ mod tests {
     use super::*;
     use crate::statistics::{mean, slope};
 
-    /// Sixteen initial states with six Δt each, whose results fall by `fall` per decade.
+    /// Returns made-up results of sixteen initial states with six time steps each. The results fall by `fall` per
+    /// decade of the time step.
     fn states(fall: f64) -> Vec<Alike> {
         let of_state = |state: usize| {
             let run = |step: usize| {

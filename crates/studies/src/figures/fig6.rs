@@ -1,4 +1,5 @@
-//! Fig. 6: slump against the cohesive time Bond·Δt/√(d/g), and whether two regimes meet at 1.
+//! Draws Fig. 6 of the paper: slump against the cohesive time Bond·Δt/√(d/g), with mean diameter d and gravity g. Tests
+//! whether two regimes meet at a cohesive time of 1.
 
 use rand::{RngExt, SeedableRng};
 
@@ -11,20 +12,21 @@ use crate::harness::MeasuredCase;
 use crate::statistics::{mean, p_of_either, p_value, slope, turning_point};
 
 const RESAMPLINGS: usize = 400;
-/// Number of resamplings for each shuffle, fewer to save time. Their interval is narrower, so a shuffle differs from 1
-/// more often.
+/// Number of resamplings of the initial states for each shuffle of Δt. The number is smaller than [`RESAMPLINGS`] to
+/// save time. With fewer resamplings the interval is narrower, so that the turning point of shuffled runs differs from
+/// 1 more often.
 const FEWER_RESAMPLINGS: usize = 20;
 
-/// d of the piles, m, and g, m/s².
+/// Mean diameter d of the piles, m, and gravity g, m/s².
 const DIAMETER: f64 = 5e-3;
 const GRAVITY: f64 = 9.8;
 
-/// log₁₀ of the cohesive time of a run.
+/// Returns log₁₀ of the cohesive time Bond·Δt/√(d/g) of a run, with mean diameter d and gravity g.
 pub(super) fn log_time(run: &MeasuredCase) -> f64 {
     (run.at("bond") * run.at("dt") / unit_secs()).log10()
 }
 
-/// √(d/g) of the piles, s.
+/// Returns √(d/g), the time unit of the piles, s, with mean diameter d and gravity g.
 pub(super) fn unit_secs() -> f64 {
     (DIAMETER / GRAVITY).sqrt()
 }
@@ -63,7 +65,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig6", sheet, claims, table: None })
 }
 
-/// Merges the groups of each of `count` initial states.
+/// Merges the groups of runs of each initial state. `count` is the number of initial states.
 fn joined(groups: &[Alike], count: usize) -> Vec<Alike> {
     groups.chunks((groups.len() / count.max(1)).max(1)).map(<[_]>::concat).collect()
 }
@@ -118,7 +120,7 @@ fn regimes(groups: &[Alike], count: usize) -> Claim {
     )
 }
 
-/// The turning point of the slump, with its interval over resampled initial states.
+/// Turning point of the slump as a cohesive time, with its 95 % interval over resampled initial states.
 #[derive(Clone, Copy)]
 struct Turn {
     place: f64,

@@ -1,5 +1,6 @@
-//! The bond of i and j, which the cradle's shock may open: its state by Δt, the fraction of open bonds over many start
-//! distances, and a map over Δt and stopping tolerance.
+//! Draws the outcomes of the paper's cradle, three discs i, j and k on a line. Disc k hits disc i, and this shock may
+//! open the bond between i and j. The figures show the state of the bond by time step Δt, the fraction of open bonds
+//! over many start distances of k, and a map over Δt and the stopping tolerance of the solver.
 
 use super::claims::{Claim, Verdict};
 use super::{Figure, StudyRunner};
@@ -9,10 +10,10 @@ use crate::harness::{MeasuredCase, Measurements, ReportTable};
 use crate::scene::cradle;
 use crate::statistics;
 
-/// The bond counts as open if i and j are further apart at the end, in diameters. The value is well above rounding, and
-/// well below any gap of an open bond.
+/// Gap between the discs i and j at the end, in diameters, above which their bond counts as open. The value is well
+/// above rounding errors, and well below any gap of an open bond.
 pub(super) const OPEN_GAP: f64 = 1e-6;
-/// The paper's outcomes: time steps, s, with true for an open bond and false for a closed one.
+/// Outcomes of the cradle in the paper: time step, s, and true for an open bond or false for a closed bond.
 const PAPER: [(f64, bool); 14] = [
     (1e-4, true),
     (2e-4, true),
@@ -29,19 +30,20 @@ const PAPER: [(f64, bool); 14] = [
     (6e-3, true),
     (1e-2, true),
 ];
-/// Below this time step the outcome does not depend on the phase, s.
+/// Time step, s, below which the outcome does not depend on the phase of the motion, that is, on the start distance.
 pub(super) const PHASE_SECS: f64 = 3.5e-3;
 
 fn is_open(run: &MeasuredCase) -> bool {
     run.reading("first_gap") > OPEN_GAP
 }
 
-/// Number of open bonds, and number of all bonds.
+/// Returns the number of runs of the cradle with an open bond, and the number of all runs.
 fn open_of(rows: &Measurements<'_>) -> [usize; 2] {
     [rows.0.iter().filter(|run| is_open(run)).count(), rows.0.len()]
 }
 
-/// Number of the paper's outcomes that the runs, one per Δt, reproduce.
+/// Returns the number of the paper's outcomes (bond open or closed) that the runs reproduce. There is one run per time
+/// step.
 fn agreed(rows: &Measurements<'_>) -> usize {
     let agrees = |&&(step, open): &&(f64, bool)| {
         rows.0.iter().any(|run| run.at("dt") == step && is_open(run) == open)
@@ -49,7 +51,7 @@ fn agreed(rows: &Measurements<'_>) -> usize {
     PAPER.iter().filter(agrees).count()
 }
 
-/// Sensitivity of Fig. 8: the paper's pattern with one choice changed at a time.
+/// Draws the sensitivity of Fig. 8: the pattern of open and closed bonds if one setting is changed at a time.
 pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("cradle-choices")?;
     let all = studies.choices("cradle-choices")?;
@@ -88,7 +90,8 @@ pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "cradle-choices", sheet, claims, table: Some(table) })
 }
 
-/// The claim that a random start distance gives the paper's pattern, at the study's largest tolerance.
+/// Tests the claim that most start distances of disc k give the paper's pattern of open and closed bonds, at the
+/// largest stopping tolerance of the study.
 fn pattern_is_usual(rows: &Measurements<'_>) -> Claim {
     let loosest = rows.values("tolerance").pop().unwrap_or(f64::NAN);
     let rows = rows.with("tolerance", loosest);
@@ -125,7 +128,7 @@ fn pattern_comes_out(rows: &Measurements<'_>) -> Claim {
     .hanging_on("that search, the stop of 2.2·10⁻³ m/s, ρ = 0.2 (the paper states none), the cold start")
 }
 
-/// The claim that the shock opens bonds at small Δt, at the smallest tolerance.
+/// Tests the claim that the shock opens the bond at small time steps, at the smallest stopping tolerance of the study.
 fn shock_opens(rows: &Measurements<'_>) -> Claim {
     let tolerance = rows.values("tolerance")[0];
     let tight = rows.with("tolerance", tolerance);
@@ -175,7 +178,8 @@ pub(super) fn share(studies: &StudyRunner) -> Result<Figure> {
     let claims = at_large_steps.into_iter().map(|(tolerance, large)| {
         let listed: Vec<String> =
             large.iter().map(|point| format!("{:.0} % at {}", 100.0 * point.y, point.x)).collect();
-        // Accepted if the intervals of the two ends do not overlap.
+        // The claim is accepted if the intervals at the smallest and at the largest of the tested time steps do not
+        // overlap.
         let ends = large.first().zip(large.last());
         let intervals = ends.and_then(|(first, last)| first.interval.zip(last.interval));
         let rises = intervals.is_some_and(|(first, last)| last.0 > first.1);
@@ -192,13 +196,13 @@ pub(super) fn share(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig8-share", sheet, claims, table: None })
 }
 
-/// Colour of an outcome: orange for open, blue for closed.
+/// Returns the colour of an outcome: orange for open, blue for closed.
 fn colour(value: f64) -> Rgb {
     if value > 0.5 { (240, 176, 80) } else { (70, 120, 175) }
 }
 
-/// The edges of cells around values with a constant ratio. Neighbours share their edge exactly, so no gap is drawn
-/// between them.
+/// Returns the edges of a map's cells around values with a constant ratio. Neighbouring cells share their edge exactly,
+/// so that no gap is drawn between them.
 pub(super) fn log_edges(values: &[f64]) -> Vec<[f64; 2]> {
     let half = match values {
         [first, second, ..] => (second / first).sqrt(),
@@ -210,7 +214,7 @@ pub(super) fn log_edges(values: &[f64]) -> Vec<[f64; 2]> {
     edges.windows(2).map(|pair| [pair[0], pair[1]]).collect()
 }
 
-/// The outcome of the cradle over time step and stopping tolerance.
+/// Draws a map of the outcome of the cradle over time step and stopping tolerance.
 pub(super) fn map(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("cradle-map")?;
     let (steps, tolerances) = (rows.values("dt"), rows.values("tolerance"));
@@ -242,7 +246,8 @@ pub(super) fn map(studies: &StudyRunner) -> Result<Figure> {
     };
     let (tight, loose) = (of_small(0.0, 1e-4), of_small(1e-3, 1.0));
     chart.layers.push(Layer::Cells { name: "open".into(), cells, colour });
-    // The capture speed Bond·g·Δt, at which one step of cohesion cancels the error that the stopping tolerance allows.
+    // The line shows the capture speed Bond·g·Δt, the largest opening speed that one step of cohesion stops. Below the
+    // line, cohesion cancels the error that the stopping tolerance allows.
     let scene = cradle();
     let capture = scene.parameters.bond * scene.gravity.magnitude();
     let line = [x.0, x.1].map(|step| (step, (capture * step).clamp(y.0, y.1)));

@@ -1,4 +1,5 @@
-//! Fig. 8: the path of j after the shock, on the paper's axes, and the paper's other statements about these runs.
+//! Draws Fig. 8 of the paper: the path of disc j after the shock in the cradle, on the paper's axes. Tests the paper's
+//! other statements about these runs.
 
 use std::ops::RangeInclusive;
 
@@ -8,23 +9,25 @@ use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Sheet, points};
 use crate::error::{Error, Result};
 use crate::scene::cradle;
 
-/// Time steps that are shown, s: on both sides of the threshold, and steps whose outcome depends on the phase.
+/// Time steps that the figure shows, s. In the paper, the bond opens at the first and stays closed at the second. The
+/// outcome of the other four depends on the phase of the motion.
 const SHOWN_SECS: [f64; 6] = [5e-4, 1e-3, 4e-3, 5e-3, 6e-3, 1e-2];
-/// Ends of the paper's axes, s and d.
+/// Ends of the paper's axes: time, s, and position, diameters.
 const ENDS: (f64, f64) = (2.0, 5.0);
-/// Time steps at which, according to the paper, j leaves with one velocity, s.
+/// Time steps at which, according to the paper, disc j leaves with the same velocity, s.
 const FREE_SECS: RangeInclusive<f64> = 1e-4..=6e-4;
-/// Time steps at which, according to the paper, k stays with i and j, s.
+/// Time steps at which, according to the paper, disc k stays with the discs i and j, s.
 const CLUSTER_SECS: RangeInclusive<f64> = 7e-4..=3e-3;
-/// Time step at which, according to the paper, i catches up with j, s.
+/// Time step at which, according to the paper, disc i catches up with disc j, s.
 const CAUGHT_SECS: f64 = 5e-3;
-/// Largest ratio of velocities that count as equal.
+/// Largest ratio of two velocities that count as equal: the largest velocity divided by the smallest.
 const ONE_VELOCITY: f64 = 1.1;
-/// Choices that affect the verdicts on three discs.
+/// Choices that affect the verdicts on the three discs of the cradle.
 const CHOICES: &str = "the start of k (searched for), ρ = 0.2 (the paper states none), the stop and the cold start: \
                        cradle-choices";
 
-/// A row of a series: the time since k first touched i, s, and the positions of i, j and k, in diameters.
+/// A row of a time series: the time since disc k first touched disc i, s, and the positions of i, j and k, in
+/// diameters.
 type SeriesRow = (f64, [f64; 3]);
 
 struct DiscSeries {
@@ -32,7 +35,7 @@ struct DiscSeries {
     rows: Vec<SeriesRow>,
 }
 
-/// Gap between i and j, in diameters.
+/// Returns the gap between the discs i and j, in diameters.
 fn gap((_, [i, j, _]): &SeriesRow) -> f64 {
     j - i - 1.0
 }
@@ -46,13 +49,13 @@ impl DiscSeries {
         self.rows.last().is_some_and(|row| gap(row) > OPEN_GAP)
     }
 
-    /// True if j has come back from its farthest position.
+    /// True if disc j is no longer at its farthest position at the end of the run.
     fn turns_back(&self) -> bool {
         let farthest = self.after_shock().map(|(_, [_, j, _])| *j).fold(1.0, f64::max);
         self.rows.last().is_some_and(|(_, [_, j, _])| *j < farthest - OPEN_GAP)
     }
 
-    /// Mean velocity of j over the last quarter of a second, d/s.
+    /// Returns the mean velocity of disc j over the last quarter of a second, diameters per second.
     fn final_velocity(&self) -> f64 {
         let Some((end, [_, last, _])) = self.rows.last() else { return 0.0 };
         let before = self.after_shock().find(|(secs, _)| *secs >= end - 0.25);
@@ -96,7 +99,8 @@ fn chart(runs: &[DiscSeries], title: &str, from: f64, to: f64) -> Result<Chart> 
         let places = run.rows.iter().map(|(secs, [_, j, _])| (*secs, *j));
         let places = points(places.filter(|(secs, j)| (from..=to).contains(secs) && *j <= ENDS.1));
         let name = format!("Δt = {shown:e} s").replace('-', "−");
-        // While the bond is closed in both, its curve coincides with that of 1e-3 s.
+        // As long as the bond is closed in both runs, the curve of this time step coincides with the curve of 1e-3 s.
+        // Dashes keep both curves visible.
         let look = if shown == CAUGHT_SECS { Look::Dashes(3) } else { Look::Line(3) };
         chart.layers.push(Layer::curve(name, places, PALETTE[index], look));
     }
@@ -121,13 +125,14 @@ fn read(text: &str, diameter: f64) -> Result<Vec<SeriesRow>> {
         });
         rows.push((secs, [i, j, k].map(|place| place / diameter)));
     }
-    // Within a hundredth of a diameter, because rows are further apart than the contact lasts.
+    // The shock is at the first row in which k is within a hundredth of a diameter of i. The contact itself can fall
+    // between two rows, because it is shorter than their distance in time.
     let shock_secs = rows.iter().find(|(_, [i, _, k])| i - k <= 1.01).map_or(0.0, |row| row.0);
     rows.iter_mut().for_each(|row| row.0 -= shock_secs);
     Ok(rows)
 }
 
-/// The runs with a Δt in a closed interval.
+/// Returns the runs whose time step Δt, s, is in a closed interval.
 fn between(runs: &[DiscSeries], steps: RangeInclusive<f64>) -> impl Iterator<Item = &DiscSeries> {
     runs.iter().filter(move |run| steps.contains(&run.step_secs))
 }

@@ -1,5 +1,5 @@
-//! Every figure of the paper, and those suggested by its conclusion, from simulation alone, and a report of the
-//! verdicts. Each figure is a row of [`FIGURES`].
+//! Reproduces every figure of the paper from simulation alone, adds figures that the paper's conclusion suggests, and
+//! reports verdicts on the paper's claims. Each figure is a row of [`FIGURES`].
 
 mod claims;
 mod fig5;
@@ -23,13 +23,13 @@ struct Figure {
     pub name: &'static str,
     pub sheet: Sheet,
     pub claims: Vec<Claim>,
-    /// Numbers behind the claims, if the chart shows too few.
+    /// Table of the numbers behind the claims, if the chart does not show enough of them.
     pub table: Option<ReportTable>,
 }
 
 struct FigureInfo {
     pub name: &'static str,
-    /// Names of the studies that the figure needs.
+    /// Names of the studies (sets of runs) that the figure needs.
     pub studies: &'static [&'static str],
     pub make: fn(&StudyRunner) -> Result<Figure>,
 }
@@ -44,7 +44,7 @@ impl FigureInfo {
     }
 }
 
-/// All charts among the figures, in the order of the report.
+/// All figures that are charts, in the order of the report.
 static FIGURES: [FigureInfo; 10] = [
     FigureInfo::new("fig2", &[], two_bodies::fig2),
     FigureInfo::new("two-body", &[], two_bodies::two_bodies),

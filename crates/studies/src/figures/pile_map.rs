@@ -1,4 +1,5 @@
-//! The slump over Bond number and time step, with contours of the cohesive time.
+//! Draws a map of the slump over Bond number and time step Δt, with contours of the cohesive time Bond·Δt/√(d/g), where
+//! d is the mean diameter and g gravity.
 
 use std::ops::RangeInclusive;
 
@@ -11,15 +12,15 @@ use crate::chart::{Axis, Chart, Layer, Look, MapCell, Rgb, Sheet, points};
 use crate::error::Result;
 use crate::statistics::{Mean, mean, p_value};
 
-/// Slump at the end of the colour scale.
+/// Slump at the upper end of the colour scale.
 const MOST: f64 = 0.55;
 const CONTOURS: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 10.0];
 const WHITE: Rgb = (255, 255, 255);
-/// Factor around a cohesive time of 1 that counts as near 1.
+/// Largest factor between a cohesive time and 1 at which the cohesive time counts as near 1.
 const NEAR: f64 = 3.0;
 const SHADES: u32 = 64;
 
-/// Colour of a slump; dark for a pile that holds.
+/// Returns the colour of a slump. It is dark for a pile that does not slump.
 fn colour(slump: f64) -> Rgb {
     use plotters::style::RGBColor;
     use plotters::style::colors::colormaps::{ColorMap, ViridisRGB};
@@ -36,7 +37,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     let mut cells = Vec::new();
     let mut lowest = Vec::new();
     for (index, &bond) in bonds.iter().enumerate() {
-        // Computed from one end, so that neighbours share their edges exactly.
+        // All edges are computed from the first Bond number, so that neighbouring cells share their edges exactly.
         let edge = |number: usize| bonds[0] + half * (2.0 * number as f64 - 1.0);
         let of_bond = rows.with("bond", bond);
         let mut best = (f64::INFINITY, 0.0);
@@ -86,7 +87,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "pile-map", sheet, claims: vec![claim], table: None })
 }
 
-/// Lines of constant cohesive time with their labels, clipped to the axes.
+/// Returns lines of constant cohesive time Bond·Δt/√(d/g) with their labels, clipped to the axes.
 fn contours(most_bond: f64, steps: RangeInclusive<f64>) -> Vec<Layer> {
     let mut layers = Vec::new();
     for time in CONTOURS {
@@ -116,8 +117,8 @@ fn scale() -> Chart {
     scale
 }
 
-/// The slump away from a cohesive time of 1, minus that near it, at the same initial state and Bond number: one value
-/// per initial state, the mean over the Bond numbers with Δt of both kinds.
+/// Returns one value per initial state: the mean slump at cohesive times away from 1, minus the mean slump near 1, at
+/// the same Bond number. The value is averaged over those Bond numbers that have time steps of both kinds.
 fn depths(groups: &[Alike], states: usize) -> Vec<f64> {
     let of_group = |runs: &Alike| {
         let (near, away): (Vec<_>, Vec<_>) =
@@ -136,8 +137,8 @@ fn depths(groups: &[Alike], states: usize) -> Vec<f64> {
     groups.chunks(each).map(of_state).filter(|depth| depth.is_finite()).collect()
 }
 
-/// The claim that slump is lower near a cohesive time of 1 than away from it. It does not use the position of the
-/// lowest slump of each Bond number, which exists even without any effect of Δt.
+/// Tests the claim that the slump is lower near a cohesive time of 1 than away from 1. The test does not use the time
+/// step with the lowest slump of each Bond number, because such a time step exists even without any effect of Δt.
 fn claim(groups: &[Alike], states: usize) -> Claim {
     let depth = |groups: &[Alike]| mean(&depths(groups, states));
     let verdict = |depth: Mean| Verdict::of(depth.p_above(0.0), depth.p_below(0.0));
@@ -163,7 +164,8 @@ fn claim(groups: &[Alike], states: usize) -> Claim {
 mod tests {
     use super::*;
 
-    /// Eight initial states at four Bond numbers, whose slump is lower by `depth` near a cohesive time of `at`.
+    /// Returns made-up slumps of eight initial states at four Bond numbers. The slump is lower by `depth` near the
+    /// cohesive time `at`.
     fn plane(depth: f64, at: f64) -> Vec<Alike> {
         let of_group = |group: usize| {
             let run = |step: usize| {

@@ -1,4 +1,4 @@
-//! Produces figures, tables and the report from simulations.
+//! Produces the figures, the tables and the report that compare simulations with the paper.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -11,19 +11,20 @@ use crate::harness::{Bench, Effort};
 use crate::output::{note_line, print_line, print_text};
 use crate::solver::worst;
 
-/// The pictures of grains, which are drawn together.
+/// Names of the pictures of grains, which are drawn together.
 const SNAPSHOTS: [&str; 3] = ["fig3", "fig4", "fig7"];
 const ALL: &str = "all";
 
-/// The names that [`reproduce`] accepts.
+/// Returns the names of figures that [`reproduce`] accepts.
 pub fn figure_names() -> Vec<&'static str> {
     let charts = FIGURES.iter().map(|figure| figure.name);
     [ALL].into_iter().chain(SNAPSHOTS).chain(charts).collect()
 }
 
-/// Produces the figures with these names in `folder`: PNG, SVG and CSV each, and `report.md`. Studies are stored below
-/// it, so the same call resumes if it was stopped. `snapshots` draws the pictures of grains, Fig. 3, 4 and 7, into a
-/// folder. `version` is the program's version in the report.
+/// Produces the figures with these names in `folder`, each as PNG, SVG and CSV, and the file `report.md`. All runs are
+/// stored in a folder below `folder`, so the same call resumes a reproduction that was stopped. If `quick` is true, the
+/// figures are coarser. The function `snapshots` draws the pictures of grains (Figs. 3, 4 and 7) into a folder.
+/// `version` is the version of the program that the report names.
 ///
 /// # Errors
 /// If a name is unknown, the folder cannot be written, or a study fails.
@@ -88,7 +89,7 @@ fn opening(effort: Effort) -> String {
     text
 }
 
-/// The section of the report about a figure, which is also printed.
+/// Returns the section of the report about a figure. The claims and the table of the section are also printed.
 fn section(info: &FigureInfo, figure: &Figure) -> String {
     let mut text = format!("\n## {0}\n\n![{0}]({0}.png)\n\n", figure.name);
     // Writing to a string cannot fail.

@@ -1,4 +1,4 @@
-//! The studies that are shipped with the program. They run when a figure needs them.
+//! Runs the studies (sets of runs) that are shipped with the program, when a figure needs them.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -23,11 +23,11 @@ const STUDIES: &[(&str, &str)] = shipped![
     "pile" "pile-compressive" "cradle-courses" "cradle-choices" "cradle-share" "cradle-map" "pile-map"
 ];
 
-/// A study with all its runs completed.
+/// A study (a set of runs) whose runs are all completed.
 pub(super) struct FinishedStudy {
     study: Study,
     pub table: RunsTable,
-    /// The runs with a finite final state; others have no values.
+    /// Runs with a finite final state. Other runs have no values.
     ended: Vec<MeasuredCase>,
 }
 
@@ -39,7 +39,7 @@ impl FinishedStudy {
     }
 }
 
-/// The readings of a run by name.
+/// Returns the parameters and the readings (measured numbers) of a run by name.
 fn measured(config: &Config, result: &RunResult) -> MeasuredCase {
     let Config { source, parameters, solver, .. } = config;
     let at = [
@@ -59,13 +59,13 @@ fn measured(config: &Config, result: &RunResult) -> MeasuredCase {
     MeasuredCase { at, run: RunReadings { readings, ..RunReadings::default() }, wall_secs: 0.0 }
 }
 
-/// The runs with initial states that were not chosen for illustration.
+/// Returns the runs from all initial states except the shipped state, which was chosen for illustration.
 pub(super) fn ensemble<'a>(runs: &Measurements<'a>) -> Measurements<'a> {
     runs.such_that(|run| run.at("seed") != NewPile::default().seed as f64)
 }
 
-/// Two numbers of each run, sorted by the first, in one group per initial state and Bond number. The groups of an
-/// initial state are adjacent.
+/// Returns two numbers (x, y) of each run, sorted by x, in one group per initial state and Bond number. The groups of
+/// an initial state are adjacent.
 pub(super) fn groups(
     runs: &Measurements<'_>,
     x: impl Fn(&MeasuredCase) -> f64,
@@ -103,7 +103,7 @@ impl StudyRunner {
         }
         let path = format!("{name}.toml");
         let study = Study::parse(text, path.as_ref(), self.effort == Effort::Quick)?;
-        // Results of a study by an older version of the program are discarded.
+        // `redo` discards results of a study by an older version of the program.
         let states = Some(self.folder.join("states"));
         let options = SweepOptions { redo: true, states, shard: None };
         let done = sweep(&study, &self.study_folder(name), &options)?;
@@ -112,7 +112,7 @@ impl StudyRunner {
         Ok(())
     }
 
-    /// The runs of a study that have a finite final state.
+    /// Returns the runs of a study that have a finite final state.
     pub(super) fn rows(&self, name: &str) -> Result<Measurements<'_>> {
         let found = self.finished.get(name);
         let found = found.ok_or_else(|| Error::value("study", name, "run before its figures"))?;
@@ -122,8 +122,8 @@ impl StudyRunner {
         Ok(Measurements(found.ended.iter().collect()))
     }
 
-    /// The runs of [`StudyRunner::rows`], grouped by the settings in which they differ from the first run, in their
-    /// order.
+    /// Returns the runs of a study that have a finite final state, grouped by the settings in which they differ from
+    /// the first run. The groups are in the order of the runs.
     pub(super) fn choices(&self, name: &str) -> Result<Vec<(String, Measurements<'_>)>> {
         let rows = self.rows(name)?;
         let table = self.finished[name].table.rows.iter();
@@ -142,7 +142,7 @@ impl StudyRunner {
         Ok(parts)
     }
 
-    /// The series of a study's runs: each run's config and the text of its file.
+    /// Returns the time series of a study's runs: the settings of each run and the text of its file.
     pub(super) fn series(&self, name: &str) -> Result<Vec<(Config, String)>> {
         let Some(FinishedStudy { study, .. }) = self.finished.get(name) else {
             return Ok(Vec::new());
@@ -155,12 +155,12 @@ impl StudyRunner {
         study.runs.iter().map(read).collect()
     }
 
-    /// Adds to each claim of a figure the number of runs of its studies that raised alarms, by kind.
+    /// Adds to each claim of a figure the number of runs of its studies that raised warnings, by kind of warning.
     ///
     /// A single run that lost a grain or had no finite end makes the verdict open, however many other runs there are.
-    /// Its slump is missing or belongs to a different pile, and such failures depend on Bond and Δt, so the remaining
-    /// runs are not a fair sample. Other alarms (deep overlaps, unsolved steps) are part of the effects that a claim
-    /// about Δt concerns; they are only counted.
+    /// The slump of such a run is missing or belongs to a different pile. Such failures depend on the Bond number and
+    /// on Δt, so the remaining runs are not a fair sample. Other warnings (deep overlaps, unsolved steps) are part of
+    /// the effects of Δt that a claim is about, so they are only counted.
     pub(super) fn qualify(&self, studies: &[&str], claims: &mut [Claim]) {
         let tables = studies.iter().filter_map(|name| self.finished.get(name));
         let results: Vec<&RunResult> =
@@ -183,7 +183,7 @@ impl StudyRunner {
         self.folder.join(self.effort.name()).join(name)
     }
 
-    /// A line for the caption of a figure if one of its studies was a quick pass.
+    /// Returns a line for the caption of a figure if one of its studies was a quick pass.
     pub(super) fn note(&self, studies: &[&str]) -> Option<String> {
         let mut finished = studies.iter().filter_map(|name| self.finished.get(name));
         finished.any(|one| one.study.is_quick_pass).then(|| {
@@ -192,7 +192,7 @@ impl StudyRunner {
     }
 }
 
-/// The settings in which a run differs from the first run, except Bond, Δt and the initial state.
+/// Returns, in words, the settings in which a run differs from the first run, except Bond number, Δt and initial state.
 pub(super) fn changes(config: &Config, first: &Config) -> String {
     let settings = |config: &Config| serde_json::to_value(config).unwrap_or_default();
     let (here, first) = (settings(config), settings(first));
@@ -215,7 +215,7 @@ mod tests {
         RunResult { status, lost_grains, alarms, ..RunResult::of_slump(0.0) }
     }
 
-    /// An accepted claim, qualified by these runs.
+    /// Returns an accepted claim after [`StudyRunner::qualify`] has examined runs with these results.
     fn qualified(results: &[&RunResult]) -> Claim {
         let mut studies = StudyRunner::new(PathBuf::new(), Effort::Quick);
         let text = "name = \"pile\"\n[base]\nscene = \"cradle\"\n";

@@ -1,6 +1,7 @@
-//! Two bodies. Fig. 2 shows the contact graph, Signorini's and shifted by the cohesion, with the lines N = K v̄ + A of
-//! the three cases; the dots at their intersections are simulated. A second figure shows the speed after one step
-//! against Δt (paper §2.2): theory as lines, simulation as points.
+//! Draws figures of two bodies in contact. Fig. 2 of the paper shows the normal force N against the formal velocity v̄
+//! by the contact law: Signorini's law, and the same law shifted by the cohesion force. The lines N = K v̄ + A are the
+//! equation of motion in three cases. Dots at the intersections are simulated. A second figure shows the opening speed
+//! after one step against Δt (paper §2.2), with theory as lines and simulation as points.
 
 use glam::DVec2;
 
@@ -10,10 +11,12 @@ use crate::error::Result;
 use crate::scene::{Scene, collision};
 use crate::world::{Grain, Parameters};
 
-/// A of the three cases, in units of C₀.
+/// The constant A of the line N = K v̄ + A in three cases, in units of the cohesion force C₀, and the name of each
+/// case.
 const CASES: [(f64, &str); 3] = [(1.2, "A > 0"), (-0.5, "−C₀ < A < 0"), (-2.2, "A < −C₀")];
 const TIME_STEP_SECS: f64 = 1e-3;
-/// Reach of the axes, in units of ΔtC₀/m_ij and of C₀.
+/// Reach of the axes: the formal velocity in units of Δt·C₀/m_ij, and the normal force in units of the cohesion force
+/// C₀. m_ij is the effective mass.
 const REACH: (f64, f64) = (2.0, 3.0);
 
 pub(super) fn fig2(_: &StudyRunner) -> Result<Figure> {
@@ -38,7 +41,8 @@ pub(super) fn fig2(_: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig2", sheet, claims: vec![claim], table: None })
 }
 
-/// The graph with its corner at N = −`shift`·C₀, and the largest distance of a simulated step from it.
+/// Draws the graph of a contact law with its corner at the normal force −`shift`·C₀, where C₀ is the cohesion force.
+/// Also returns the largest distance of a simulated step from the intersection of graph and line.
 fn chart(title: &str, shift: f64) -> Result<(Chart, f64)> {
     let scene = collision();
     let bond = scene.parameters.bond;
@@ -56,13 +60,14 @@ fn chart(title: &str, shift: f64) -> Result<(Chart, f64)> {
     for (number, (force, name)) in CASES.into_iter().enumerate() {
         let colour = PALETTE[[1, 3, 6][number]];
         let line = [-x_reach, x_reach].map(|v| (v, (1.0 + RESTITUTION) * v + force));
-        // Clipped to the axes.
+        // The line is clipped to the axes.
         let line = line.map(|(v, n)| {
             let cut = n.clamp(-y_reach, y_reach);
             (v + (cut - n) / (1.0 + RESTITUTION), cut)
         });
         chart.layers.push(Layer::curve(name, points(line), colour, Look::Line(2)));
-        // A = −m(1 + ρ) v^{n−1} / Δt without other forces.
+        // Without other forces, A = −m(1 + ρ) v^{n−1}/Δt, with the effective mass m, the restitution ρ and the opening
+        // speed v^{n−1} before the step.
         let before = -force * capture_speed / (1.0 + RESTITUTION);
         let (mass, n, after) = one_step(before, TIME_STEP_SECS, bond * shift)?;
         let formal = (after + RESTITUTION * before) / (1.0 + RESTITUTION) / capture_speed;
@@ -79,16 +84,16 @@ fn chart(title: &str, shift: f64) -> Result<(Chart, f64)> {
     Ok((chart, worst))
 }
 
-/// Restitution of the runs, large enough to be visible.
+/// Restitution of the simulated contacts. It is large enough for its effect to be visible.
 const RESTITUTION: f64 = 0.2;
 
-/// Speeds of separation at the beginning of the step, m/s.
+/// Opening speeds of the contact at the beginning of the step, m/s.
 const SPEEDS: [f64; 5] = [-0.02, 0.01, 0.02, 0.04, 0.06];
 const TIME_STEPS_SECS: (f64, f64) = (0.0, 0.012);
 const POINTS: u32 = 25;
 
-/// The state after one step of two free touching discs of different sizes that separate with `speed`. Returns their
-/// effective mass (kg), N (newton) and v^n (m/s).
+/// Simulates one step of two free, touching discs of different sizes that separate with `speed` (m/s). Returns their
+/// effective mass (kg), the normal force N (newton), and the opening speed v^n after the step (m/s).
 fn one_step(speed: f64, time_step_secs: f64, bond: f64) -> Result<(f64, f64, f64)> {
     let scene = collision();
     let (small, large) = (0.1, 0.2);
@@ -117,8 +122,10 @@ fn one_step(speed: f64, time_step_secs: f64, bond: f64) -> Result<(f64, f64, f64
     Ok((mass, force, grains.velocities[0].x - grains.velocities[1].x))
 }
 
-/// v^n by the three cases of §2.2, without other forces: −ρ v^{n−1} if the contact closes or bounces, v^{n−1} −
-/// ΔtC₀/m_ij if it opens.
+/// Returns the opening speed v^n after a step by the three cases of the paper's §2.2, without other forces. Let v^{n−1}
+/// be the opening speed before the step, ρ the restitution, C₀ the cohesion force and m_ij the effective mass. The
+/// result is −ρ v^{n−1} if the contact closes or bounces, and v^{n−1} − ΔtC₀/m_ij if the contact opens. ΔtC₀/m_ij is
+/// `capture_speed`.
 fn theory(speed: f64, capture_speed: f64) -> f64 {
     if speed * (1.0 + RESTITUTION) > capture_speed {
         speed - capture_speed

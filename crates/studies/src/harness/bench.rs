@@ -1,4 +1,4 @@
-//! The folder of an experiment: its measurements, pictures, tables and report.
+//! Manages the folder of an experiment: its measurements, pictures, tables and report.
 
 use std::path::{Path, PathBuf};
 
@@ -20,7 +20,7 @@ pub(crate) struct Bench {
 }
 
 impl Bench {
-    /// A bench on this machine. `version` is the program's version.
+    /// Prepares the folder of an experiment on this machine. `version` is the version of the program.
     pub(crate) fn new(folder: &Path, effort: Effort, version: &str) -> Result<Self> {
         check_writable("out", folder)?;
         Ok(Self { folder: folder.to_owned(), effort, machine: Machine::this(version)? })
@@ -30,7 +30,8 @@ impl Bench {
         self.folder.join("states")
     }
 
-    /// A runner of measurements by this program on this machine. A quick pass has its own journal.
+    /// Opens the runner for measurements by this program on this machine. A quick pass and the full pass have separate
+    /// journals.
     pub(crate) fn runner<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
         &self,
         name: &str,
@@ -41,14 +42,14 @@ impl Bench {
         Runner::open(name, &folder, name)
     }
 
-    /// Lines below a chart, the last of which gives machine, date and command.
+    /// Returns the lines below a chart: the given lines, and a last line with the machine, the date and the command.
     pub(crate) fn caption(&self, lines: &[&str]) -> Vec<String> {
         let mut caption: Vec<String> = lines.iter().map(|&line| line.to_owned()).collect();
         caption.push(format!("{}{}", self.effort.note(), self.machine.words()));
         caption
     }
 
-    /// Writes a sheet, with the `command` that makes it, and its tables.
+    /// Writes a sheet of charts and its tables. The picture contains the `command` that makes the sheet.
     pub(crate) fn write<'a>(
         &self,
         (name, sheet): (&str, &Sheet),
@@ -61,7 +62,7 @@ impl Bench {
         })
     }
 
-    /// Writes the report, and removes the drafts that killed processes left.
+    /// Writes the report, and removes the unfinished files of processes that were killed.
     pub(crate) fn finish(&self, name: &str, report: &str) -> Result<()> {
         let path = self.folder.join(name);
         write_file(&path, report.as_bytes())?;

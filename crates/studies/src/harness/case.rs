@@ -1,22 +1,23 @@
-//! Cases of an experiment, and lines of a journal.
+//! Defines a case, which is one run of an experiment, and the line that a journal contains for each finished case.
 
 use serde::{Deserialize, Serialize};
 
-/// One run of an experiment, before it is computed.
+/// A case: one run of an experiment, before the run is computed.
 pub(crate) struct Case<C> {
-    /// Unique among all cases of its journal.
+    /// Name of the case, unique among all cases of its journal.
     pub key: String,
-    /// Expected duration, in any unit, for the order of work and for progress.
+    /// Expected computing time, in any unit. It determines the order of the work and the steps of the progress bar.
     pub cost: f64,
     pub setup: C,
 }
 
-/// A line of a journal: a case and the fields of its result.
+/// A finished case as one line of a journal: the key of the case, the computing time, and the fields of its result.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct FinishedCase<T> {
     pub key: String,
     pub wall_secs: f64,
-    /// A structure without a field `key` or `wall_secs`.
+    /// Result of the case. The type must not have a field named `key` or `wall_secs`, because all fields are written
+    /// into the same JSON object.
     #[serde(flatten)]
     pub result: T,
 }

@@ -1,4 +1,4 @@
-//! Named changes of the settings of scenes.
+//! Defines named changes of the settings of a scene.
 
 use crate::config::Config;
 use crate::scene::Scene;
@@ -6,7 +6,7 @@ use crate::setting::Changes;
 use crate::sim::Stepper;
 use crate::solver::SolverSettings;
 
-/// A named change of settings.
+/// A named change of settings: the settings that `config` gives replace the settings of a scene.
 #[derive(Clone, Debug)]
 pub(crate) struct Change {
     pub name: String,
@@ -18,7 +18,7 @@ impl Change {
         Self { name: name.into(), config }
     }
 
-    /// A change to a stepper, with all settings of its solver.
+    /// Returns a change that replaces the stepper and all settings of the solver.
     pub(crate) fn of_solver(
         name: impl Into<String>,
         stepper: Stepper,
@@ -28,8 +28,8 @@ impl Change {
         Self::new(name, Config { stepper: Some(stepper), solver, ..Config::default() })
     }
 
-    /// Changes the settings of a scene that are given, and no others. A scene without friction ignores a friction
-    /// model.
+    /// Applies the change to a scene. Settings that the change does not give remain as they are. The friction model of
+    /// a scene without friction also remains as it is.
     pub(crate) fn apply(&self, scene: &mut Scene) {
         if let Some(preset) = self.config.source.preset {
             preset.apply(scene);
@@ -46,7 +46,8 @@ impl Change {
         self.config.stepper.unwrap_or(Stepper::Moreau)
     }
 
-    /// The settings of the solver after this change, starting from those for sweeps.
+    /// Returns the solver settings after this change is applied to `SolverSettings::SWEEPS`, the settings for
+    /// Gauss–Seidel sweeps.
     pub(crate) fn solver(&self) -> SolverSettings {
         let mut solver = SolverSettings::SWEEPS;
         self.config.solver.apply(&mut solver);

@@ -1,6 +1,6 @@
-//! The extent of an experiment.
+//! Defines the extent of an experiment: a quick pass or the full pass.
 
-/// A quick pass, with smaller and fewer systems, or the full pass.
+/// The extent of an experiment: a quick pass, which has smaller and fewer systems, or the full pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Effort {
     Quick,
@@ -12,7 +12,7 @@ impl Effort {
         if is_quick { Self::Quick } else { Self::Full }
     }
 
-    /// The value for a quick pass or for the full pass.
+    /// Returns the first value for a quick pass and the second value for the full pass.
     pub(crate) fn pick<T>(self, quick: T, full: T) -> T {
         match self {
             Self::Quick => quick,
@@ -20,17 +20,17 @@ impl Effort {
         }
     }
 
-    /// The name of the folder of its results.
+    /// Returns the name of the folder in which the results of this pass are stored.
     pub(crate) fn name(self) -> &'static str {
         self.pick("quick", "full")
     }
 
-    /// The option for it, after a space.
+    /// Returns the command-line option that selects this pass, with a space before the option; empty for the full pass.
     pub(crate) fn option(self) -> &'static str {
         self.pick(" --quick", "")
     }
 
-    /// The note on a quick pass in captions, before a space.
+    /// Returns the note on a quick pass for captions, with a space after the note; empty for the full pass.
     pub(crate) fn note(self) -> &'static str {
         self.pick("Quick pass. ", "")
     }

@@ -1,6 +1,7 @@
-//! Journals of results: one line of JSON per case, appended when the case ends, so that a killed program loses no
-//! finished case. Each line has a checksum. An incomplete last line, which a kill can leave, is cut off; a damaged line
-//! is reported and ignored. Some other files have such a checksum, too.
+//! Reads and writes journals of results. A journal has one line of JSON per case. The line is appended when the case
+//! ends, so if the program is killed, all finished cases are still there. Each line has a checksum. An incomplete last
+//! line, which a killed program can leave, is cut off; a damaged line is reported and ignored. Stored initial states
+//! use the same kind of checksum.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
@@ -24,12 +25,14 @@ pub(crate) fn path_of(folder: &Path, name: &str) -> PathBuf {
 pub(crate) struct Journal {
     path: PathBuf,
     file: Mutex<File>,
-    /// The lock is kept as long as the journal is open.
+    /// Lock of the journal file. It is held as long as the journal is open, so that no other program writes to the
+    /// file.
     _lock: File,
 }
 
 impl Journal {
-    /// Opens a journal for appending and cuts off an incomplete last line. Damaged lines are reported and blanked.
+    /// Opens a journal for appending. An incomplete last line is cut off. Damaged lines are reported and overwritten
+    /// with spaces.
     pub(crate) fn open(folder: &Path, name: &str) -> Result<Self> {
         let path = path_of(folder, name);
         let refuse = |error: std::io::Error| Error::file(&path, error);
@@ -53,22 +56,25 @@ impl Journal {
         let line = sealed_line(&line);
         let mut file = match self.file.lock() {
             Ok(file) => file,
-            // A thread that panicked between two lines leaves the file intact.
+            // The lock is poisoned if another thread panicked while it held the lock. The file is intact even then,
+            // because a thread can only panic before or after it writes a line.
             Err(poisoned) => poisoned.into_inner(),
         };
-        // One write per line: a kill between two writes leaves complete lines.
+        // Each line is one write, so if the program is killed between two writes, the file contains only complete
+        // lines.
         file.write_all(line.as_bytes()).map_err(|error| Error::file(&self.path, error))
     }
 }
 
-/// All finished cases in the journals of some folders, by key.
+/// Reads all finished cases from the journals in some folders, and returns them by key. Fails if the same case has two
+/// different results.
 pub(crate) fn read_all<T: Serialize + DeserializeOwned>(
     folders: &[PathBuf],
 ) -> Result<HashMap<String, FinishedCase<T>>> {
     let mut all: HashMap<String, FinishedCase<T>> = HashMap::new();
     for path in journals(folders)? {
         for case in read::<FinishedCase<T>>(&path)? {
-            // Compared in their written form, because NaN is not equal to itself.
+            // Results are compared as JSON texts, because the number NaN is not equal to itself.
             let written = |case: &FinishedCase<T>| serde_json::to_string(&case.result).ok();
             if let Some(known) = all.get(&case.key)
                 && written(known) != written(&case)
@@ -82,7 +88,7 @@ pub(crate) fn read_all<T: Serialize + DeserializeOwned>(
     Ok(all)
 }
 
-/// The records of one journal. Damaged lines are reported and left out.
+/// Reads all records of one journal. Damaged lines are reported and left out.
 pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
     let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
     let mut entries = Vec::new();
@@ -96,7 +102,7 @@ pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
     Ok(entries)
 }
 
-/// The complete, non-blank lines of a journal, with their numbers from 1.
+/// Returns the complete, non-blank lines of a journal, each with its line number, counted from 1.
 fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
     let whole = bytes.iter().rposition(|&byte| byte == b'\n').unwrap_or(0);
     let lines = bytes[..whole].split(|&byte| byte == b'\n').zip(1..);
@@ -110,14 +116,14 @@ fn note_damage(path: &Path, line: usize) {
     ));
 }
 
-/// Overwrites damaged lines with spaces, so that they are reported only once. If it is interrupted, the lines remain
-/// damaged.
+/// Overwrites damaged lines of a journal with spaces, so that each damaged line is reported only once. If the program
+/// is killed during this work, the remaining damaged lines are reported again next time.
 fn blank_damaged(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    // A file that is open for appending can only be written at its end.
+    // A file that is open for appending can only be written at its end, so the file is opened a second time.
     let mut file = OpenOptions::new().write(true).open(path)?;
     for (number, line) in lines(bytes).filter(|(_, line)| record_of(line).is_none()) {
         note_damage(path, number);
-        // Both are parts of the same allocation.
+        // `line` is a slice of `bytes`, so the difference of the two addresses is the position of the line in the file.
         let offset = line.as_ptr().addr() - bytes.as_ptr().addr();
         file.seek(SeekFrom::Start(offset as u64))?;
         file.write_all(&vec![b' '; line.len()])?;
@@ -135,7 +141,7 @@ pub(crate) fn journals(folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// The files and folders in a folder; empty if it is missing.
+/// Returns the paths of all files and folders in a folder. Returns an empty list if the folder does not exist.
 pub(crate) fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
     let entries = match std::fs::read_dir(folder) {
         Err(error) if error.kind() == NotFound => return Ok(Vec::new()),
@@ -145,10 +151,10 @@ pub(crate) fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
     entries.map(path).collect::<std::io::Result<_>>().map_err(|error| Error::file(folder, error))
 }
 
-/// The journals of a folder.
+/// Returns the paths of all journals in a folder.
 ///
 /// # Errors
-/// If another program uses one of them.
+/// If another program has one of the journals open.
 pub(crate) fn free_journals(folder: &Path) -> Result<Vec<PathBuf>> {
     let paths = journals(&[folder.to_owned()])?;
     let is_in_use =
@@ -163,19 +169,21 @@ pub(crate) fn free_journals(folder: &Path) -> Result<Vec<PathBuf>> {
 const DIGITS: usize = 16;
 const BEFORE: &str = "{\"checksum\":\"";
 const BETWEEN: &str = "\",\"record\":";
-/// Text before the checksum at the end of a file whose comments begin with `#`.
+/// Text before the checksum in the last line of a text file. In such files, comments begin with `#`.
 const COMMENT: &str = "# checksum ";
 
 pub(crate) fn checksum(text: &[u8]) -> String {
     blake3::hash(text).to_hex()[..DIGITS].to_owned()
 }
 
-/// A line of JSON with a record, which is JSON, and its checksum.
+/// Returns a line of a journal: a JSON object that contains the record, which is JSON itself, and the record's
+/// checksum.
 fn sealed_line(record: &str) -> String {
     format!("{BEFORE}{}{BETWEEN}{record}}}\n", checksum(record.as_bytes()))
 }
 
-/// The record of a line without its line end; `None` if it is damaged.
+/// Returns the record in a line of a journal, which is given without its line end. Returns `None` if the line is
+/// damaged.
 fn record_of(line: &[u8]) -> Option<&str> {
     let rest = str::from_utf8(line).ok()?.strip_prefix(BEFORE)?;
     let (found, rest) = rest.split_at_checked(DIGITS)?;
@@ -183,12 +191,12 @@ fn record_of(line: &[u8]) -> Option<&str> {
     (checksum(record.as_bytes()) == found).then_some(record)
 }
 
-/// A text with its checksum in a comment as the last line.
+/// Appends a comment with the text's checksum to a text, as the last line.
 pub(crate) fn sealed_text(text: &str) -> String {
     format!("{text}{COMMENT}{}\n", checksum(text.as_bytes()))
 }
 
-/// The text of a file written by [`sealed_text`]; `None` if it is damaged.
+/// Returns the text of a file written by [`sealed_text`], without the checksum. Returns `None` if the file is damaged.
 pub(crate) fn text_of(bytes: &[u8]) -> Option<&str> {
     let (text, found) = str::from_utf8(bytes).ok()?.rsplit_once(COMMENT)?;
     (checksum(text.as_bytes()) == found.strip_suffix('\n')?).then_some(text)

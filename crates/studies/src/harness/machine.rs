@@ -1,4 +1,4 @@
-//! The processor, date and command of a measurement.
+//! Records the processor, the date and the command of a measurement, so that timings can be attributed to a machine.
 
 use std::time::SystemTime;
 
@@ -8,14 +8,14 @@ use crate::error::{Error, Result};
 
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Machine {
-    /// The program's version and commit.
+    /// Version and commit of the program.
     pub version: String,
     pub processor: String,
     pub cores: usize,
-    /// UTC, year-month-day.
+    /// Date of the measurement in UTC: year-month-day.
     pub date: String,
     pub command: String,
-    /// Identifies the program and the processor. Times with another fingerprint are not comparable.
+    /// Hash of the program and the processor's name. Computing times with different fingerprints are not comparable.
     #[serde(skip)]
     pub fingerprint: String,
 }
@@ -28,7 +28,7 @@ impl Machine {
         let mut hasher = blake3::Hasher::new();
         hasher.update(&bytes);
         hasher.update(processor.as_bytes());
-        // Bytes that are not Unicode are replaced.
+        // Command-line bytes that are not valid Unicode are replaced by a substitute character.
         let arguments = std::env::args_os().skip(1).map(|it| it.to_string_lossy().into_owned());
         let arguments = arguments.collect::<Vec<_>>().join(" ");
         Ok(Self {
@@ -48,14 +48,14 @@ impl Machine {
     }
 }
 
-/// Year, month and day (UTC) of a clock, which may be wrong.
+/// Returns year, month and day in UTC. The clock may be wrong, so any time is accepted.
 fn date_of(now: SystemTime) -> String {
     let unknown = || "a day that no calendar has".to_owned();
     jiff::Timestamp::try_from(now)
         .map_or_else(|_| unknown(), |now| now.strftime("%Y-%m-%d").to_string())
 }
 
-/// The processor's name according to Linux, or its architecture.
+/// Returns the name of the processor according to Linux, or else the processor architecture.
 fn processor() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let named = text.lines().find_map(|line| {

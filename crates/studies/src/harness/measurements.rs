@@ -1,10 +1,10 @@
-//! Parameters of runs and the readings measured in them.
+//! Holds the parameters of runs, and the readings (named numbers) that were measured in these runs.
 
 use serde::{Deserialize, Serialize};
 
 use crate::number;
 
-/// A measured number with its name.
+/// A reading: a measured number with its name.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Reading {
     pub name: String,
@@ -17,15 +17,16 @@ pub(crate) struct RunReadings {
     pub readings: Vec<Reading>,
     pub simulated_secs: f64,
     pub steps: u64,
-    /// Number of unsolved steps. It has no meaning if only a number of sweeps was requested.
+    /// Number of steps that missed their tolerance. The number has no meaning if the solver was given a number of
+    /// sweeps instead of a tolerance.
     pub unsolved_steps: u64,
     pub lost_grains: u32,
-    /// True if the state was no longer finite; the run then has no readings.
+    /// True if the state became NaN or infinite. Such a run has no readings.
     pub blew_up: bool,
 }
 
 impl RunReadings {
-    /// The reading with that name; NaN if there is none.
+    /// Returns the reading of the run with the given name; NaN if the run has no such reading.
     pub(crate) fn reading(&self, name: &str) -> f64 {
         let mut readings = self.readings.iter();
         readings.find(|reading| reading.name == name).map_or(f64::NAN, |reading| reading.value)
@@ -44,12 +45,12 @@ pub(crate) struct MeasuredCase {
 }
 
 impl MeasuredCase {
-    /// The parameter with that name; NaN if there is none.
+    /// Returns the parameter with the given name; NaN if the case has no such parameter.
     pub(crate) fn at(&self, name: &str) -> f64 {
         self.at.iter().find(|(known, _)| *known == name).map_or(f64::NAN, |(_, value)| *value)
     }
 
-    /// The reading with that name; NaN if there is none.
+    /// Returns the reading with the given name; NaN if the case has no such reading.
     pub(crate) fn reading(&self, name: &str) -> f64 {
         self.run.reading(name)
     }
@@ -59,7 +60,7 @@ impl MeasuredCase {
 pub(crate) struct Measurements<'a>(pub Vec<&'a MeasuredCase>);
 
 impl<'a> Measurements<'a> {
-    /// The distinct values of a parameter of the cases, in ascending order.
+    /// Returns the distinct values that a parameter has in these cases, in ascending order.
     pub(crate) fn values(&self, name: &str) -> Vec<f64> {
         let values = self.0.iter().map(|case| case.at(name));
         let mut values: Vec<f64> = values.filter(|value| !value.is_nan()).collect();
@@ -72,7 +73,7 @@ impl<'a> Measurements<'a> {
         self.values(name).iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
     }
 
-    /// A parameter of the first case; 0 without cases.
+    /// Returns the parameter with the given name of the first case; 0 if there are no cases.
     pub(crate) fn first(&self, name: &str) -> f64 {
         self.0.first().map_or(0.0, |case| case.at(name))
     }
@@ -93,12 +94,12 @@ impl<'a> Measurements<'a> {
         self.0.iter().map(|case| case.reading(name)).collect()
     }
 
-    /// A reading of the first case; NaN without cases.
+    /// Returns the reading with the given name of the first case; NaN if there are no cases.
     pub(crate) fn reading(&self, name: &str) -> f64 {
         self.0.first().map_or(f64::NAN, |case| case.reading(name))
     }
 
-    /// Two numbers of each case, sorted by the first.
+    /// Returns two numbers (x, y) for each case, sorted by x.
     pub(crate) fn rising(&self, point: impl Fn(&MeasuredCase) -> (f64, f64)) -> Vec<(f64, f64)> {
         let mut points = self.points(point);
         points.sort_by(|one, other| one.0.total_cmp(&other.0));

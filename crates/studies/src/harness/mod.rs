@@ -1,4 +1,5 @@
-//! Common parts of all experiments: cases, their journal, the runner, the machine on which they are timed, and reports.
+//! Provides the common parts of all experiments: cases (the runs to compute), the journal of finished cases, the
+//! runner, the machine on which cases are timed, and reports.
 
 mod bench;
 mod case;

@@ -1,4 +1,4 @@
-//! The files of a report: charts and tables.
+//! Writes the files of a report: charts and tables.
 
 use std::path::Path;
 
@@ -6,7 +6,8 @@ use crate::chart::{self, Sheet};
 use crate::error::{Error, Result};
 use crate::output::write_file;
 
-/// Writes a sheet of charts as `name.csv`, `.png` and `.svg`. The picture contains the command that made it.
+/// Writes a sheet of charts as `name.csv`, `name.png` and `name.svg`. The PNG file also contains the command that made
+/// the chart.
 pub(crate) fn write_sheet(folder: &Path, name: &str, sheet: &Sheet, command: &str) -> Result<()> {
     let path = |ending: &str| folder.join(format!("{name}.{ending}"));
     write_file(&path("csv"), &sheet.to_csv()?)?;
@@ -14,7 +15,7 @@ pub(crate) fn write_sheet(folder: &Path, name: &str, sheet: &Sheet, command: &st
     write_file(&path("svg"), chart::svg(sheet)?.as_bytes())
 }
 
-/// The distinct values of an iterator, in order.
+/// Returns the distinct values of an iterator, in the order of their first occurrence.
 pub(crate) fn distinct<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
     let mut kept: Vec<T> = Vec::new();
     for one in all {
@@ -25,7 +26,7 @@ pub(crate) fn distinct<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
     kept
 }
 
-/// The numbers behind the claims of a figure.
+/// A table of the numbers that support the claims about a figure.
 pub(crate) struct ReportTable {
     pub name: String,
     pub columns: Vec<&'static str>,
@@ -33,7 +34,7 @@ pub(crate) struct ReportTable {
 }
 
 impl ReportTable {
-    /// A table with these columns; `columns` contains their names, separated by spaces.
+    /// Returns a table with the given rows. `columns` contains the names of the columns, separated by spaces.
     pub(crate) fn new(
         name: impl Into<String>,
         columns: &'static str,

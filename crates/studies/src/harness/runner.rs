@@ -1,5 +1,5 @@
-//! The runner of all experiments. It runs the unfinished cases, writes each result to a journal at once, and returns
-//! all results in the order of the cases.
+//! Runs the cases of an experiment. The runner computes the cases that are not finished, writes each result to a
+//! journal at once, and returns all results in the order of the cases.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -15,14 +15,15 @@ use super::journal::{self, Journal};
 use crate::error::Result;
 use crate::output::{Progress, note_line};
 
-/// Number of progress lines if there is no terminal to draw a bar on.
+/// Number of lines that report the progress of an experiment if there is no terminal on which to draw a progress bar.
 const LINES_OF_PROGRESS: usize = 20;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Threads {
-    /// As many cases at a time as there are threads, the longest first, so that no thread waits long for the last case.
+    /// Runs as many cases at a time as there are threads, the longest case first, so that at the end no thread waits
+    /// long for the last case.
     All,
-    /// One case at a time, for timing.
+    /// Runs one case at a time, so that its computing time is not affected by other cases.
     One,
 }
 
@@ -33,10 +34,10 @@ pub(crate) struct Runner<T> {
 }
 
 impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
-    /// A runner that resumes after the last line of a journal in `folder`, and reports the number of results found
-    /// there.
+    /// Opens a runner that resumes after the last line of a journal in `folder`. The number of results in the journal
+    /// is reported.
     pub(crate) fn open(name: &str, folder: &Path, journal_name: &str) -> Result<Self> {
-        // Opening cuts off an incomplete line, so it comes first.
+        // Opening the journal cuts off an incomplete last line, so the journal is opened before it is read.
         let journal = Journal::open(folder, journal_name)?;
         let finished = journal::read(&journal::path_of(folder, journal_name))?;
         if !finished.is_empty() {
@@ -46,7 +47,7 @@ impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
         Ok(Self::new(name, journal, finished.into_iter().map(by_key).collect()))
     }
 
-    /// A runner that appends to `journal`. Cases in `finished` are not run again.
+    /// Returns a runner that appends results to `journal`. Cases in `finished` are not run again.
     pub(crate) fn new(
         name: &str,
         journal: Journal,
@@ -59,7 +60,7 @@ impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
         self.finished.contains_key(key)
     }
 
-    /// Runs the unfinished cases, and returns all cases in order.
+    /// Runs the cases that are not finished, and returns the results of all cases in the order of `cases`.
     pub(crate) fn run<C: Sync>(
         &self,
         cases: &[Case<C>],
@@ -70,7 +71,7 @@ impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
         let mut pending: Vec<_> =
             cases.iter().enumerate().filter(|case| !is_finished(case)).collect();
         if threads == Threads::All {
-            // The sort is stable.
+            // The sort is stable, so cases of equal cost keep their order.
             pending.sort_by(|(_, one), (_, other)| other.cost.total_cmp(&one.cost));
         }
         let units = |case: &Case<C>| case.cost.ceil() as u64;
@@ -99,7 +100,8 @@ impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
         Ok(results.into_iter().flatten().collect())
     }
 
-    /// The result of a single case, from the journal or computed, for a case that depends on other results.
+    /// Returns the result of a single case: from the journal if the case is finished, otherwise computed by `compute`.
+    /// This function is for a case that depends on the results of other cases.
     pub(crate) fn result(
         &self,
         key: &str,

@@ -1,14 +1,14 @@
-//! Parts of a study that run on several machines.
+//! Divides the runs of a study into parts, so that several machines can share the study.
 
 use crate::error::{Error, Result};
 
-/// Part `index` of `count`, counted from 1. It contains every count-th run, so that cheap and expensive runs are
-/// distributed evenly.
+/// One of `count` parts of a study: part number `index`, counted from 1. The part contains every count-th run, so that
+/// cheap and expensive runs are distributed evenly over the parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// From 1 to `count`.
+    /// Number of this part, from 1 to `count`.
     pub index: usize,
-    /// Number of parts.
+    /// Number of parts into which the study is divided.
     pub count: usize,
 }
 
@@ -18,7 +18,7 @@ impl Shard {
         run % self.count == self.index - 1
     }
 
-    /// The name of the part's journal; `of` is the name of the whole journal.
+    /// Returns the name of this part's journal. `of` is the name of the journal of the whole study.
     pub(crate) fn journal(self, of: &str) -> String {
         format!("{of}-{}-of-{}", self.index, self.count)
     }

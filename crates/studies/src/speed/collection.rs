@@ -1,5 +1,5 @@
-//! Collected steps of piles for comparing methods. Each is a simulation just before the step, with the impulses of a
-//! warm start.
+//! Collects steps of piles, on which solver methods are compared. A collected step is a simulation in its state just
+//! before the step, with the impulses of the previous step for a warm start.
 
 use std::path::Path;
 
@@ -17,8 +17,8 @@ use crate::solver::{FrictionModel, Method, Ordering, SolverSettings, StopTest};
 use crate::states::States;
 use crate::world::ParameterChanges;
 
-/// Settings with which piles are advanced to the collected steps. They are much tighter than any claim about a pile
-/// needs, so that a collection does not favour the errors of one of the compared methods.
+/// Solver settings with which piles are simulated up to the collected steps. The tolerance is much smaller than any
+/// claim about a pile needs, so that a collection does not favour the errors of one of the compared methods.
 const ADVANCE: SolverSettings = SolverSettings {
     method: Method::Newton,
     ordering: Ordering::Interleaved,
@@ -30,35 +30,38 @@ const ADVANCE: SolverSettings = SolverSettings {
     model_solves: 1,
 };
 
-/// Width of a box divided by the square root of the number of grains, in diameters: 16 for 138.
+/// Width of a pile's box divided by the square root of the number of grains, in diameters. It gives a width of 16 for
+/// 138 grains.
 const WIDTH_BY_ROOT: f64 = 1.35;
 
-/// The steps to collect: each time of each pile, with one pile for every Bond number and time step.
+/// Plan of a collection of steps on which methods are compared. There is one pile for every Bond number and time step,
+/// and each pile gives one step at each time.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct CollectionPlan {
     pub bonds: Vec<f64>,
-    /// Δt, s.
+    /// Time steps Δt of the piles, s.
     pub time_steps_secs: Vec<f64>,
     /// Simulated times at which the steps begin, s, in ascending order.
     pub times_secs: Vec<f64>,
     /// Seeds of the initial states, assigned to the piles in turn.
     pub seeds: Vec<u64>,
     pub grains: usize,
-    /// Width of the box in which the piles are made, in diameters.
+    /// Width of the box in which the initial states are made, in diameters.
     pub box_width_in_diameters: f64,
     pub deposition: Deposition,
-    /// True if the walls of the box remain, so that the piles are at rest.
+    /// True if the side walls of the box remain, so that the piles are at rest.
     pub in_a_box: bool,
     pub advance: SolverSettings,
-    /// Contacts slower than this, in units of g·Δt, do not bounce; 0 in the paper's scheme.
+    /// Speed below which contacts do not bounce, in units of g·Δt, the speed that gravity adds in one step; 0 in the
+    /// paper's scheme.
     pub restitution_threshold: f64,
-    /// Coefficient of friction; `None` for that of the scene.
+    /// Coefficient of friction; `None` for the coefficient of the scene.
     pub friction: Option<f64>,
 }
 
 impl CollectionPlan {
-    /// 48 steps (24 in a quick pass) of piles of 138 grains: first motion, the collapse (which takes about 0.3 s), its
-    /// end, and rest.
+    /// Returns the plan of 48 steps (24 in a quick pass) of piles of 138 grains. In the full pass, the steps belong to
+    /// the first motion, the collapse (which takes about 0.3 s), its end, and rest.
     pub(super) fn piles(restitution_threshold: f64, effort: Effort) -> Self {
         let rain = NewPile::default();
         Self {
@@ -76,16 +79,17 @@ impl CollectionPlan {
         }
     }
 
-    /// Steps at Δt = 1e-3 s of piles without cohesion and with it. The piles are made quickly and are as steep as that
-    /// of 138 grains. They begin to slump or, in their box, are at rest. Every step before was solved with bounded
-    /// friction (Tresca), so that the impulses of a warm start contain no error of a compared method.
+    /// Returns the plan of steps at Δt = 1e-3 s of piles with and without cohesion. The initial states are made by a
+    /// quick method and are as steep as the pile of 138 grains. The piles begin to slump or, in their box, are at rest.
+    /// Every step before the collected step is solved with bounded friction (Tresca), so that the impulses of a warm
+    /// start contain no error of a compared method.
     pub(super) fn of_size(grains: usize, in_a_box: bool, effort: Effort) -> Self {
         let times_secs = match in_a_box {
             true => effort.pick(vec![5e-3], vec![1e-2, 2e-2]),
             false => effort.pick(vec![2e-2], vec![3e-2, 0.1]),
         };
         Self {
-            // The second value has an effect, but still lets a pile of any size slump.
+            // The second Bond number has an effect, but still lets a pile of any size slump.
             bonds: vec![0.0, 10.0],
             time_steps_secs: vec![1e-3],
             times_secs,
@@ -104,7 +108,7 @@ impl CollectionPlan {
         }
     }
 
-    /// Bond number, Δt (s) and time (s) of each step.
+    /// Returns Bond number, Δt (s) and time (s) of each step of the plan.
     pub(super) fn steps(&self) -> Vec<[f64; 3]> {
         let of_pile = |bond, step| self.times_secs.iter().map(move |&time| [bond, step, time]);
         let steps =
@@ -125,8 +129,8 @@ impl CollectionPlan {
         self.steps().into_iter().map(name).collect()
     }
 
-    /// One pile for every Bond number and time step. The seed advances with both, so that every time step and every
-    /// Bond number occurs with several initial states.
+    /// Returns the settings of one pile for every Bond number and time step. The seed advances with both, so that every
+    /// time step and every Bond number occurs with several initial states.
     fn configs(&self) -> Vec<Config> {
         let mut configs = Vec::new();
         for (row, &bond) in self.bonds.iter().enumerate() {
@@ -152,9 +156,9 @@ impl CollectionPlan {
     }
 }
 
-/// Collects the steps of a plan, pile by pile, on all cores: the simulations just before them, in the order of their
-/// names. `next_problem` gives their problems. Initial states are stored in `states_folder`. The same plan gives
-/// bitwise the same steps.
+/// Simulates the piles of a plan on all cores. Returns the simulations just before the collected steps, in the order of
+/// `CollectionPlan::names`. `Simulation::next_problem` gives the contact problem of such a step. Initial states are
+/// stored in `states_folder`. The same plan gives bitwise the same steps.
 pub(super) fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec<Simulation>> {
     let configs = plan.configs();
     let states = States::of(states_folder.to_owned(), configs.iter())?;
@@ -189,7 +193,8 @@ pub(super) fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec
     Ok(piles?.into_iter().flatten().collect())
 }
 
-/// Computes a result for each step of a plan, or reads it from the journal of that name.
+/// Returns a result for each step of a plan. The result is computed, or read from the journal named `journal` if it is
+/// already there.
 pub(super) fn over_steps<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
     bench: &Bench,
     journal: &str,

@@ -1,9 +1,9 @@
-//! Charts of speed against accuracy: of single steps, small and large, and of whole simulations. Every method of the
-//! registry is on every chart.
+//! Draws charts of the speed of solver methods against their accuracy: in single steps of small and large piles, and in
+//! whole simulations. Every solver method of the program is on every chart.
 //!
-//! The folder of a chart contains pictures (PNG and SVG), tables (CSV), `chart.md`, initial states, and `measured/`
-//! with journals of measurements by program and processor. The same command therefore resumes if it was stopped, and
-//! never mixes times of different programs.
+//! The folder of a chart contains pictures (PNG and SVG), tables (CSV), `chart.md`, initial states, and the folder
+//! `measured/`. In that folder, each program and processor has its own journals of measurements. So the same command
+//! resumes if it was stopped, and never mixes times of different programs.
 
 mod collection;
 mod performance;
@@ -21,7 +21,7 @@ use crate::error::Result;
 use crate::harness::{Bench, Effort, ReportTable};
 use crate::output::{note_line, print_text};
 
-/// Something to chart.
+/// A part of the chart of speed: one kind of measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum ChartPart {
     /// Error against the time of a step
@@ -55,11 +55,12 @@ struct ChartSection {
     name: String,
     sheet: Sheet,
     words: String,
-    /// The first table is a part of the report.
+    /// Tables of the section. The first table is a part of the report.
     tables: Vec<ReportTable>,
 }
 
-/// Measures, and draws charts into a folder. `version` is the program's version in the charts.
+/// Measures speed and accuracy, and draws charts into a folder. `version` is the version of the program that the charts
+/// name.
 ///
 /// # Errors
 /// If the folder cannot be written, or a simulation fails.

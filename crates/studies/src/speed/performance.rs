@@ -1,13 +1,14 @@
-//! Comparison of methods over many problems, some of which some methods fail to solve: means with failures.
+//! Compares solver methods over many problems. Some methods do not solve some of the problems, so the means take
+//! failures into account.
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Timing {
-    /// Time until it was solved or stopped, s.
+    /// Time until the problem was solved or the method stopped, s.
     pub secs: f64,
     pub solved: bool,
 }
 
-/// Geometric mean; `None` without values.
+/// Returns the geometric mean; `None` without values.
 pub(super) fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0usize);
     for value in values {
@@ -22,8 +23,9 @@ pub(super) fn share_solved(timings: &[Timing]) -> f64 {
     solved as f64 / timings.len().max(1) as f64
 }
 
-/// Ratio of the speeds of a method and a base method, as a geometric mean over the problems that the method solves. If
-/// the base method failed, the time until it stopped counts, which is a lower bound of the time that it would need.
+/// Returns the speed of a method divided by the speed of a base method, as a geometric mean over the problems that the
+/// method solves. If the base method failed on a problem, its time until it stopped counts. This time is a lower bound
+/// of the time that the base method would need.
 pub(super) fn speed_ratio(base: &[Timing], method: &[Timing]) -> Option<f64> {
     let pairs = base.iter().zip(method).filter(|(_, method)| method.solved);
     geometric_mean(pairs.map(|(base, method)| base.secs / method.secs))
@@ -54,7 +56,7 @@ mod tests {
         let base = [solved(8.0), failed(50.0), solved(4.0), failed(50.0)];
         let method = [solved(2.0), solved(1.0), failed(0.1), failed(0.1)];
         let ratio = speed_ratio(&base, &method).expect("a ratio");
-        // √(4 · 50)
+        // The ratios of the two solved problems are 8/2 = 4 and at least 50/1 = 50, with the geometric mean √(4 · 50).
         assert!((ratio - 200f64.sqrt()).abs() < 1e-12);
         assert_eq!(speed_ratio(&base, &[failed(1.0); 4]), None);
     }

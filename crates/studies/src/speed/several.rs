@@ -1,4 +1,5 @@
-//! Number of solutions that the steps of piles have under Coulomb's law, and distances between them.
+//! Counts the solutions that single steps of piles have under Coulomb friction, and measures the distances between
+//! them.
 
 use super::collection::{CollectionPlan, over_steps};
 use super::solves::{ReferenceSearch, References};
@@ -9,15 +10,15 @@ use crate::harness::{Effort, ReportTable, Threads};
 use crate::solver::SolutionSearch;
 
 const BONDS: [f64; 3] = [0.0, 20.0, 100.0];
-/// Δt, s.
+/// Time steps Δt of the piles, s.
 const TIME_STEPS_SECS: [f64; 2] = [1e-3, 5e-3];
 const FRICTIONS: [f64; 3] = [0.2, 0.5, 0.9];
-/// Smallest distance in the chart, √(g d).
+/// Smallest distance between two solutions that the chart shows, √(g d), with gravity g and mean diameter d.
 const LEAST_DISTANCE: f64 = 1e-6;
-/// Horizontal offset between the curves of Bond numbers, as a factor of the number of grains.
+/// Horizontal shift between the points of different Bond numbers, as a factor on the number of grains.
 const ASIDE: f64 = 1.12;
 
-/// Result of the search on one step.
+/// A step of a pile, and the result of the search for its solutions.
 struct SearchedStep {
     friction: f64,
     grains: usize,
@@ -27,7 +28,8 @@ struct SearchedStep {
     found: References,
 }
 
-/// Plans, each for one size and kind, with their names.
+/// Returns the plans of the collections of steps with their names. Each plan is for one number of grains, one friction
+/// coefficient, and piles that either move or are at rest.
 fn plans(effort: Effort) -> Vec<(String, CollectionPlan)> {
     let sizes: &[(usize, &[f64])] = match effort {
         Effort::Quick => &[(138, &[0.1])],
@@ -54,13 +56,14 @@ fn plans(effort: Effort) -> Vec<(String, CollectionPlan)> {
     plans
 }
 
-/// Settings of the search.
+/// Returns the settings of the search for the solutions of a step.
 fn search(effort: Effort) -> SolutionSearch {
     let max_sweeps = effort.pick(5_000, 20_000);
     SolutionSearch { starts: 4, seed: 1, max_sweeps, tolerance: 1e-10 }
 }
 
-/// Searches all steps, some in parallel, and charts the distances between the solutions.
+/// Searches the solutions of all steps, several steps in parallel, and charts the distances between the solutions of a
+/// step.
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     let search = search(bench.effort);
     let mut all = Vec::new();

@@ -1,5 +1,5 @@
-//! Timed solves of single steps with an increasing number of sweeps, and the distance of their velocities from a
-//! solution of Coulomb's law.
+//! Times solves of single steps with an increasing number of sweeps, and measures the distance of their velocities from
+//! a solution under Coulomb friction.
 
 use std::time::Instant;
 
@@ -16,42 +16,43 @@ use crate::solver::{
     solve, velocities, velocity_error, worst,
 };
 
-/// Least number of solves over which a time is minimised.
+/// Least number of repeats of a solve. The shortest time of all repeats counts.
 pub(super) const LEAST_REPEATS: usize = 3;
-/// Short solves are repeated more often, up to this total time, s, or [`MOST_REPEATS`].
+/// Total computing time, s, up to which a short solve is repeated, but at most [`MOST_REPEATS`] times.
 const ENOUGH_SECS: f64 = 2e-3;
-/// Largest number of repeats; see [`ENOUGH_SECS`].
+/// Largest number of repeats of a short solve; see [`ENOUGH_SECS`].
 const MOST_REPEATS: usize = 12;
-/// A solve that takes longer than this, s, is not repeated, because disturbances average out.
+/// Computing time, s, above which a solve is not repeated, because disturbances average out within the solve.
 pub(super) const LONG_SOLVE_SECS: f64 = 0.1;
-/// Largest number of sweeps of a solve, whatever its time.
+/// Largest number of sweeps of a solve, even if the solve takes little time.
 const MOST_SWEEPS: u32 = 1 << 20;
 /// Factor of the number of sweeps from one solve to the next.
 const GROWTH: u32 = 2;
 
-/// The solutions of a step under Coulomb's law, from which errors are measured.
+/// The known solutions of a step under Coulomb friction, from which errors are measured.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct References {
     /// Velocities of all grains in each solution.
     #[serde(skip)]
     velocities: Vec<Vec<[f64; 3]>>,
     pub found: usize,
-    /// The largest distance between two of them, √(g d).
+    /// Largest distance between the velocities of two known solutions, √(g d), with gravity g and mean diameter d.
     pub spread: f64,
-    /// Estimated distance of the least accurate reference from a solution, √(g d).
+    /// Estimated distance of the least accurate known solution from an exact solution, √(g d), with gravity g and mean
+    /// diameter d.
     #[serde(with = "number")]
     pub told: f64,
-    /// The largest residual.
+    /// Largest residual of the known solutions.
     #[serde(with = "number")]
     pub residual: f64,
 }
 
-/// Searches for the solutions of the next step of a simulation.
+/// Searches for the solutions of the next step of a simulation under Coulomb friction.
 pub(super) struct ReferenceSearch(pub SolutionSearch);
 
 impl References {
-    /// The error, √(g d), below which methods cannot be compared: smaller errors only distinguish the solutions from
-    /// each other, or the references from the solutions.
+    /// Returns the error, in √(g d) with gravity g and mean diameter d, below which methods cannot be compared: smaller
+    /// errors only distinguish the known solutions from each other, or the known solutions from exact solutions.
     pub(super) fn floor(&self) -> f64 {
         self.spread.max(self.told)
     }
@@ -78,13 +79,14 @@ impl ProblemVisitor for ReferenceSearch {
     }
 }
 
-/// A solve with a limited number of sweeps.
+/// A timed solve with a limited number of sweeps.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct TimedSolve {
     pub sweeps: u32,
-    /// Least time, s.
+    /// Shortest computing time among the repeats, s.
     pub secs: f64,
-    /// Distance of the velocities to the nearest known solution of Coulomb's law, √(g d).
+    /// Distance of the velocities to the nearest known solution under Coulomb friction, √(g d), with gravity g and mean
+    /// diameter d.
     #[serde(with = "number")]
     pub error: f64,
 }
@@ -94,7 +96,8 @@ pub(super) struct TimedSolve {
 pub(super) struct TimedSolves(pub Vec<TimedSolve>);
 
 impl TimedSolves {
-    /// Time until an error was reached.
+    /// Returns the time in which the error `error` was reached. If the error was not reached, returns the time of the
+    /// last solve, marked as not solved.
     pub(super) fn timing(&self, error: f64) -> Timing {
         let reached = self.0.iter().find(|effort| effort.error <= error);
         let secs = |solve: &TimedSolve| solve.secs;
@@ -104,24 +107,26 @@ impl TimedSolves {
         }
     }
 
-    /// Solve number `number`, or the last solve, which more sweeps would not change.
+    /// Returns solve number `number`, or the last solve if there are fewer solves, because more sweeps would not change
+    /// it.
     pub(super) fn effort(&self, number: usize) -> Option<TimedSolve> {
         self.0.get(number).or(self.0.last()).copied()
     }
 }
 
-/// Times the solves of one step, each from the same initial guess, until one ends by itself or takes too long. Copies
-/// of the problem are not timed.
+/// Times solves of one step by one method, with an increasing number of sweeps. All solves begin with the same initial
+/// guess. The last solve is the one that ends by itself or takes too long. The time to copy the problem does not count.
 pub(super) struct SolveTimer<'a> {
     pub variant: &'a Change,
     pub references: &'a References,
-    /// A solve that takes longer than this, s, is the last one.
+    /// Computing time, s, of a solve above which no further solve follows.
     pub limit_secs: f64,
 }
 
 impl SolveTimer<'_> {
     pub(super) fn time(self, simulation: &Simulation) -> Result<TimedSolves> {
-        // The method determines the order of the problem's rows.
+        // The rows of the problem are in the order that the method needs, so the method is set before the problem is
+        // built.
         let mut simulation = simulation.clone();
         simulation.set_solver(self.variant.sweeps(1))?;
         Ok(simulation.next_problem(self))
@@ -149,7 +154,8 @@ impl SolveTimer<'_> {
         (effort, has_ended)
     }
 
-    /// Distance to the nearest reference, √(g d).
+    /// Returns the distance of the velocities to the nearest known solution, √(g d), with gravity g and mean diameter
+    /// d.
     fn error<M: Model>(&self, solved: &StepProblem<M>) -> f64 {
         let all = self.references.velocities.iter();
         let distances = all.map(|reference| distance_to_velocities(solved, reference));
@@ -174,7 +180,7 @@ impl ProblemVisitor for SolveTimer<'_> {
     }
 }
 
-/// Time of one solve of a copy, s, the solved copy, and its sweeps.
+/// Solves a copy of the problem. Returns the computing time, s, the solved copy, and the number of sweeps.
 fn timed<M: Model>(
     problem: &StepProblem<M>,
     settings: &SolverSettings,
@@ -230,7 +236,7 @@ mod tests {
 
     #[test]
     fn errors_are_against_coulombs_law_and_fall_with_sweeps_where_a_method_solves_it() {
-        // Without cohesion, so that it flows.
+        // The first collected step has no cohesion, so that its pile flows.
         let step = &collected(138, false)[0];
         let references = &step.next_problem(ReferenceSearch(SEARCH));
         assert!(references.found > 0 && references.residual < 1e-8, "{references:?}");

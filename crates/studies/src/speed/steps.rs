@@ -1,4 +1,5 @@
-//! Speed against accuracy of single steps: distance from Coulomb's law against time.
+//! Charts speed against accuracy of single steps: the distance of the velocities from a solution under Coulomb
+//! friction, against the computing time.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,13 +15,14 @@ use crate::error::Result;
 use crate::harness::{Change, Effort, ReportTable, Threads};
 use crate::solver::{FrictionModel, Method, Ordering, SolutionSearch};
 
-/// Restitution threshold at which nearly every step has a solution.
+/// Restitution threshold at which nearly every step has a solution, in units of g·Δt, the speed that gravity adds in
+/// one step.
 const THRESHOLD: f64 = 2.0;
-/// Errors for which times are reported, √(g d).
+/// Errors of the velocities for which the report gives computing times, √(g d), with gravity g and mean diameter d.
 const REPORTED: [f64; 3] = [1e-2, 1e-3, 1e-4];
 const BASE: (Method, Ordering) = (Method::Nsgs, Ordering::Interleaved);
 const SIZES: [usize; 4] = [138, 500, 2_000, 10_000];
-/// Smallest error in the chart, √(g d).
+/// Smallest error of the velocities that the chart shows, √(g d), with gravity g and mean diameter d.
 const LEAST_ERROR: f64 = 1e-8;
 const BAND: Rgb = (225, 225, 225);
 
@@ -28,24 +30,24 @@ const BAND: Rgb = (225, 225, 225);
 const SEARCH: SolutionSearch =
     SolutionSearch { starts: 4, seed: 1, max_sweeps: 30_000, tolerance: 1e-12 };
 
-/// One step: its solutions, and the results of every variant.
+/// A step with its known solutions, and the results of every solver variant.
 #[derive(Clone, Serialize, Deserialize)]
 struct TimedStep {
     references: References,
     solves: Vec<TimedSolves>,
 }
 
-/// A collection of steps, with the results of every variant.
+/// A collection of steps, with the results of every solver variant.
 struct TimedCollection {
     title: String,
-    /// Time limit of a solve, s.
+    /// Computing time of a solve above which no further solve follows, s.
     limit_secs: f64,
     problems: Vec<String>,
     variants: Vec<Change>,
     steps: Vec<TimedStep>,
 }
 
-/// Times all variants on steps of 138 grains.
+/// Times all solver variants on steps of 138 grains, and charts the results.
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     let effort = bench.effort;
     let timer =
@@ -67,7 +69,8 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     Ok(vec![timer.section(bench, "chart-step", &all)])
 }
 
-/// Times all variants on steps of piles of all sizes, which begin to slump or rest in their box.
+/// Times all solver variants on steps of piles of all sizes, which begin to slump or are at rest in their box, and
+/// charts the results.
 pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
     let effort = bench.effort;
     let timer = CollectionTimer { variants: with_bounds(variants::of_problems(false)) };
@@ -87,7 +90,7 @@ pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
     Ok(sections)
 }
 
-/// Adds bounded friction (Tresca), by sweeps and by the interior-point method.
+/// Adds the variants with bounded friction (Tresca): by sweeps and by the interior-point method.
 fn with_bounds(mut variants: Vec<Change>) -> Vec<Change> {
     let models = variants::models().into_iter();
     variants.extend(models.filter(|one| one.solver().friction_model == FrictionModel::Tresca));
@@ -99,7 +102,8 @@ struct CollectionTimer {
 }
 
 impl CollectionTimer {
-    /// Times every variant on every step, sequentially, except the steps that are already in the journal.
+    /// Times every solver variant on every step, one after the other. Steps whose results are already in the journal
+    /// are not timed again.
     fn time(
         &self,
         bench: &Bench,
@@ -141,12 +145,12 @@ impl TimedCollection {
         self.steps.iter().map(|step| step.solves[variant].timing(error)).collect()
     }
 
-    /// The median over the steps of a number of each step's references.
+    /// Returns the median over the steps of a number that belongs to the known solutions of each step.
     fn of_references(&self, number: fn(&References) -> f64) -> f64 {
         median(self.steps.iter().map(|step| number(&step.references)).collect())
     }
 
-    /// Median time, ms, and median error of each number of sweeps of a variant.
+    /// Returns the median time, ms, and the median error over all steps, for each number of sweeps of a variant.
     fn medians(&self, variant: usize) -> Vec<(f64, f64)> {
         let solves = || self.steps.iter().map(|step| &step.solves[variant]);
         let longest = solves().map(|solves| solves.0.len()).max().unwrap_or(0);
@@ -159,7 +163,8 @@ impl TimedCollection {
         (0..longest).map(point).collect()
     }
 
-    /// The smallest error of a family for its time: time, ms, and error, the most expensive last.
+    /// Returns the smallest error that a family of methods reaches for its time: time, ms, and error, the most
+    /// expensive point last.
     fn front(&self, family: Family) -> Vec<(f64, f64)> {
         let its = (0..self.variants.len()).filter(|&one| self.variants[one].family() == family);
         let all: Vec<(f64, f64)> = its.flat_map(|one| self.medians(one)).collect();
@@ -168,7 +173,7 @@ impl TimedCollection {
     }
 }
 
-/// The median; for an even count the larger of the two middle values, for none 0.
+/// Returns the median. For an even number of values it is the larger of the two middle values; without values it is 0.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
@@ -211,7 +216,7 @@ fn errors_sheet(bench: &Bench, all: &[TimedCollection]) -> Sheet {
     Sheet { size: (500 * charts.len().max(2) as u32, 600), charts, caption }
 }
 
-/// Describes how the steps were timed, and the number of solutions in each collection.
+/// Describes, for the report, how the steps were timed, and the number of solutions in each collection of steps.
 fn words(all: &[TimedCollection]) -> String {
     let mut lines = vec![format!(
         "Errors are distances of velocities to the nearest of the solutions that {} starts led to, in √(g d). Times are \
@@ -239,7 +244,8 @@ fn words(all: &[TimedCollection]) -> String {
     lines.join("\n")
 }
 
-/// Results of each variant.
+/// Returns a table with the results of each solver variant: the fraction of steps in which it reaches an error, its
+/// time, and its speed relative to Gauss–Seidel.
 fn summary(name: &str, all: &[TimedCollection]) -> ReportTable {
     let columns = "collection method error share_reached mean_ms ratio_to_nsgs_at_least";
     let mut rows = Vec::new();

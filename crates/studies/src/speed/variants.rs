@@ -1,27 +1,27 @@
-//! The charted solver variants: every method of the registry with its settings.
+//! Lists the solver variants that the charts compare: every solver method of the program, with its settings.
 
 use crate::chart::{PALETTE, Rgb};
 use crate::harness::{Change, distinct};
 use crate::sim::Stepper;
 use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverSettings, StopTest};
 
-/// Families of similar methods. Each shares one curve on a chart, because seven curves are easier to read than
+/// A family of similar methods. Each family shares one curve on a chart, because seven curves are easier to read than
 /// eighteen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Family {
     /// The default solver.
     Default,
-    /// Row-by-row sweeps.
+    /// Methods that sweep over the contact problem row by row.
     Sweeps,
-    /// First-order methods: only products with the whole problem.
+    /// First-order methods, which only need products of vectors with the operator of the whole problem.
     FirstOrder,
-    /// Methods with factorisations, for Coulomb's law.
+    /// Methods with factorisations of matrices, under Coulomb friction.
     Newton,
-    /// Methods that solve a convex problem instead of Coulomb's law.
+    /// Methods that solve a convex friction model instead of Coulomb friction.
     Convex,
-    /// The law of finite range.
+    /// The contact law `range`, under which bonds have a finite length.
     Range,
-    /// Springs or penalties instead of a contact problem.
+    /// Steppers that use springs or penalties instead of a contact problem.
     Penalties,
 }
 
@@ -36,7 +36,7 @@ impl Family {
         Self::Penalties,
     ];
 
-    /// Name in charts.
+    /// Returns the name of the family in charts.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Default => "default",
@@ -55,7 +55,7 @@ impl Family {
     }
 }
 
-/// The members of each family among these variants, for captions.
+/// Returns, for captions, the names of those variants that belong to each family.
 pub(super) fn members<'a>(variants: impl Iterator<Item = &'a Change> + Clone) -> String {
     let of = |family: Family| {
         let its = variants.clone().filter(|variant| variant.family() == family);
@@ -66,12 +66,13 @@ pub(super) fn members<'a>(variants: impl Iterator<Item = &'a Change> + Clone) ->
     format!("{}.", all.join("; "))
 }
 
-/// Steppers that use no solver method; each is a variant.
+/// Returns the steppers that use no solver method. Each of them is a variant.
 fn without_method() -> impl Iterator<Item = Stepper> {
     Stepper::ALL.iter().copied().filter(|stepper| !stepper.uses_method())
 }
 
-/// Every method of the registry, in its order, and every stepper without a method.
+/// Returns the variants for every solver method of the program, in the order of the list of methods, and for every
+/// stepper without a solver method.
 pub(super) fn all() -> Vec<Change> {
     let mut variants = of_problems(false);
     let of = |stepper: Stepper| Change::of_solver(stepper.name(), stepper, &SolverSettings::SWEEPS);
@@ -83,12 +84,13 @@ pub(super) fn of_method(method: Method) -> Change {
     of_model(method, FrictionModel::Coulomb)
 }
 
-/// The default solver: Coulomb's law, to a velocity error.
+/// Returns the default solver: Coulomb friction, solved until the estimated velocity error is below the tolerance.
 pub(super) fn default() -> Change {
     Change::of_solver("default", Stepper::Moreau, &SolverSettings::default())
 }
 
-/// The variants that solve a step's contact problem; with `orders`, also Gauss–Seidel in its other orders.
+/// Returns the variants that solve the contact problem of a step. If `orders` is true, Gauss–Seidel with other orders
+/// of the contacts is included.
 pub(super) fn of_problems(orders: bool) -> Vec<Change> {
     let own = METHODS.iter().map(|info| info.method).filter(|method| *method != Method::Auto);
     let mut variants: Vec<Change> = own.map(of_method).chain([default()]).collect();
@@ -103,13 +105,15 @@ pub(super) fn of_problems(orders: bool) -> Vec<Change> {
     variants
 }
 
-/// Friction models other than Coulomb's law by sweeps, and bounded friction (Tresca) by the interior-point method.
+/// Returns the variants with a friction model other than Coulomb friction, solved by sweeps, and bounded friction
+/// (Tresca) solved by the interior-point method.
 pub(super) fn models() -> Vec<Change> {
     let models = FrictionModel::ALL.iter().filter(|model| **model != FrictionModel::Coulomb);
     models.map(|&model| of_model(Method::Nsgs, model)).chain([bounded()]).collect()
 }
 
-/// Bounded friction (Tresca), whose convex problem is solved at any size.
+/// Returns bounded friction (Tresca) with the interior-point method, which solves the convex problem of this model at
+/// any size.
 pub(super) fn bounded() -> Change {
     of_model(Method::InteriorPoint, FrictionModel::Tresca)
 }
@@ -125,7 +129,7 @@ fn of_model(method: Method, friction_model: FrictionModel) -> Change {
 
 /// Properties of variants for charts.
 impl Change {
-    /// True for [`default`], which determines its effort itself.
+    /// True for the [`default`] solver, which determines its number of sweeps itself.
     pub(super) fn is_default(&self) -> bool {
         self.solver().method == Method::Auto
     }
@@ -139,7 +143,8 @@ impl Change {
         SolverSettings { stop, tolerance, max_sweeps, warm_start: true, ..self.solver() }
     }
 
-    /// Settings with a warm start and exactly `count` sweeps; for the default solver, its own settings.
+    /// Returns the solver settings with a warm start and exactly `count` sweeps. The default solver keeps its own
+    /// settings.
     pub(super) fn sweeps(&self, count: u32) -> SolverSettings {
         match self.is_default() {
             true => self.solver(),

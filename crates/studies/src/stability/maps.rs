@@ -1,19 +1,21 @@
-//! Stability maps: regions over two parameters in which each method holds, in which it sinks or overlaps by more than 1
-//! % of d, and in which grains are lost (torn off or thrown away) or the state is no longer finite.
+//! Draws stability maps over two parameters: the region in which a method holds a scene at rest, the region in which
+//! the scene sinks or overlaps by more than 1 % of the diameter d, and the region in which grains are lost (torn off or
+//! thrown away) or the state is no longer finite.
 //!
-//! Theory gives the boundaries of the regions. A step of s sweeps of Gauss–Seidel without a warm start leaves the
-//! fraction ρ^s of the slowest mode's velocity, which is the sum of gravity's contribution g Δt and of the velocity
-//! that the previous step left. A column therefore sinks with
+//! Theory gives the boundaries of the regions. The velocity of the slowest mode before a step is the sum of gravity's
+//! contribution g Δt and of the velocity that the previous step left. A step of s sweeps of Gauss–Seidel without a warm
+//! start leaves the fraction ρ^s of this velocity, where ρ is the contraction per sweep. A column therefore sinks with
+//! the velocity
 //!
 //! > v = A g Δt ρ^s / (1 − ρ^s),
 //!
 //! where A = 4/π is the slowest mode's amplitude at the top of a tall column (1 for two discs), and `scene::stability`
-//! derives ρ for each scene. It sinks by v T = 0.01 d in the time T if s = ln(q/(1 + q)) / ln ρ, with q = 0.01 d/(A g
-//! Δt T). The boundary for springs is their critical time step.
+//! derives ρ for each scene. In the time T the column sinks by v T = 0.01 d if s = ln(q/(1 + q)) / ln ρ, with q = 0.01
+//! d/(A g Δt T). For springs, the boundary is their critical time step.
 //!
-//! Over Δt and Bond the boundary is static: the Bond number below which C₀ no longer supports the cantilever. It does
-//! not depend on Δt. The force of a bond is a reaction, so that cohesion does not pull grains into each other, however
-//! long the step is.
+//! Over Δt and Bond number the boundary is static: the Bond number below which the cohesion force C₀ no longer supports
+//! the cantilever. It does not depend on Δt. The force of a bond is a reaction, so cohesion does not pull grains into
+//! each other, however long the step is.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -32,30 +34,31 @@ use crate::scene::stability::{
 use crate::sim::Stepper;
 use crate::solver::METHODS;
 
-/// Simulated time of every run, s.
+/// Simulated time of every run of a stability map, s.
 const DURATION_SECS: f64 = 0.1;
-/// Sinking or overlap that counts as a failure, in d.
+/// Distance of sinking, or overlap, above which a run counts as a failure, in diameters d.
 const COUNTS: f64 = 0.01;
-/// Amplitude of the slowest mode at the top of a column.
+/// Amplitude A of the slowest mode of Gauss–Seidel at the top of a tall column, dimensionless. The velocity of sinking
+/// is proportional to A.
 const TOP_OF_COLUMN: f64 = 4.0 / PI;
-/// Displacement at which a grain counts as lost, in d.
+/// Displacement above which a grain counts as lost, in diameters d.
 const LOST: f64 = 1.0;
-/// Speed at the end above which a scene does not count as at rest, in √(g d): for rigid grains, and for grains on
-/// springs.
+/// Speed at the end of a run above which a scene does not count as at rest, in √(g d), with gravity g and diameter d.
+/// The first value is for rigid grains, the second for grains on springs.
 const SHAKES: [f64; 2] = [0.05, 4e-3];
-/// Number of discs of a column whose size is not varied.
+/// Number of discs of a column, in maps that do not vary this number.
 const DISCS: usize = 20;
 /// Size of a chart, pixels.
 const CHART: (u32, u32) = (500, 500);
-/// Charts side by side.
+/// Number of charts side by side on a sheet.
 const ABREAST: usize = 5;
 
-/// A parameter of a map.
+/// A parameter of a stability map, which is one of its two axes.
 struct Parameter {
     label: &'static str,
     from: f64,
     to: f64,
-    /// True for an integer parameter.
+    /// True if the values of the parameter are integers.
     whole: bool,
 }
 
@@ -66,7 +69,8 @@ const fn sweeps(to: f64) -> Parameter {
 }
 
 impl Parameter {
-    /// Twelve values (six in a quick pass) with a constant ratio, each with the edges of its cell.
+    /// Returns twelve values of the parameter (six in a quick pass) with a constant ratio, each with the two edges of
+    /// its cell.
     fn values(&self, effort: Effort) -> Vec<(f64, [f64; 2])> {
         let count = effort.pick(6, 12);
         let ratio = (self.to / self.from).powf(1.0 / f64::from(count));
@@ -83,11 +87,11 @@ impl Parameter {
     }
 }
 
-/// A theoretical boundary as a function of x: its name, the variant that it applies to (empty for all), and the
-/// function.
+/// A theoretical boundary on a map: its name, the name of the variant (stepper or solver method) to which it applies,
+/// empty for all variants, and the y value as a function of x.
 type Border = (&'static str, &'static str, fn(f64) -> Result<f64>);
 
-/// A map of two parameters.
+/// A stability map over two parameters.
 struct Map {
     name: &'static str,
     title: &'static str,
@@ -97,7 +101,7 @@ struct Map {
     borders: &'static [Border],
 }
 
-/// All maps.
+/// All stability maps.
 const MAPS: [Map; 4] = [
     Map {
         name: "map-dt-bond",
@@ -165,9 +169,10 @@ fn sagging_on_line(count: usize, time_step_secs: f64, sweeps: f64) -> Scene {
     scene
 }
 
-/// Class of a run: 0 if the variant holds, 1 if it sinks or overlaps, 2 if grains are lost.
+/// Returns the class of a run: 0 if the variant holds the scene, 1 if the scene sinks or overlaps, 2 if grains are
+/// lost.
 ///
-/// Unsolved steps make a scene sink steadily. Grains on stable, stiff springs are at rest at the end, unless they
+/// A scene with unsolved steps sinks steadily. Grains on stable, stiff springs are at rest at the end, unless they
 /// `may_swing`.
 fn class(variant: &Change, scene: &Scene, may_swing: bool) -> Result<f64> {
     let mut scene = scene.clone();
@@ -193,14 +198,15 @@ fn class(variant: &Change, scene: &Scene, may_swing: bool) -> Result<f64> {
     })
 }
 
-/// The methods and steppers of the registry, which are the only variants with maps.
+/// Returns the variants that are a solver method or a stepper without further changes. Only these variants have maps.
 fn of_registry() -> impl Iterator<Item = &'static Change> {
     let steppers = Stepper::ALL.iter().map(|stepper| stepper.name());
     let names: Vec<&str> = METHODS.iter().map(|info| info.name).chain(steppers).collect();
     VARIANTS.iter().filter(move |variant| names.contains(&&*variant.name))
 }
 
-/// All maps, each with its file's name: the methods of the registry side by side.
+/// Draws all stability maps, with the solver methods and steppers side by side. Each sheet comes with the name of its
+/// file.
 ///
 /// # Errors
 /// If a scene is invalid.
@@ -231,13 +237,13 @@ pub fn maps(quick: bool, progress: impl Fn() + Sync) -> Result<Vec<(String, Shee
     Ok(sheets)
 }
 
-/// Number of charts of all maps.
+/// Returns the number of charts of all stability maps.
 pub fn count_of_maps() -> usize {
     MAPS.len() * of_registry().count()
 }
 
 impl Map {
-    /// True for the cantilever, whose springs swing for longer than a run.
+    /// True for the map of the cantilever, whose springs swing for longer than a run.
     fn can_swing(&self) -> bool {
         self.borders.iter().any(|(name, ..)| *name == STATICS)
     }
@@ -273,7 +279,7 @@ impl Map {
     }
 }
 
-/// Factor by which a sweep of Gauss–Seidel reduces the slowest mode of a column.
+/// Returns the factor by which one sweep of Gauss–Seidel reduces the slowest mode of a column of `count` discs.
 pub fn contraction_of_column(count: f64) -> f64 {
     (FRAC_PI_2 / count).cos().powi(2)
 }

@@ -1,6 +1,6 @@
-//! Stability tests: scenes that are made to break methods, each with a known answer, a measured error, and a parameter
-//! that drives it into failure. The scenes are in `scene::stability`, their measures in `rest` and `motion`, and
-//! [`CHALLENGES`] lists them all.
+//! Runs stability tests: scenes that are made to break methods. Each test has a known right answer, a measured error,
+//! and a parameter that drives the scene into failure. The scenes are in `scene::stability`, the measures of error are
+//! in `rest` and `motion`, and [`CHALLENGES`] lists all tests.
 
 mod maps;
 mod motion;
@@ -25,44 +25,46 @@ use crate::sim::{Simulation, Snapshot, Stepper};
 use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverChanges, SolverSettings};
 use crate::world::World;
 
-/// A scene that is made to break methods, with its measure of error.
+/// A stability test: a scene that is made to break methods, with its measure of error.
 #[derive(Clone, Copy, Debug)]
 pub struct Challenge {
-    /// Name on the command line and in the table.
+    /// Name of the test on the command line and in the table.
     pub name: &'static str,
-    /// The parameter that drives it into failure, with its unit.
+    /// Name of the parameter that drives the scene into failure, with its unit.
     driver: &'static str,
-    /// Values of the driver in a quick pass, from harmless to harmful.
+    /// Values of the driving parameter in a quick pass, from harmless to harmful.
     pub quick: &'static [f64],
-    /// Further, more harmful values of a full pass.
+    /// Further, more harmful values of the driving parameter in a full pass.
     further: &'static [f64],
-    /// A method holds up to the first error, degrades up to the second, and fails above it.
+    /// Two limits of the error: a method holds up to the first limit, degrades up to the second, and fails above the
+    /// second.
     limits: [f64; 2],
     error: fn(&Trial) -> Result<f64>,
-    /// The right answer of the scene with the same name in a sentence, and the error of a moment of it.
+    /// Right answer as a sentence, and a measure of error for single moments of a run, if there is one. Both refer to
+    /// the scene with the same name as the test.
     seen: Option<(&'static str, SeenError)>,
 }
 
-/// The verdict on one moment of a scene that is made to break methods.
+/// The verdict on a single moment of a run of a stability test.
 #[derive(Clone, Copy, Debug)]
 pub struct SeenVerdict {
     /// Name and unit of the error.
     pub name: &'static str,
-    /// The error; 0 for the right answer.
+    /// Value of the error; 0 for the right answer.
     pub error: f64,
-    /// The largest error of a method that holds.
+    /// Largest error at which the verdict is that the method holds the scene.
     pub limit: f64,
 }
 
 impl SeenVerdict {
-    /// True if the moment agrees with the right answer.
+    /// True if the state at this moment agrees with the right answer.
     pub fn is_right(&self) -> bool {
         self.error <= self.limit
     }
 }
 
 impl Challenge {
-    /// The challenge that knows the right answer of the scene with that name.
+    /// Returns the stability test that knows the right answer of the scene with the given name.
     pub fn seen_in(scene: &str) -> Option<&'static Self> {
         let info = SceneInfo::named(scene)?;
         let is_of =
@@ -70,17 +72,18 @@ impl Challenge {
         CHALLENGES.iter().filter(is_of).find(|challenge| challenge.seen.is_some())
     }
 
-    /// The right answer of its scene in a sentence.
+    /// Returns the right answer of the test's scene as a sentence.
     pub fn right_answer(&self) -> Option<&'static str> {
         self.seen.map(|(right, _)| right)
     }
 
-    /// The verdict on a moment of a run of its scene that began with `start`; nothing if it is too early.
+    /// Returns the verdict on the moment `now` of a run of the test's scene that began with `start`. Returns `None` if
+    /// the moment is too early for a verdict.
     pub fn verdict(&self, start: &Simulation, now: &Snapshot) -> Option<SeenVerdict> {
         let (_, SeenError { name, of }) = self.seen.filter(|_| now.observables.step > 0)?;
         let is_whole = start.world().grains.len() == now.grains.len();
         let error = of(start, now).filter(|_| is_whole)?;
-        // NaN is as far from the right answer as can be.
+        // An error that is NaN counts as infinite.
         let error = if error.is_nan() { f64::INFINITY } else { error };
         Some(SeenVerdict { name, error, limit: self.limits[0] })
     }
@@ -89,10 +92,10 @@ impl Challenge {
         Self { seen: Some((right, error)), ..self }
     }
 
-    /// The challenge with that name.
+    /// Returns the stability test with the given name.
     ///
     /// # Errors
-    /// If there is no such challenge.
+    /// If no test has this name.
     pub fn named(name: &str) -> Result<&'static Self> {
         let names = || CHALLENGES.map(|challenge| challenge.name).join(", ");
         CHALLENGES
@@ -105,7 +108,7 @@ impl Challenge {
         Self { further, ..self }
     }
 
-    /// The error of a trial; infinite if the state is no longer finite.
+    /// Returns the error of a trial; infinite if the state is no longer finite.
     fn error(&self, trial: &Trial) -> Result<f64> {
         match (self.error)(trial) {
             Ok(error) if error.is_nan() => Ok(f64::INFINITY),
@@ -115,7 +118,7 @@ impl Challenge {
     }
 }
 
-/// Drivers and levels that several challenges use.
+/// Names and values of driving parameters that several stability tests use.
 const TIME_STEP: &str = "time step (s)";
 const MASSES: &str = "ratio of masses";
 const STEPS: &[f64] = &[2e-4, 1e-3, 5e-3, 2e-2];
@@ -133,7 +136,7 @@ const fn challenge(
     Challenge { name, driver, quick, further: &[], limits, error, seen: None }
 }
 
-/// All challenges.
+/// All stability tests.
 pub static CHALLENGES: [Challenge; 28] = [
     challenge("column", "discs", &[5.0, 20.0, 80.0, 200.0], [0.01, 0.2], rest::column)
         .further(&[500.0]),
@@ -217,10 +220,10 @@ pub static CHALLENGES: [Challenge; 28] = [
         .further(&[2000.0, 10000.0]),
 ];
 
-/// The name of the variant that does not change the settings of scenes.
+/// Name of the variant that does not change the settings of a scene.
 const DEFAULT: &str = "default";
 
-/// Applies a variant to a scene.
+/// Applies a variant, which is a change of the stepper or the solver, to a scene.
 fn step_by(variant: &Change, scene: &mut Scene) {
     if variant.name != DEFAULT {
         sweep_instead(&mut scene.solver);
@@ -228,8 +231,8 @@ fn step_by(variant: &Change, scene: &mut Scene) {
     variant.apply(scene);
 }
 
-/// Replaces the default solver settings of a scene by those of sweeps, so that all methods are given the same task and
-/// their results are comparable.
+/// Replaces the default solver settings of a scene by the settings for Gauss–Seidel sweeps. Then all methods have the
+/// same task, and their results are comparable.
 fn sweep_instead(solver: &mut SolverSettings) {
     let (default, sweeps) = (SolverSettings::DEFAULT, SolverSettings::SWEEPS);
     if solver.stop == default.stop {
@@ -243,8 +246,8 @@ fn sweep_instead(solver: &mut SolverSettings) {
     }
 }
 
-/// All variants: the default, every method, every stepper without a method, every friction model that these do not
-/// cover, and settings that remedy a known failure.
+/// All variants of the stability tests: the default, every solver method, every stepper without a solver method,
+/// further friction models, and settings that remedy a known failure.
 static VARIANTS: LazyLock<Vec<Change>> = LazyLock::new(|| {
     let solver = |name, method, ordering, friction_model| {
         let default = SolverChanges::default();
@@ -266,11 +269,11 @@ static VARIANTS: LazyLock<Vec<Change>> = LazyLock::new(|| {
     all
 });
 
-/// One variant at one level of a challenge.
+/// A trial: one variant at one value of the driving parameter of a stability test.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial {
     variant: &'static Change,
-    /// Value of the driver.
+    /// Value of the driving parameter.
     level: f64,
 }
 
@@ -280,7 +283,7 @@ impl Trial {
         scene.simulation()
     }
 
-    /// Starts the trial with `sweeps` sweeps per step, whatever the variant's settings are.
+    /// Starts the trial with at most `sweeps` sweeps per step, also if the variant sets another number.
     fn start_within(&self, sweeps: u32, mut scene: Scene) -> Result<Simulation> {
         step_by(self.variant, &mut scene);
         scene.solver.max_sweeps = sweeps;
@@ -296,42 +299,45 @@ fn advance(simulation: &mut Simulation, secs: f64) -> Result<()> {
     simulation.take_steps(simulation.parameters().steps_in(secs))
 }
 
-/// The longest displacement of any grain since `scene`, in d.
+/// Returns the longest displacement of any grain since the initial state in `scene`, in mean diameters d.
 fn longest_way(simulation: &Simulation, scene: &Scene) -> f64 {
     let now = simulation.world().grains.positions.iter().copied();
     longest_way_to(scene.grains.iter().map(|grain| grain.position).zip(now), scene.mean_diameter)
 }
 
-/// The longest displacement, in d, among pairs of places before and now.
+/// Returns the longest distance, in mean diameters d, among pairs of positions before and now.
 fn longest_way_to(places: impl Iterator<Item = (DVec2, DVec2)>, diameter: f64) -> f64 {
     places.map(|(before, now)| before.distance(now)).fold(0.0, f64::max) / diameter
 }
 
-/// √(2 E_kin/M), in √(g d).
+/// Returns the speed √(2 E_kin/M) in units of √(g d), with the kinetic energy E_kin and the mass M of all grains,
+/// gravity g and mean diameter d.
 fn jitter(simulation: &Simulation) -> f64 {
     jitter_of(simulation.world(), simulation.observables().kinetic_energy)
 }
 
-/// √(2 E_kin/M) of a world with this kinetic energy (J), in √(g d).
+/// Returns the speed √(2 E_kin/M) in units of √(g d) for a world with the kinetic energy E_kin (J) and the total mass
+/// M, gravity g and mean diameter d.
 fn jitter_of(world: &World, kinetic_energy: f64) -> f64 {
     let mass: f64 = world.grains.masses.iter().sum();
     let scale = world.gravity.magnitude() * world.mean_diameter;
     (2.0 * kinetic_energy / (mass * scale)).sqrt()
 }
 
-/// m g d of the first disc, J.
+/// Returns the energy m g d, J, with the mass m of the first disc, gravity g and mean diameter d.
 fn energy_scale(simulation: &Simulation) -> f64 {
     let world = simulation.world();
     world.grains.masses[0] * world.gravity.magnitude() * world.mean_diameter
 }
 
-/// The longest displacement of any grain since `scene`, in d, or the remaining speed, in √(g d), whichever is larger; 0
-/// for a scene at rest.
+/// Returns the larger of two numbers: the longest displacement of any grain since the initial state in `scene`, in mean
+/// diameters d, and the remaining speed, in √(g d) with gravity g. The result is 0 for a scene at rest.
 fn unrest(simulation: &Simulation, scene: &Scene) -> f64 {
     longest_way(simulation, scene).max(jitter(simulation))
 }
 
-/// Load on the fixed bodies along the y axis, N: the sum of N n_y over their contacts.
+/// Returns the load on the fixed bodies along the y axis, N: the sum over their contacts of the normal force N times
+/// the y component n_y of the normal.
 fn force_on_ground(simulation: &Simulation) -> f64 {
     let numbering = Numbering::of(simulation.world());
     let list = simulation.contacts();
@@ -341,7 +347,7 @@ fn force_on_ground(simulation: &Simulation) -> f64 {
     impulse / simulation.parameters().time_step_secs
 }
 
-/// The threshold above which a property is true, searched between `low` and `high` by bisection of their ratio.
+/// Returns the threshold above which `holds` is true, searched between `low` and `high` by bisection of their ratio.
 fn threshold(
     [mut low, mut high]: [f64; 2],
     halvings: u32,

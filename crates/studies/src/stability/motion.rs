@@ -1,5 +1,5 @@
-//! Tests of moving scenes: sliding friction, impacts, invariances, and sudden changes. Each measure is an error that is
-//! 0 for the right answer.
+//! Measures the errors of stability tests with moving scenes: sliding friction, impacts, invariances, and sudden
+//! changes. Each function runs a trial and returns an error that is 0 for the right answer.
 
 use glam::DVec2;
 use rand::seq::SliceRandom;
@@ -13,15 +13,16 @@ use crate::scene::stability as scenes;
 use crate::sim::{Pull, Simulation};
 use crate::world::{Boundary, Parameters};
 
-// Sliding friction: it must not lift the disc, and must follow a change of pressure at once.
+// Sliding friction must not lift a disc, and must follow a change of pressure at once.
 
-/// Duration of sliding and rest, in units of the duration of sliding.
+/// Duration of the test of a sliding disc, as a multiple of the time in which friction stops the disc.
 const WATCHED: f64 = 1.2;
 /// Duration of the blow on two discs, s.
 const BLOW_SECS: f64 = 0.1;
 
-/// Distance by which a sliding disc leaves its level, in d, or the relative error of its sliding distance, whichever is
-/// larger. Half the distance of one step, by which schemes may differ, is subtracted from the latter error.
+/// Returns the larger of two errors of a sliding disc: its largest distance from the initial level, in diameters, and
+/// the relative error of its sliding distance. The error of the distance is reduced by half the distance of one step,
+/// by which time stepping schemes may differ.
 pub(super) fn dilatancy(trial: &Trial) -> Result<f64> {
     let mut scene = scenes::dilatancy();
     scene.parameters.time_step_secs = trial.level;
@@ -41,8 +42,9 @@ pub(super) fn dilatancy(trial: &Trial) -> Result<f64> {
     Ok(off_level.max(beyond / right))
 }
 
-/// Error of the positions of the two discs along the floor, in d, due to friction that does not follow the pressure at
-/// the same time; or the error of their final speed, relative to the loss of speed by the blow; whichever is larger.
+/// Returns the larger of two errors of two discs that slide on the floor and are hit from above. The first is the error
+/// of their position along the floor, in diameters, due to friction that does not follow the pressure at the same time.
+/// The second is the error of their final speed, relative to the loss of speed by the blow.
 pub(super) fn blow(trial: &Trial) -> Result<f64> {
     let mut scene = scenes::blow();
     scene.parameters.time_step_secs = trial.level;
@@ -59,7 +61,7 @@ pub(super) fn blow(trial: &Trial) -> Result<f64> {
         let before_secs = simulation.time_secs();
         simulation.step()?;
         let now = momentum(&simulation);
-        // The total impulse of the floor so far.
+        // The total impulse of the floor on the discs so far, N·s.
         let pushed = now.y - start.y;
         let left = (now.x - (start.x - friction * pushed)) / mass;
         off += left * (simulation.time_secs() - before_secs);
@@ -71,14 +73,17 @@ pub(super) fn blow(trial: &Trial) -> Result<f64> {
     Ok(error.max(furthest / simulation.world().mean_diameter))
 }
 
-// Impacts: bounces, rows of balls, and walls that a step can jump over.
+// Impacts: bounces of a disc, rows of balls, and walls that a disc can jump over in one step.
 
-/// Number of phases of the step at which the wall is reached.
+/// Number of runs of the thin wall. The runs differ in the phase: the time within a step at which the disc reaches the
+/// wall.
 const PHASES: u32 = 10;
 const AFTER_SECS: f64 = 0.1;
 
-/// Error of the first bounce's height, relative to the height of the fall. For ρ < 1 also the remaining speed after all
-/// bounces, relative to that of the first impact; for ρ = 1 also the relative error of the energy after ten falls.
+/// Returns the largest error of a bouncing disc. The first error is the error of the height of the first bounce,
+/// relative to the height of the fall. For restitution ρ < 1 the second error is the remaining speed after all bounces,
+/// relative to the speed of the first impact. For ρ = 1 the second error is the relative error of the energy after ten
+/// times the duration of the fall.
 pub(super) fn bounce(trial: &Trial) -> Result<f64> {
     let restitution = trial.level;
     let scene = scenes::bounce(restitution);
@@ -113,7 +118,7 @@ pub(super) fn bounce(trial: &Trial) -> Result<f64> {
     Ok(first.max(last))
 }
 
-/// Relative error of the last ball's speed.
+/// Returns the relative error of the last ball's speed in Newton's cradle.
 pub(super) fn newtons_cradle(trial: &Trial) -> Result<f64> {
     let scene = scenes::balls(trial.count());
     let right = scene.grains[0].velocity.x;
@@ -123,7 +128,8 @@ pub(super) fn newtons_cradle(trial: &Trial) -> Result<f64> {
     Ok((velocities[velocities.len() - 1].x / right - 1.0).abs())
 }
 
-/// Fraction of phases in which the disc goes through the wall.
+/// Returns the fraction of runs in which the disc goes through the wall. The runs differ in the time within a step at
+/// which the disc reaches the wall.
 pub(super) fn thin_wall(trial: &Trial) -> Result<f64> {
     let mut through = 0;
     for phase in 0..PHASES {
@@ -136,16 +142,16 @@ pub(super) fn thin_wall(trial: &Trial) -> Result<f64> {
     Ok(f64::from(through) / f64::from(PHASES))
 }
 
-// Invariances: the position of the origin and the order of the contacts must not matter.
+// Invariances: the distance from the origin and the order of the contacts must not change the result.
 
 const FAR_ROWS: usize = 4;
 const FAR_SECS: f64 = 0.1;
 const SHUFFLED_ROWS: usize = 6;
-/// Largest component of the initial velocities, m/s.
+/// Largest component of the initial velocities of the heap whose grains are numbered in two ways, m/s.
 const SPEED: f64 = 0.05;
 
-/// Largest difference between the paths of a grain in a run far from the origin and in the same run at the origin, in
-/// d.
+/// Returns the largest difference between the displacements of a grain in a run far from the origin and in the same run
+/// at the origin, in mean diameters.
 pub(super) fn far(trial: &Trial) -> Result<f64> {
     let [here, there] =
         [0.0, trial.level].map(|distance| scenes::heap_far_away(FAR_ROWS, distance));
@@ -161,13 +167,13 @@ pub(super) fn far(trial: &Trial) -> Result<f64> {
     Ok(differences.fold(0.0, f64::max) / diameter)
 }
 
-/// Largest difference of the velocities after a step between two numberings of the same grains, relative to the largest
-/// velocity.
+/// Returns the largest difference of the velocities after a step between two numberings of the same grains, relative to
+/// the largest velocity.
 pub(super) fn shuffle(trial: &Trial) -> Result<f64> {
     let mut random = Pcg64::seed_from_u64(7);
     let mut scene = scenes::heap(SHUFFLED_ROWS);
     scene.solver.tolerance = trial.level;
-    // With friction, even the velocities of a step are not unique.
+    // The scene has no friction, because with friction even the velocities of a step are not unique.
     scene.parameters.friction = 0.0;
     for grain in &mut scene.grains {
         let mut component = || SPEED * random.random_range(-1.0..1.0);
@@ -191,17 +197,19 @@ pub(super) fn shuffle(trial: &Trial) -> Result<f64> {
 /// Number of steps before and after a sudden change.
 const BEFORE: u64 = 50;
 const AFTER: u64 = 30;
-/// Time step before the change, s.
+/// Time step before the sudden change of the time step, s.
 const SMALL_STEP_SECS: f64 = 2e-4;
 const ROWS: usize = 4;
-/// Half the side of the box around the heap, in d.
+/// Half the side of the box around the heap, in mean diameters d.
 const BOX: f64 = 12.0;
 /// Simulated time between two changes of the sliders, s.
 const CHANGE_SECS: f64 = 0.05;
-/// Sweeps per step while the sliders move, few enough for a window to keep up.
+/// Number of sweeps per step while the sliders move. It is so small that the graphical window could show the run in
+/// real time.
 const LIVE_SWEEPS: u32 = 200;
 
-/// Largest kinetic energy after a heavy disc is removed from a column, relative to m g d of one of its discs.
+/// Returns the largest kinetic energy after a heavy disc is removed from a column, relative to the weight of one of the
+/// column's discs times the mean diameter (m g d).
 pub(super) fn lift_off(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(scenes::lift_off(trial.level))?;
     simulation.take_steps(BEFORE)?;
@@ -215,8 +223,8 @@ pub(super) fn lift_off(trial: &Trial) -> Result<f64> {
     Ok(energy)
 }
 
-/// Error for a heap at rest whose time step grows: the longest displacement of any grain, in d, or the remaining speed,
-/// in √(g d), whichever is larger.
+/// Returns the error of a heap at rest whose time step grows: the larger of the longest displacement of any grain, in
+/// mean diameters d, and the remaining speed, in √(g d) with gravity g.
 pub(super) fn time_step_switch(trial: &Trial) -> Result<f64> {
     let mut scene = scenes::heap(ROWS);
     scene.parameters.time_step_secs = SMALL_STEP_SECS;
@@ -228,8 +236,8 @@ pub(super) fn time_step_switch(trial: &Trial) -> Result<f64> {
     Ok(unrest(&simulation, &scene))
 }
 
-/// Number of grains that have left their box after some seconds in which every slider moves at random and a hand pulls
-/// at grains.
+/// Returns the number of grains that have left their box after some seconds, in which every slider moves at random and
+/// a grain is pulled towards a random point.
 pub(super) fn sliders(trial: &Trial) -> Result<f64> {
     let mut scene = scenes::heap(ROWS);
     scene.solver.max_sweeps = LIVE_SWEEPS;

@@ -1,5 +1,6 @@
-//! Tests of scenes that must stay at rest, or yield at the right moment: columns, piles, cohesive rows, and too little
-//! space. Each measure is an error that is 0 for the right answer.
+//! Measures the errors of stability tests with scenes that must stay at rest, or must yield at the right load: columns,
+//! piles, cohesive rows, and discs in too little space. Each function runs a trial and returns an error that is 0 for
+//! the right answer.
 
 use super::{Trial, advance, force_on_ground, jitter, longest_way, threshold, unrest};
 use crate::error::Result;
@@ -8,15 +9,17 @@ use crate::scene::{Scene, cradle};
 use crate::sim::Simulation;
 use crate::world::Parameters;
 
-// Columns: the load on the floor, and the sinking of the top. An unconverged step leaves a speed, so a column sinks as
-// if its discs were soft: the apparent elasticity of an unconverged solver.
+// Columns: the load on the floor, and the sinking of the top. A step that is not solved leaves a speed, so that a
+// column sinks as if its discs were soft: the apparent elasticity of a solver that has not converged.
 
 const COLUMN_SECS: f64 = 0.1;
-/// Sweeps per step, unless they are varied: few, as in a window that must keep up.
+/// Number of sweeps per step in tests that do not vary it. It is small, as in the graphical window, which must show a
+/// run in real time.
 const FEW_SWEEPS: u32 = 100;
 const SAGGING_DISCS: usize = 20;
 
-/// Largest error of the force on the floor in the last quarter of the run, relative to the weight.
+/// Returns the largest error of the force of a column on the floor in the last quarter of the run, relative to the
+/// weight.
 pub(super) fn column(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(with_sweeps(FEW_SWEEPS, scenes::column(trial.count())))?;
     let world = simulation.world();
@@ -30,7 +33,7 @@ pub(super) fn column(trial: &Trial) -> Result<f64> {
     Ok(worst)
 }
 
-/// A column whose steps have `sweeps` sweeps (or substeps) each, without a warm start.
+/// Returns a column of `count` discs whose steps have `sweeps` sweeps (or substeps) each, without a warm start.
 pub(super) fn sagging(count: usize, sweeps: u32) -> Scene {
     let mut scene = scenes::column(count);
     scene.solver.max_sweeps = sweeps;
@@ -40,17 +43,17 @@ pub(super) fn sagging(count: usize, sweeps: u32) -> Scene {
     scene
 }
 
-/// Sinking of the top of a column, in d.
+/// Returns the distance by which the top of a column sinks, in mean diameters d.
 pub(super) fn sag(trial: &Trial) -> Result<f64> {
     sunk_in(trial, &sagging(SAGGING_DISCS, trial.count() as u32))
 }
 
-/// Sinking of a heavy disc on a light one, in d.
+/// Returns the distance by which a heavy disc on a light disc sinks, in mean diameters d.
 pub(super) fn mass_ratio(trial: &Trial) -> Result<f64> {
     sunk_in(trial, &with_sweeps(FEW_SWEEPS, scenes::mass_ratio(trial.level)))
 }
 
-/// Sinking of a large disc on two small ones, in d.
+/// Returns the distance by which a large disc on two small discs sinks, in mean diameters d.
 pub(super) fn size_ratio(trial: &Trial) -> Result<f64> {
     sunk_in(trial, &with_sweeps(FEW_SWEEPS, scenes::logs(trial.level)))
 }
@@ -66,30 +69,31 @@ fn sunk_in(trial: &Trial, scene: &Scene) -> Result<f64> {
     Ok(sunk(&simulation, scene))
 }
 
-/// Displacement of the last grain since `scene`, in d.
+/// Returns the displacement of the last grain since the initial state in `scene`, in mean diameters d.
 pub(super) fn sunk(simulation: &Simulation, scene: &Scene) -> f64 {
     let last = scene.grains.len() - 1;
     let [before, now] = [scene.grains[last].position, simulation.world().grains.positions[last]];
     before.distance(now) / scene.mean_diameter
 }
 
-// Piles that must stand, and piles that must yield.
+// Piles that must stay at rest, and piles that must yield.
 
 const ROWS: usize = 6;
 const STANDING_SECS: f64 = 0.2;
 const SMALL_ROWS: usize = 4;
-/// The log pile of equal discs slides below μ = tan 15° = 2 − √3.
+/// Friction coefficient below which a pile of three equal logs slides apart: tan 15° = 2 − √3.
 const FRICTION_OF_LOGS: f64 = 0.267_949_192_431_122_7;
-/// Displacement at the end of the test that counts as sliding, in d.
+/// Displacement at the end of the test above which a pile counts as sliding, in mean diameters d.
 const SLID: f64 = 0.02;
 const SLIDING_SECS: f64 = 0.2;
-/// Friction coefficients and angles are searched from the right value divided by this factor to the right value times
-/// this factor, with bisections down to 1 % and to 0.5 %.
+/// Ranges in which friction coefficients and angles are searched, and number of bisections. A range goes from the right
+/// value divided by its factor to the right value times this factor. The bisections end at a precision of 1 % for
+/// friction and 0.5 % for angles.
 const FRICTION_RANGE: f64 = 4.0;
 const ANGLE_RANGE: f64 = 2.0;
 const PILE_HALVINGS: u32 = 8;
 
-/// The longest displacement of any grain within some time, in d.
+/// Returns the longest displacement of any grain within a simulated time (s), in mean diameters d.
 fn way_in(trial: &Trial, secs: f64, scene: Scene) -> Result<f64> {
     let mut simulation = trial.start(scene.clone())?;
     advance(&mut simulation, secs)?;
@@ -101,17 +105,17 @@ fn with_time_step(trial: &Trial, mut scene: Scene) -> Scene {
     scene
 }
 
-/// The longest displacement of any grain of a heap, in d.
+/// Returns the longest displacement of any grain of a heap that must stay at rest, in mean diameters d.
 pub(super) fn repose(trial: &Trial) -> Result<f64> {
     way_in(trial, STANDING_SECS, with_time_step(trial, scenes::heap(ROWS)))
 }
 
-/// Relative error of the friction coefficient at which three piled logs slide apart.
+/// Returns the relative error of the friction coefficient at which three piled logs slide apart.
 pub(super) fn friction_limit(trial: &Trial) -> Result<f64> {
     least_friction(trial, &scenes::logs(1.0), FRICTION_OF_LOGS)
 }
 
-/// Relative error of the friction coefficient at which the keystone of an arch slips through.
+/// Returns the relative error of the friction coefficient at which the keystone of an arch slips through.
 pub(super) fn arch(trial: &Trial) -> Result<f64> {
     least_friction(trial, &scenes::arch(), scenes::FRICTION_OF_ARCH)
 }
@@ -126,7 +130,7 @@ fn least_friction(trial: &Trial, scene: &Scene, right: f64) -> Result<f64> {
     Ok((least / right - 1.0).abs())
 }
 
-/// Relative error of the steepest slope on which a heap stands.
+/// Returns the relative error of the steepest slope on which a heap stays at rest.
 pub(super) fn repose_angle(trial: &Trial) -> Result<f64> {
     let right = scenes::STEEPEST_DEGREES;
     let steepest =
@@ -141,8 +145,8 @@ fn slides(trial: &Trial, scene: Scene) -> Result<bool> {
     Ok(way_in(trial, SLIDING_SECS, scene)? >= SLID)
 }
 
-/// After very many steps at rest: the longest displacement of any grain, in d, or the remaining speed, in √(g d),
-/// whichever is larger.
+/// Returns the larger of two numbers after very many steps of a heap at rest: the longest displacement of any grain, in
+/// mean diameters d, and the remaining speed, in √(g d) with gravity g.
 pub(super) fn rest(trial: &Trial) -> Result<f64> {
     let scene = scenes::heap(SMALL_ROWS);
     let mut simulation = trial.start(scene.clone())?;
@@ -150,16 +154,19 @@ pub(super) fn rest(trial: &Trial) -> Result<f64> {
     Ok(unrest(&simulation, &scene))
 }
 
-// Very many contacts at rest, with few sweeps.
+// Very many contacts at rest, with few sweeps per step.
 
-/// Sweeps per step, or iterations of a method without sweeps, that a window has time for.
+/// Number of sweeps per step, or of iterations of a method without sweeps. The graphical window has time for about this
+/// many.
 const WINDOW_SWEEPS: u32 = 40;
-/// Number of steps from a start without impulses. In free fall, a grain would move 0.2 d.
+/// Number of steps in the tests with very many contacts. The first step begins without impulses. In free fall, a grain
+/// would move by 0.2 diameters in these steps.
 const STEPS: u64 = 20;
-/// Number of discs in every other row of the lattice, and of rows: 3,900 contacts.
+/// Number of discs in every other row of the lattice, and number of rows. The lattice has 3,900 contacts.
 const LATTICE: [usize; 2] = [37, 36];
 
-/// Remaining motion in a lattice, or the common residual of the last step, whichever is larger.
+/// Returns the larger of the remaining motion in a lattice of discs and the residual of its last step. The motion is
+/// the larger of the longest displacement, in mean diameters d, and the remaining speed, in √(g d) with gravity g.
 pub(super) fn hyperstatic(trial: &Trial) -> Result<f64> {
     let [columns, rows] = LATTICE;
     let scene = scenes::lattice(columns, rows, trial.level);
@@ -168,7 +175,8 @@ pub(super) fn hyperstatic(trial: &Trial) -> Result<f64> {
     Ok(unrest(&simulation, &scene).max(simulation.observables().residual))
 }
 
-/// Remaining motion in a heap, whose number of grains is the level.
+/// Returns the remaining motion in a heap with a given number of grains: the larger of the longest displacement, in
+/// mean diameters d, and the remaining speed, in √(g d) with gravity g.
 pub(super) fn size(trial: &Trial) -> Result<f64> {
     let scene = scenes::heap_of(trial.count());
     let mut simulation = trial.start_within(WINDOW_SWEEPS, scene.clone())?;
@@ -176,26 +184,26 @@ pub(super) fn size(trial: &Trial) -> Result<f64> {
     Ok(unrest(&simulation, &scene))
 }
 
-// Cohesion: bonds must hold, and must break at the right load. The static pull-off force does not depend on the time
+// Cohesion: bonds must hold, and must break at the right load. The static pull-off force must not depend on the time
 // step.
 
 const CHAIN: usize = 8;
-/// Duration of the test of a chain, s. If it is overloaded by a hundredth, it opens in a third of that time.
+/// Duration of the test of a chain, s. A chain that is overloaded by 1 % opens in a third of this duration.
 const CHAIN_SECS: f64 = 0.04;
-/// Initial time of hanging at rest, s, at a Bond number that holds, in units of the breaking Bond number. A much larger
-/// value would make springs recoil.
+/// Time in which the chain hangs at rest before the test, s. Its Bond number then is [`SURE`] times the breaking Bond
+/// number, so that the chain holds. With a much larger Bond number, springs would recoil in the test.
 const HANG_SECS: f64 = 0.04;
 const SURE: f64 = 1.5;
-/// Bisections of the breaking Bond number, down to a factor of 4^(1/2^8), 0.5 %.
+/// Number of bisections of the breaking Bond number, which determine it to a factor of 4^(1/2^8), that is, 0.5 %.
 const CHAIN_HALVINGS: u32 = 9;
-/// Duration of the tests of bridge and cantilever, s. If torn off, they fall 30 d in it.
+/// Duration of the tests of bridge and cantilever, s. If they are torn off, they fall by 30 diameters in this duration.
 const WATCH_SECS: f64 = 0.25;
 pub(super) const CANTILEVER: i32 = 4;
 const BRIDGE: i32 = 10;
-/// Time step of the shock, s, at which the paper's bond opens, for lack of convergence.
+/// Time step of the shock, s. At this time step the bond opens in the paper, because the solver has not converged.
 const SHOCK_STEP_SECS: f64 = 5e-4;
 
-/// Relative error of the Bond number at which a chain breaks.
+/// Returns the relative error of the Bond number at which a chain breaks.
 pub(super) fn chain(trial: &Trial) -> Result<f64> {
     let right = scenes::breaking_bond(CHAIN);
     let breaking = threshold([0.25 * right, 4.0 * right], CHAIN_HALVINGS, |bond| {
@@ -209,17 +217,18 @@ pub(super) fn chain(trial: &Trial) -> Result<f64> {
     Ok((breaking / right - 1.0).abs())
 }
 
-/// The longest displacement of any grain of a cantilever, in d.
+/// Returns the longest displacement of any grain of a cantilever, in mean diameters d.
 pub(super) fn cantilever(trial: &Trial) -> Result<f64> {
     way_in(trial, WATCH_SECS, with_time_step(trial, scenes::cantilever(CANTILEVER)))
 }
 
-/// The longest displacement of any grain of a bridge, in d.
+/// Returns the longest displacement of any grain of a bridge, in mean diameters d.
 pub(super) fn bridge(trial: &Trial) -> Result<f64> {
     way_in(trial, WATCH_SECS, with_time_step(trial, scenes::bridge(BRIDGE)))
 }
 
-/// Gap between i and j of the paper's cradle after the shock, in d. If solved well, it stays closed.
+/// Returns the gap between the discs i and j of the paper's cradle after the shock, in diameters. If the steps are
+/// solved well, the gap stays closed.
 pub(super) fn shock(trial: &Trial) -> Result<f64> {
     let mut scene = cradle();
     scene.parameters.time_step_secs = SHOCK_STEP_SECS;
@@ -230,14 +239,14 @@ pub(super) fn shock(trial: &Trial) -> Result<f64> {
     Ok(((places[1].x - places[0].x) / scene.mean_diameter - 1.0).abs())
 }
 
-// Too little space.
+// Discs in too little space.
 
 const RECOVERY_SECS: f64 = 0.3;
 const SETTLING_SECS: f64 = 0.2;
 const WATCHED_STEPS: u64 = 100;
 
-/// Two overlapping discs: the fraction of the overlap that remains after 0.3 s, or the largest kinetic energy until
-/// then, relative to m g d, whichever is larger.
+/// Returns the larger of two numbers for two overlapping discs: the fraction of the overlap that remains after 0.3 s,
+/// and the largest kinetic energy until then, relative to m g d (weight of a disc times mean diameter).
 pub(super) fn overlap(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(scenes::overlapped(trial.level))?;
     let scale = super::energy_scale(&simulation);
@@ -249,8 +258,9 @@ pub(super) fn overlap(trial: &Trial) -> Result<f64> {
     Ok(left.max(energy))
 }
 
-/// Fraction of the steps that were not solved to their tolerance, or the mean remaining speed over the last hundred
-/// steps, in √(g d), whichever is larger.
+/// Returns the larger of two numbers for discs in a box that is too small: the fraction of the steps that were not
+/// solved to their tolerance, and the mean remaining speed over the last hundred steps, in √(g d) with gravity g and
+/// mean diameter d.
 pub(super) fn squeeze(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(scenes::squeeze(trial.level))?;
     let (mut unsolved, mut speeds) = (0u64, 0.0);
@@ -265,8 +275,9 @@ pub(super) fn squeeze(trial: &Trial) -> Result<f64> {
     Ok(share.max(speeds / WATCHED_STEPS as f64))
 }
 
-/// After walls have moved in and the grains have had time to come to rest: the largest distance of a grain from its
-/// position, in d, or the remaining speed, in √(g d), whichever is larger.
+/// Returns the larger of two numbers after walls have moved in and the grains have had time to come to rest: the
+/// largest distance of a grain from its right position, in mean diameters d, and the remaining speed, in √(g d) with
+/// gravity g.
 pub(super) fn moving_walls(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(with_time_step(trial, scenes::press()))?;
     advance(&mut simulation, scenes::pressing_secs() + SETTLING_SECS)?;

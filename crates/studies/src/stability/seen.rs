@@ -1,5 +1,6 @@
-//! Errors of challenges at one moment of a run, for a window. Each error is 0 for the right answer, and the limits of
-//! its challenge apply. Before the first step, and before the scene has done its work, there is no error.
+//! Measures the errors of stability tests at a single moment of a run, for the program's graphical window. Each error
+//! is 0 for the right answer, and has the same limits as its test. Before the first step, and before the scene has
+//! reached the state to be judged, there is no error.
 
 use glam::DVec2;
 
@@ -7,12 +8,13 @@ use super::{jitter_of, longest_way_to};
 use crate::scene::stability as scenes;
 use crate::sim::{Simulation, Snapshot};
 
-/// An error of a moment.
+/// A measure of error of a stability test that can be evaluated at a single moment of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct SeenError {
-    /// Its name and unit.
+    /// Name and unit of the error.
     pub name: &'static str,
-    /// Its value, given the start of the run; nothing if the moment cannot be judged.
+    /// Function that returns the error from the start of the run and the present moment; `None` if the moment cannot be
+    /// judged.
     pub(super) of: fn(&Simulation, &Snapshot) -> Option<f64>,
 }
 
@@ -20,10 +22,10 @@ const fn error(name: &'static str, of: fn(&Simulation, &Snapshot) -> Option<f64>
     SeenError { name, of }
 }
 
-/// Scenes that must stay as they are.
+/// Error of scenes that must stay as they are: the largest displacement of a grain.
 pub(super) const MOVED: SeenError =
     error("largest displacement in diameters", |start, now| Some(moved(start, now)));
-/// Scenes that must come to rest.
+/// Error of scenes that must come to rest: the remaining speed.
 pub(super) const RESTLESS: SeenError =
     error("remaining speed in √(g d)", |start, now| after(0.2, now, || restless(start, now)));
 pub(super) const KINETIC: SeenError = error("kinetic energy in m g d", |start, now| {
@@ -43,7 +45,7 @@ pub(super) const PRESSED: SeenError =
 pub(super) const LAST_BALL: SeenError =
     error("error of the speed of the last ball, relative", |start, now| {
         let right = start.world().grains.velocities[0].x;
-        // The first ball has one diameter to fly, and the row takes a few steps.
+        // The first ball flies one diameter before it hits the row, and the impact takes a few steps to pass the row.
         let struck_secs = 2.0 * start.world().mean_diameter / right;
         after(struck_secs, now, || {
             (now.grains[now.grains.len() - 1].velocity.x / right - 1.0).abs()
@@ -55,7 +57,8 @@ pub(super) const BOUNCED: SeenError = error("error of the energy, relative", |st
     let drop = world.grains.positions[0].y - radius;
     let fall_secs = (2.0 * drop / gravity).sqrt();
     let slack_secs = 2.0 * now.observables.time_step_secs;
-    // Bounce n is at the time T (1 + 2 ρ + … + 2 ρⁿ⁻¹), T of the fall, and leaves ρ²ⁿ of the energy.
+    // With the restitution ρ and the duration T of the fall, bounce n happens at the time T (1 + 2ρ + … + 2ρⁿ⁻¹) and
+    // leaves the fraction ρ²ⁿ of the energy.
     let (mut left, mut next_secs, mut part) = (1.0, fall_secs, 1.0);
     while next_secs + slack_secs < now.observables.time_secs && part > 1e-3 {
         part *= parameters.restitution;
@@ -101,7 +104,7 @@ fn restless(start: &Simulation, now: &Snapshot) -> f64 {
     jitter_of(start.world(), now.observables.kinetic_energy)
 }
 
-/// An error from a simulated time (s) on.
+/// Returns the error of a moment if the simulated time `secs` (s) is reached, otherwise `None`.
 fn after(secs: f64, now: &Snapshot, error: impl FnOnce() -> f64) -> Option<f64> {
     (now.observables.time_secs >= secs).then(error)
 }

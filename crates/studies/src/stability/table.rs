@@ -1,4 +1,5 @@
-//! Verdicts on every solver variant for every challenge and level, as data, as CSV, in words and as a picture.
+//! Computes the verdicts on every variant of the solver, for every stability test and every value of its driving
+//! parameter. Presents them as data, as CSV, in words and as a picture.
 
 use std::fmt;
 
@@ -10,7 +11,7 @@ use crate::chart::{self, Axis, Chart, INK, Layer, Rgb, Sheet};
 use crate::error::{Error, Result};
 use crate::harness::Change;
 
-/// Verdict on a method. Later variants are worse.
+/// Verdict on a method in a stability test. The verdicts are ordered from the best to the worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StabilityVerdict {
@@ -24,7 +25,7 @@ pub enum StabilityVerdict {
 
 impl StabilityVerdict {
     fn of(error: f64, [holds, fails]: [f64; 2]) -> Self {
-        // Written so that NaN fails.
+        // The comparisons are false for an error of NaN, which therefore fails.
         if error <= holds {
             Self::Holds
         } else if error <= fails {
@@ -34,7 +35,7 @@ impl StabilityVerdict {
         }
     }
 
-    /// The verdict in a word.
+    /// Returns the verdict as a single word.
     pub fn name(self) -> &'static str {
         match self {
             Self::Holds => "holds",
@@ -44,30 +45,30 @@ impl StabilityVerdict {
     }
 }
 
-/// One variant on one challenge at one level: a row of the table.
+/// A row of the table of stability tests: the result of one variant in one test at one value of the driving parameter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StabilityCell {
-    /// Name of the challenge.
+    /// Name of the stability test.
     pub scene: String,
-    /// Name of the variant.
+    /// Name of the variant of the solver or stepper.
     pub method: String,
-    /// Value of the challenge's driver.
+    /// Value of the driving parameter of the test.
     pub level: f64,
-    /// The verdict.
+    /// Verdict on the variant.
     pub verdict: StabilityVerdict,
-    /// The error, to two digits, because further digits differ between builds.
+    /// Error with two digits, because further digits differ between builds of the program.
     pub error: String,
 }
 
-/// All results.
+/// The results of all stability tests.
 #[derive(Clone, Debug, Default)]
 pub struct StabilityTable {
-    /// Sorted by challenge, variant and level.
+    /// Results, sorted by test, variant and value of the driving parameter.
     pub cells: Vec<StabilityCell>,
 }
 
 impl StabilityTable {
-    /// Runs every variant on the challenges, on all cores.
+    /// Runs every variant in the given stability tests, on all cores.
     ///
     /// # Errors
     /// If a scene is invalid.
@@ -87,7 +88,7 @@ impl StabilityTable {
         Ok(Self { cells })
     }
 
-    /// Number of cells that [`StabilityTable::run`] fills.
+    /// Returns the number of cells that [`StabilityTable::run`] computes.
     pub fn count(challenges: &[&'static Challenge], quick: bool) -> usize {
         Self::plan(challenges, quick).len()
     }
@@ -105,7 +106,7 @@ impl StabilityTable {
         plan
     }
 
-    /// The table as CSV.
+    /// Returns the table as CSV.
     ///
     /// # Errors
     /// If a row cannot be written as CSV.
@@ -121,14 +122,15 @@ impl StabilityTable {
     /// Reads a table from its CSV.
     ///
     /// # Errors
-    /// Names the row that cannot be read.
+    /// If a row cannot be read; the error names the row.
     pub fn from_csv(text: &str) -> Result<Self> {
         let rows = csv::Reader::from_reader(text.as_bytes()).into_deserialize();
         let cells = rows.collect::<std::result::Result<_, _>>();
         Ok(Self { cells: cells.map_err(|error| Error::file("table.csv", error))? })
     }
 
-    /// Results of a variant on a challenge, level by level.
+    /// Returns the results of a variant in a stability test, one per value of the driving parameter, from harmless to
+    /// harmful.
     fn levels(&self, challenge: &Challenge, variant: &Change) -> Vec<&StabilityCell> {
         let of_both =
             |cell: &&StabilityCell| cell.scene == challenge.name && cell.method == variant.name;
@@ -142,7 +144,7 @@ impl StabilityTable {
     }
 }
 
-/// The worst verdict over all levels, and the first level with it.
+/// Returns the worst verdict over all values of the driving parameter, and the first value with this verdict.
 fn summary(levels: &[&StabilityCell]) -> (StabilityVerdict, Option<f64>) {
     let worst = levels.iter().map(|cell| cell.verdict).max().unwrap_or(StabilityVerdict::Holds);
     let first =
@@ -165,7 +167,8 @@ const SCENE_WIDTH: usize = 17;
 const CELL_WIDTH: usize = 16;
 
 impl fmt::Display for StabilityTable {
-    /// One line per challenge and one column per variant: the worst verdict, and the first level with it.
+    /// Writes one line per stability test and one column per variant: the worst verdict, and the first value of the
+    /// driving parameter with this verdict.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(out, "{:SCENE_WIDTH$}", "")?;
         for variant in VARIANTS.iter() {
@@ -185,7 +188,7 @@ impl fmt::Display for StabilityTable {
     }
 }
 
-/// A number in its shortest form.
+/// Formats a number in its shortest form.
 fn number(value: f64) -> String {
     if value != 0.0 && !(1e-2..1e4).contains(&value.abs()) {
         format!("{value:e}").replace('-', "−")
@@ -194,24 +197,24 @@ fn number(value: f64) -> String {
     }
 }
 
-/// Number of columns side by side. With more columns, their text would not fit into the page width.
+/// Number of columns side by side. More columns would be too narrow for their text.
 const COLUMNS: usize = 10;
-/// Width of a page, height of a row, and space for text below, pixels.
+/// Width of the picture, height of a row, and space for the text below the table, pixels.
 const WIDTH: u32 = 1200;
 const ROW: u32 = 32;
 const BELOW: u32 = 150;
 
-/// Colours of holding, degrading and failing, which also differ in lightness.
+/// Colours of the verdicts "holds", "degrades" and "fails". They also differ in lightness.
 const COLOURS: [Rgb; 3] = [(206, 234, 214), (253, 226, 147), (240, 150, 130)];
 
 pub(super) fn colour(verdict: f64) -> Rgb {
     COLOURS[(verdict as usize).min(2)]
 }
 
-/// The table as a picture: blocks of columns, each below its headers.
+/// Draws the table as a picture: blocks of columns, each block below its headers.
 pub fn picture(table: &StabilityTable) -> Sheet {
     let challenges = table.challenges();
-    // Names with two words take two lines.
+    // Each block has two lines of headers, because names with two words take two lines.
     let rows_of_block = challenges.len() + 2;
     let rows = VARIANTS.len().div_ceil(COLUMNS) * rows_of_block;
     let mut x = Axis::linear("", 0.0, COLUMNS as f64);

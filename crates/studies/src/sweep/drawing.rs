@@ -1,4 +1,4 @@
-//! The picture of a sweep: mean slump of each combination of settings against a varied setting.
+//! Draws the picture of a sweep: the mean slump of each combination of settings against a varied setting.
 
 use serde_json::Value;
 
@@ -7,11 +7,11 @@ use super::run_group::RunGroup;
 use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Point, Sheet};
 use crate::harness::{Effort, Machine, distinct};
 
-/// Ratio of the largest to the smallest number from which on an axis is logarithmic.
+/// Ratio of the largest to the smallest value above which an axis is logarithmic.
 const LONG: f64 = 8.0;
-/// Largest number of values on an axis that are labelled individually.
+/// Largest number of values on an axis at which each value has its own label.
 const MOST_TICKS: usize = 6;
-/// Margin beyond the outermost numbers, as a fraction of the width of a chart.
+/// Margin beyond the outermost values, as a fraction of the width of the chart.
 const MARGIN: f64 = 0.06;
 
 fn is_level(chart: &SweepChart, group: &RunGroup) -> bool {
@@ -22,8 +22,8 @@ fn is_level(chart: &SweepChart, group: &RunGroup) -> bool {
     !chart.level.is_empty() && chart.level.iter().all(is_same)
 }
 
-/// Draws the groups of a study. A setting that is constant in a quick pass does not distinguish panels and curves
-/// there.
+/// Draws the groups of runs of a study. In a quick pass, a setting can be constant that varies in the full pass. Such a
+/// setting does not distinguish panels and curves in the picture.
 pub(super) fn sheet(
     choice: &SweepChart,
     groups: &[RunGroup],
@@ -109,13 +109,13 @@ fn axis(name: &str, numbers: impl Iterator<Item = f64> + Clone) -> Axis {
         let margin = MARGIN * (high - low);
         Axis::linear(name, low - margin, high + margin)
     } else {
-        // A single number, or none.
+        // There is only one value, or no value.
         let middle = if low.is_finite() { low } else { 0.0 };
         Axis::linear(name, middle - 1.0, middle + 1.0)
     };
     let tick = |number| (number, words(&Value::from(number)));
     let ticks: Vec<(f64, String)> = distinct(numbers).into_iter().map(tick).collect();
-    // For more values, round numbers are sufficient.
+    // With more values, labels at round numbers are sufficient.
     if ticks.len() > MOST_TICKS { axis } else { Axis { ticks, ..axis } }
 }
 

@@ -1,30 +1,30 @@
-//! The axes, curves and panels that a study file requests.
+//! Defines the chart that a study file requests: its axis, curves and panels.
 
 use serde::Deserialize;
 
 use crate::error::{Error, Result};
 
-/// The chart of a sweep, by the names of varied settings.
+/// The chart of a sweep, described by the names of varied settings.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SweepChart {
-    /// The setting on the x axis.
+    /// Name of the setting on the x axis.
     pub x: String,
-    /// The setting with one curve for each of its values.
+    /// Name of the setting that has one curve for each of its values.
     pub curves: String,
-    /// The settings with one panel for each combination of their values.
+    /// Names of the settings that have one panel for each combination of their values.
     #[serde(default)]
     pub panels: Vec<String>,
-    /// Runs with these values of settings are drawn as horizontal lines, for comparison.
+    /// Values of settings. Runs with these values are drawn as horizontal lines, for comparison.
     #[serde(default)]
     pub level: toml::Table,
 }
 
 impl SweepChart {
-    /// Checks that all settings of the chart vary.
+    /// Checks that all settings of the chart are varied by the study.
     ///
     /// # Errors
-    /// If a setting of the chart does not vary.
+    /// If the study does not vary a setting of the chart.
     pub(super) fn check(&self, varied: &[Vec<String>]) -> Result<()> {
         let names = || varied.iter().flatten();
         let one = [("chart.x", &self.x), ("chart.curves", &self.curves)].into_iter();

@@ -1,5 +1,5 @@
-//! `report.json` of a sweep: means over initial states, and the effect of each choice with the same initial states,
-//! together with the program, machine, date and command.
+//! Writes `report.json` of a sweep: means over initial states, and the effect of each choice of settings for the same
+//! initial states, together with the program, the machine, the date and the command.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
@@ -31,7 +31,7 @@ struct SweepReport<'a> {
     groups: Vec<RunGroup>,
 }
 
-/// Writes the report of a completed study, and its chart. `version` is the program's version.
+/// Writes the report of a completed study, and its chart. `version` is the version of the program.
 ///
 /// # Errors
 /// If a file cannot be written.
@@ -135,7 +135,8 @@ fn words(values: &[Value]) -> String {
 mod tests {
     use super::*;
 
-    /// Groups of a study of the pile, with synthetic results.
+    /// Returns the groups of runs of a study of the pile, with made-up results. The study varies the settings in
+    /// `vary`. `slump` gives the slump of each run. The run with the number `spoil` has lost a grain.
     fn reported(vary: &str, slump: impl Fn(usize) -> f64, spoil: Option<usize>) -> Vec<RunGroup> {
         let text = format!("name = \"made\"\n[base]\nscene = \"pile\"\n[vary]\n{vary}");
         let study = Study::parse(&text, "made.toml".as_ref(), false).expect("a study");
@@ -153,7 +154,8 @@ mod tests {
 
     #[test]
     fn means_are_over_seeds_and_differences_are_taken_seed_by_seed_from_the_first_value() {
-        // Seeds scatter by 0.1, and Δt adds 0.02 to each within 0.001, which is only visible in paired differences.
+        // In the made-up results, the slump differs by 0.1 from seed to seed. The larger Δt adds 0.02 to 0.022, which
+        // is only visible in paired differences.
         let vary = "bond = [0, 20]\ndt = [1e-3, 5e-3]\nseed = [4, 5, 6]\n";
         let slump = |run: usize| {
             let (seed, dt, bond) = (run % 3, run / 3 % 2, run / 6);
@@ -162,7 +164,7 @@ mod tests {
         let groups = reported(vary, slump, None);
         assert_eq!(groups.len(), 4);
         let [mean, half] = groups[0].slump;
-        // Student's t(0.975; 2) = 4.302653, standard error 0.1/√3.
+        // From tables of Student's distribution: t(0.975; 2) = 4.302653. The standard error is 0.1/√3.
         let expected = 4.302_653 * 0.1 / 3f64.sqrt();
         assert!((mean - 0.1).abs() < 1e-12 && (half - expected).abs() < 1e-6);
         assert!(groups[0].less_first.is_empty());

@@ -1,5 +1,5 @@
-//! The sweep engine. It runs a study on all cores, stores each result at once, resumes a study that was stopped, and
-//! joins parts that ran elsewhere.
+//! Runs sweeps. A sweep computes the runs of a study on all cores, stores each result at once, resumes a study that was
+//! stopped, and joins parts that were computed elsewhere.
 //!
 //! A folder of results contains `study.json` (the study's identity), journals (results as they are computed), `states/`
 //! (initial states), `series/` (rows of each run over time), `data/` (recordings of runs) and, once all runs are
@@ -41,23 +41,24 @@ use crate::output::{
 use crate::scene::Scene;
 use crate::states::States;
 
-/// File with the identity of the study in a folder.
+/// Name of the file that identifies the study in a folder of results.
 const STUDY_FILE: &str = "study.json";
 const DATA: &str = "data";
 const STATES: &str = "states";
 const TABLE: &str = "runs.csv";
-/// Interval and number of attempts to wait for another part that only reads the folder.
+/// Time between two attempts to claim a folder that another process uses, and number of attempts. A process that only
+/// reads the folder is finished before the last attempt.
 const MOMENT: Duration = Duration::from_millis(100);
 const MOMENTS: u32 = 20;
 
 /// Options of a sweep.
 #[derive(Clone, Debug, Default)]
 pub struct SweepOptions {
-    /// The part of the study to run; `None` for the whole study.
+    /// Part of the study to run; `None` for the whole study.
     pub shard: Option<Shard>,
-    /// Discards results of another study, and results that cannot be read.
+    /// True to discard results of another study, and results that cannot be read.
     pub redo: bool,
-    /// The folder of initial states; `None` for one in the folder of results.
+    /// Folder of the initial states; `None` for a folder within the folder of results.
     pub states: Option<PathBuf>,
 }
 
@@ -69,10 +70,11 @@ struct Label {
     version: String,
 }
 
-/// Runs a study, or a part of it, in `folder`. If the study is then complete, writes `runs.csv` and returns its table.
+/// Runs a study, or a part of it, in `folder`. If all runs of the study are then complete, writes `runs.csv` and
+/// returns its table.
 ///
 /// # Errors
-/// If the folder contains another study or cannot be written, or an initial state does not settle.
+/// If the folder contains another study or cannot be written, or if the grains of an initial state do not come to rest.
 pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Option<RunsTable>> {
     check_writable("out", folder)?;
     let shared = SharedFolder::of(folder)?;
@@ -100,7 +102,7 @@ pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Opt
     let part = study.runs.iter().enumerate().filter(|(index, _)| mine(*index));
     let cases: Vec<Case<&PlannedRun>> =
         part.map(|(_, run)| Case { key: run.key.clone(), cost: run.cost, setup: run }).collect();
-    // Files of runs that do not belong to this part are ignored.
+    // Finished runs that do not belong to this part are ignored.
     let keys: HashSet<&str> = cases.iter().map(|case| case.key.as_str()).collect();
     finished.retain(|key, case| {
         keys.contains(key.as_str())
@@ -121,7 +123,7 @@ pub fn sweep(study: &Study, folder: &Path, options: &SweepOptions) -> Result<Opt
         return Ok(None);
     }
     let table = join(study, &folders, folder)?;
-    // All runs are complete, so no other process is writing one.
+    // All runs are complete, so no other process is still writing files here.
     let drafts = [folder.to_owned(), folder.join(SERIES), folder.join(STATES)];
     drafts.iter().try_for_each(|folder| remove_drafts(folder))?;
     Ok(Some(table))
@@ -137,10 +139,10 @@ fn swept(study: &Study, folder: &Path, states: &States, run: &PlannedRun) -> Res
     Ok(SweptRun { outcome, series })
 }
 
-/// Joins the parts in `folders` into `runs.csv` in `out`.
+/// Joins the parts of a study in `folders` into the file `runs.csv` in the folder `out`.
 ///
 /// # Errors
-/// If a folder contains another study, runs are missing, or two parts disagree.
+/// If a folder contains another study, if runs are missing, or if two parts have different results for a run.
 pub fn merge(study: &Study, folders: &[PathBuf], out: &Path) -> Result<RunsTable> {
     for folder in folders {
         match read_label(folder)? {
@@ -164,7 +166,8 @@ fn join(study: &Study, folders: &[PathBuf], out: &Path) -> Result<RunsTable> {
     Ok(table)
 }
 
-/// The recording of one run, if the study asks for it. An incomplete recording of a run that was stopped is removed.
+/// Starts the recording of a run, if the study requests recordings. An incomplete recording by a run that was stopped
+/// is removed.
 fn recording_of(
     study: &Study,
     folder: &Path,
@@ -201,11 +204,12 @@ fn read_label(folder: &Path) -> Result<Option<Label>> {
     }
 }
 
-/// Assigns the folder to this study, or checks that it is already assigned.
+/// Assigns the folder to this study, or checks that it is already assigned to it.
 ///
-/// The label file assigns the folder. Until it is written, the folder belongs to the old study, without its table,
-/// which can be recomputed from the journals. Afterwards it belongs to the new study. Remaining files of the old study
-/// are then ignored, because runs are identified by keys, and are removed.
+/// The label file `study.json` assigns the folder. Until this file is written, the folder belongs to the old study.
+/// Only the table of the old study is missing then, which can be recomputed from the journals. Afterwards the folder
+/// belongs to the new study. Remaining files of the old study are ignored, because runs are identified by keys, and
+/// then removed.
 fn claim(
     study: &Study,
     folder: &Path,
@@ -231,7 +235,7 @@ fn claim(
         throw_away(folder)
     };
     for _ in 0..MOMENTS {
-        // Another part of the same study may have assigned the folder in the meantime.
+        // A process that runs another part of the same study may have assigned the folder in the meantime.
         match read_label(folder) {
             Ok(Some(found)) if found == label => return Ok(()),
             Ok(Some(found)) if !redo => return Err(other_study(folder, study, &found)),
@@ -247,7 +251,8 @@ fn claim(
     Err(shared.in_use())
 }
 
-/// Removes a folder's results, which no other program may be writing. Files that this program did not write remain.
+/// Removes the results in a folder. No other program may be writing results there. Files that this program did not
+/// write remain.
 fn throw_away(folder: &Path) -> Result<()> {
     let of_series = journal::files_in(&folder.join(SERIES))?;
     let tables = [TABLE, REPORT].map(|name| folder.join(name));
@@ -260,7 +265,7 @@ fn throw_away(folder: &Path) -> Result<()> {
         remove_recording(path)?;
     }
     for inner in [SERIES, DATA] {
-        // A folder that is not empty remains.
+        // A folder that is not empty cannot be removed, and remains.
         let _ = std::fs::remove_dir(folder.join(inner));
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! The runs of a study file, each with its complete config and a unique key.
+//! Plans the runs of a study file. Each run gets its complete settings and a unique key.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -14,17 +14,18 @@ use crate::data::DataSettings;
 use crate::error::{Error, Result, in_words};
 use crate::input::{MOST_OF_TOML, read_text};
 
-/// Largest number of runs. More are probably a mistake; planned, run and listed, they take about 2 kB each.
+/// Largest number of runs of a study. A larger number is probably a mistake. Planned, run and listed, each run takes
+/// about 2 kB.
 const MOST_RUNS: usize = 1_000_000;
 
-/// The parameter that distinguishes the initial states of a scene.
+/// Name of the parameter that distinguishes the initial states of a scene.
 pub(super) const SEED: &str = "seed";
 
-/// The expected form of a study file, for messages.
+/// Description of the expected form of a study file, for messages.
 const FORM: &str = "a study file in TOML with name, base and vary";
 
-/// A study file. Its tables are parsed separately below, because they may contain anything that a [`Config`] may
-/// contain.
+/// A study file. Its tables `base` and `vary` are parsed separately, because they may contain every setting of a
+/// [`Config`].
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StudyFile {
@@ -43,7 +44,7 @@ struct StudyFile {
     quick: Quick,
 }
 
-/// Changes for a quick pass.
+/// Settings that replace the settings of the study in a quick pass.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Quick {
@@ -51,36 +52,36 @@ struct Quick {
     vary: Table,
 }
 
-/// The rows that a run writes over time.
+/// Settings of the rows that a run writes over time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SeriesSettings {
     /// Simulated time between two rows, s.
     pub interval: f64,
-    /// The grains whose positions are written, by number.
+    /// Numbers of the grains whose positions are written.
     #[serde(default)]
     pub grains: Vec<usize>,
 }
 
-/// A study: a list of runs in the order of its table.
+/// A study: a list of runs, in the order of the rows of its table.
 #[derive(Clone, Debug)]
 pub struct Study {
-    /// Its name.
+    /// Name of the study.
     pub name: String,
-    /// Identity of the study: hash of the keys of all runs.
+    /// Identity of the study: a hash of the keys of all runs.
     pub fingerprint: String,
-    /// True if these are the runs of a quick pass, and it differs from the full pass.
+    /// True if the runs belong to a quick pass that differs from the full pass.
     pub is_quick_pass: bool,
-    /// The rows that each run writes over time, if any.
+    /// Settings of the rows that each run writes over time, if any.
     pub series: Option<SeriesSettings>,
-    /// Recording settings of each run, if any. A recording is stored below the results, in a folder named after the
-    /// run's key.
+    /// Settings of the recording of each run, if any. A recording is stored in the folder of results, in a folder named
+    /// after the run's key.
     pub data: Option<DataSettings>,
-    /// The chart of the results, if any.
+    /// Chart of the results, if any.
     pub chart: Option<SweepChart>,
-    /// The names of the varied settings; settings that vary together are in one list.
+    /// Names of the varied settings. Settings that vary together are in one list.
     pub varied: Vec<Vec<String>>,
-    /// The runs.
+    /// Runs of the study.
     pub runs: Vec<PlannedRun>,
 }
 
@@ -94,7 +95,7 @@ impl Study {
         Self::parse(&text, path, quick)
     }
 
-    /// Plans the runs of a study from the text of its file; `path` is for messages.
+    /// Plans the runs of a study from the text of its file. `path` is named in error messages.
     ///
     /// # Errors
     /// If the text is not a valid study.
@@ -141,7 +142,8 @@ impl Study {
     }
 }
 
-/// Replaces values by those of a quick pass, whether they vary or not.
+/// Replaces values of the study by the values of a quick pass. A setting that varies in the study may be constant in
+/// the quick pass, and the other way round.
 fn replace(from: &str, to: &mut Table, other: &mut Table, values: Table) -> Result<()> {
     for (key, value) in values {
         if other.remove(&key).is_none() && !to.contains_key(&key) {
@@ -153,7 +155,7 @@ fn replace(from: &str, to: &mut Table, other: &mut Table, values: Table) -> Resu
     Ok(())
 }
 
-/// The runs of a study. Relative paths in it refer to `folder`.
+/// Returns the runs of a study. Relative paths in the study file refer to `folder`.
 fn lay_out(file: &StudyFile, folder: &Path) -> Result<Vec<PlannedRun>> {
     let varied = file.vary.keys().flat_map(|key| key.split_whitespace());
     let mut given: Vec<&str> = file.base.keys().map(String::as_str).collect();
@@ -164,7 +166,8 @@ fn lay_out(file: &StudyFile, folder: &Path) -> Result<Vec<PlannedRun>> {
         }
         given.push(name);
     }
-    // Wrong names and types are reported by table and key, before combinations are formed.
+    // Wrong names and types are found here, before combinations are formed, so that the error names the table and the
+    // key.
     for (key, value) in &file.base {
         config_of("base", [(key, value)])?;
     }
@@ -173,7 +176,7 @@ fn lay_out(file: &StudyFile, folder: &Path) -> Result<Vec<PlannedRun>> {
     for (key, said) in &file.vary {
         let axis = VariedParameters::read(key, said)?;
         count = count.saturating_mul(axis.values.len());
-        // Checked before the next axis, because its values also take memory.
+        // The count is checked before the next setting is read, because the values of that setting also take memory.
         if count > MOST_RUNS {
             let found = format!("{count} runs with vary.{key}");
             let allowed = format!("no more than {MOST_RUNS}; take two studies for more");
@@ -197,11 +200,11 @@ fn lay_out(file: &StudyFile, folder: &Path) -> Result<Vec<PlannedRun>> {
     (0..count).map(run).collect()
 }
 
-/// Parameters that vary together: usually one, or several in parallel, written as `"grains box-width" = [[138, 16],
-/// [500, 30]]` in the file.
+/// Parameters that vary together: usually one parameter, or several in parallel, written as `"grains box-width" =
+/// [[138, 16], [500, 30]]` in the study file.
 struct VariedParameters {
     names: Vec<String>,
-    /// A value for each name.
+    /// Sets of values, each with one value per parameter.
     values: Vec<Vec<Value>>,
 }
 
@@ -255,21 +258,21 @@ fn one_line(message: &str) -> String {
     message.trim_end().replace('\n', " ").replace('`', "'")
 }
 
-/// One run of a study.
+/// A planned run of a study.
 #[derive(Clone, Debug)]
 pub struct PlannedRun {
-    /// Unique name: hash of everything that affects its result.
+    /// Unique name of the run: a hash of everything that affects its result.
     pub key: String,
-    /// The config, with every default filled in.
+    /// Settings of the run, with every default filled in.
     pub config: Config,
-    /// Expected duration, in any unit, for the order of work and for progress.
+    /// Expected computing time, in any unit. It determines the order of the work and the steps of the progress bar.
     pub cost: f64,
 }
 
-/// A base scene that was already read.
+/// A base scene that is kept because several runs use it.
 struct Known {
     base: BaseScene,
-    /// Hash of all its discs.
+    /// Hash of all discs of the scene.
     discs: String,
 }
 
@@ -283,8 +286,8 @@ impl Known {
 }
 
 impl PlannedRun {
-    /// Plans the run of a config. Its series need the grains `grains_asked_for`; `outputs` are its output settings,
-    /// which are part of the key; `bases` caches base scenes.
+    /// Plans the run of a config. `grains_asked_for` are the grains whose positions the run writes over time. `outputs`
+    /// are the output settings, which are a part of the run's key. `bases` keeps base scenes for further runs.
     fn new(
         config: &Config,
         grains_asked_for: &[usize],
@@ -296,15 +299,15 @@ impl PlannedRun {
             Entry::Vacant(place) => place.insert(Known::of(config)?),
         };
         let mut scene = config.change(&known.base)?;
-        // The study determines the output of its runs.
+        // The study file alone determines the output of its runs.
         scene.data = None;
         let config = config.resolved(&scene);
         let grains = config.source.grains.unwrap_or(scene.grains.len());
         if let Some(grain) = grains_asked_for.iter().find(|&&grain| grain >= grains) {
             return Err(Error::value("series.grains", grain, format!("below {grains}")));
         }
-        // The key contains the scene instead of the files from which it was read, and the hash of its discs instead of
-        // the discs, which are nearly all of the data and the same in each run.
+        // The key contains the scene instead of the files from which the scene was read. It contains a hash of the
+        // discs instead of the discs, which are nearly all of the data and the same in each run.
         scene.grains.clear();
         scene.fixed_discs.clear();
         let made_of = (env!("CARGO_PKG_VERSION"), &config, &scene, &known.discs, outputs);
@@ -323,7 +326,7 @@ fn hash(said: &impl Serialize, scene: &str) -> Result<blake3::Hasher> {
     Ok(hasher)
 }
 
-/// Half of a hash: with 128 bits, collisions practically never occur.
+/// Returns half of a hash as hexadecimal digits. With these 128 bits, two runs practically never have the same key.
 fn short(hasher: &blake3::Hasher) -> String {
     hasher.finalize().to_hex()[..32].to_owned()
 }

@@ -1,4 +1,4 @@
-//! The values of a list or a range in a study file.
+//! Expands the lists and ranges of a study file to values.
 
 use std::collections::HashSet;
 use std::fmt::Display;
@@ -9,13 +9,14 @@ use crate::error::{Error, Result};
 
 /// Number of digits to which the values of a range are rounded, so that they are short and the same on every machine.
 const DIGITS: usize = 9;
-/// Largest number of values in one range. More are probably a mistake.
+/// Largest number of values in one range. A larger number is probably a mistake.
 const MOST_VALUES: i64 = 1_000_000;
 
-/// The values of a list or a range. `field` is for messages.
+/// Returns the values of a list or a range. `field` is named in error messages.
 ///
-/// A list is `[0, 20, 50]`. A range is `{ from = 1, to = 16 }`, all whole numbers, or `{ from = 1e-4, to = 1e-2, count
-/// = 20 }`, evenly spaced; with `scale = "log"` the ratio is constant.
+/// A list is `[0, 20, 50]`. A range is `{ from = 1, to = 16 }`, which means all whole numbers, or `{ from = 1e-4, to =
+/// 1e-2, count = 20 }`, which means evenly spaced values. With `scale = "log"` the ratio of neighbouring values is
+/// constant.
 pub(super) fn values(field: &str, said: &Value) -> Result<Vec<Value>> {
     let values = match said {
         Value::Array(list) => list.clone(),
@@ -35,7 +36,7 @@ pub(super) fn values(field: &str, said: &Value) -> Result<Vec<Value>> {
     Ok(values)
 }
 
-/// A key that is equal for equal numbers or words: for 1 and 1.0, and for 0 and -0.0.
+/// Returns a key that is equal for equal numbers or words: the same for 1 and 1.0, and for 0 and -0.0.
 fn meaning(value: &Value) -> (Option<u64>, String) {
     match number(value) {
         Some(number) => (Some((number + 0.0).to_bits()), String::new()),
@@ -95,7 +96,7 @@ fn of_range(field: &str, range: &Table) -> Result<Vec<Value>> {
     Ok((0..count).map(value).collect())
 }
 
-/// A range without a count: all whole numbers in it.
+/// Returns all whole numbers of a range without a count.
 fn whole_numbers(field: &str, range: &Table) -> Result<Vec<Value>> {
     let (Value::Integer(from), Value::Integer(to)) = (&range["from"], &range["to"]) else {
         let allowed = "a number of values, as the bounds are not both whole numbers";
@@ -115,7 +116,7 @@ fn not_above(field: &str, least: &str, from: impl Display, to: impl Display) -> 
     Error::value(format!("{field}.to"), to, format!("{least} from, which is {from}"))
 }
 
-/// True if the ratio of neighbouring values is constant.
+/// True if the values of a range are spaced logarithmically: the ratio of neighbouring values is constant.
 fn is_logarithmic(field: &str, range: &Table, from: f64) -> Result<bool> {
     let Some(scale) = range.get("scale") else { return Ok(false) };
     match scale.as_str() {

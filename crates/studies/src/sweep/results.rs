@@ -1,5 +1,5 @@
-//! The result of one run of a study, and `runs.csv`: one row per run, in the study's order, with its complete config
-//! and result.
+//! Computes the result of one run of a study, and writes `runs.csv`: one row per run, in the order of the study, with
+//! the complete settings and the result of the run.
 
 use std::collections::HashMap;
 use std::ops::ControlFlow;
@@ -19,39 +19,39 @@ use crate::output::write_file;
 use crate::scene::Scene;
 use crate::sim::{AlarmKind, RunEnding, Simulation, Tally};
 
-/// The end of a run.
+/// Status of a run at its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
-    /// It reached its full duration.
+    /// The run reached its full duration.
     Done,
-    /// Its state was no longer finite.
+    /// The state of the run became NaN or infinite.
     NotFinite,
 }
 
-/// The result of a run: a row of the study's table. If the state was no longer finite, the numbers are those at the
-/// end, finite or not.
+/// The result of a run: a row of the study's table. If the state was no longer finite, the numbers are those at the end
+/// of the run, and can be NaN or infinite.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunResult {
-    /// The end of the run.
+    /// Status of the run at its end.
     pub status: Status,
-    /// Sums over the steps.
+    /// Sums over all steps of the run.
     #[serde(flatten)]
     pub tally: Tally,
-    /// Δy_G at the end (paper eq. 11).
+    /// Slump Δy_G at the end: the drop of the mean height, divided by the first mean height (paper eq. 11).
     #[serde(with = "number")]
     pub slump: f64,
     /// Gap between the first two grains at the end, in diameters; 0 for a single grain.
     #[serde(with = "number")]
     pub first_gap: f64,
-    /// Grains that went through a wall or left the world.
+    /// Number of grains that went through a wall or left the world.
     pub lost_grains: u32,
-    /// The names of the kinds of alarms that it raised, separated by spaces.
+    /// Names of the kinds of warnings that the run raised, separated by spaces.
     pub alarms: String,
 }
 
 impl RunResult {
-    /// Columns of the result in a table.
+    /// Names of the columns of a result in a table.
     const COLUMNS: &str = "status,steps,slump,mean_overlap,max_overlap,mean_contacts,first_gap,\
         unconverged_steps,stalled_steps,sweeps,largest_residual,\
         largest_velocity_error,lost_grains,alarms";
@@ -77,18 +77,18 @@ impl RunResult {
     }
 }
 
-/// A run in the journal.
+/// A finished run of a sweep, as the journal stores it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct SweptRun {
     pub outcome: RunResult,
-    /// Checksum of the file with its series, if it has one.
+    /// Checksum of the file with the run's rows over time, if the run has such a file.
     #[serde(rename = "course", default, skip_serializing_if = "Option::is_none")]
     pub series: Option<String>,
 }
 
 #[cfg(test)]
 impl RunResult {
-    /// The result of a sound run, for tests.
+    /// Returns the result of a run without failures that has this slump, for tests.
     pub(crate) fn of_slump(slump: f64) -> Self {
         let tally = Tally { steps: 1, sweeps: 1, ..Tally::default() };
         let (status, alarms) = (Status::Done, String::new());
@@ -153,12 +153,12 @@ fn first_gap(simulation: &Simulation) -> f64 {
     }
 }
 
-/// The results of a study.
+/// The table of the results of a study.
 #[derive(Clone, Debug)]
 pub struct RunsTable {
-    /// Key, config and result of each run, in the study's order.
+    /// Key, settings and result of each run, in the order of the study.
     pub rows: Vec<(String, Config, RunResult)>,
-    /// Wall-clock time of each run, s. It is not in the file, because it differs between repetitions.
+    /// Wall-clock time of each run, s. The CSV file does not contain this time, because it differs between repetitions.
     pub wall_secs: Vec<f64>,
 }
 
@@ -183,17 +183,17 @@ impl RunsTable {
         Ok(Self { rows, wall_secs })
     }
 
-    /// Number of runs whose state was no longer finite.
+    /// Returns the number of runs whose state was no longer finite.
     pub fn not_finite(&self) -> usize {
         self.rows.iter().filter(|(.., result)| result.status == Status::NotFinite).count()
     }
 
-    /// Number of runs that raised alarms, by kind, in words; `None` if there were none.
+    /// Returns the number of runs that raised warnings, by kind, in words; `None` if no run raised a warning.
     pub fn alarms(&self) -> Option<String> {
         alarms_of(self.rows.iter().map(|(.., result)| result))
     }
 
-    /// Writes the table as CSV. Numbers read back bit for bit.
+    /// Writes the table as CSV. All numbers can be read back bit for bit.
     pub(super) fn write(&self, path: &Path) -> Result<()> {
         let refuse = |error: csv::Error| Error::file("runs.csv", error);
         let fields = Config::names();
@@ -216,8 +216,8 @@ impl RunsTable {
     }
 }
 
-/// Number of runs that raised alarms, in words: "3 of 40 runs raised alarms (overlap 2, grain-lost 1)"; `None` if there
-/// were none.
+/// Returns the number of runs that raised warnings, in words: "3 of 40 runs raised alarms (overlap 2, grain-lost 1)".
+/// Returns `None` if no run raised a warning.
 pub(crate) fn alarms_of<'a>(results: impl Iterator<Item = &'a RunResult>) -> Option<String> {
     let (mut all, mut alarmed, mut by_kind) = (0, 0, [0; AlarmKind::ALL.len()]);
     for result in results {

@@ -1,30 +1,33 @@
-//! Groups of runs that only differ in their initial state.
+//! Defines groups of runs that only differ in their initial state.
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-/// Runs that only differ in their initial state.
+/// A group of runs that only differ in their initial state.
 #[derive(Default, Serialize)]
 pub(super) struct RunGroup {
-    /// The varied settings of the group.
+    /// Varied settings, with their values in this group.
     pub settings: Map<String, Value>,
     /// Number of valid runs, which ended with a finite state and lost no grain.
     pub starts: usize,
-    /// Number of invalid runs.
+    /// Number of invalid runs, which lost a grain or ended with a state that is not finite.
     pub spoilt: usize,
-    /// Mean slump, and half its 95 % interval; `null` if no run is valid, and for a single run.
+    /// Mean slump, and half its 95 % interval. Both are `null` if no run is valid; half the interval is also `null` for
+    /// a single run.
     pub slump: [f64; 2],
-    /// Difference between this slump and that under the first value of a list, with all other settings equal, over the
-    /// initial states of both; mean and half the interval. Keyed by the first name of the list.
+    /// Effects of the varied settings on the slump. The key is the name of the setting, or the first name if several
+    /// settings vary together. An effect is the difference of the slump between this group and the group that has the
+    /// first value of the setting and otherwise the same settings: the mean over the initial states that both groups
+    /// share, and half its 95 % interval.
     pub less_first: BTreeMap<String, [f64; 2]>,
-    /// Fraction of unsolved steps.
+    /// Fraction of steps that missed their tolerance.
     pub unsolved: f64,
-    /// The largest error bound of the velocities in a step, m/s; `null` if a state was no longer finite.
+    /// Largest estimated velocity error of a step, m/s; `null` if a state was no longer finite.
     pub largest_velocity_error: f64,
-    /// The largest of the runs' mean overlaps, d.
+    /// Largest of the runs' mean overlaps (means over all steps), in mean diameters d.
     pub mean_overlap: f64,
-    /// Mean duration of a run, s.
+    /// Mean computing time of a run, s.
     pub secs: f64,
 }

@@ -1,13 +1,16 @@
-//! Columns of cohesive grains: stronger cohesion makes them spread less, and limits the height of a stable cliff.
+//! Validates columns of cohesive grains: stronger cohesion makes the columns spread less, and limits the height of a
+//! stable cliff.
 //!
-//! In a packing with Z contacts per grain and isotropic branches, φZ/(πd) contacts cross a unit of length. Each bears
-//! C₀, so the tensile strength is σ_t = φ Z C₀/(π d). By Mohr and Coulomb the cohesion is c = σ_t tan φ_f, and a cliff
-//! stands no higher than H = (4c/(ρ_b g)) tan(45° + φ_f/2). With C₀ = Bond·m g/2, m = σπd²/4 and ρ_b = φσ the solid
-//! fraction cancels:
+//! Consider a packing of discs of diameter d with the solid fraction φ, Z contacts per grain, and isotropic directions
+//! of the contacts. Then φZ/(πd) contacts cross a unit of length. Each contact bears the cohesion force C₀, so the
+//! tensile strength is σ_t = φ Z C₀/(π d). By Mohr and Coulomb the cohesion is c = σ_t tan φ_f with the friction angle
+//! φ_f, and the height of a stable cliff is at most H = (4c/(ρ_b g)) tan(45° + φ_f/2) with the bulk density ρ_b. With
+//! C₀ = Bond·m g/2, the mass m = σπd²/4, the areal density σ and ρ_b = φσ, the solid fraction cancels:
 //!
 //! > H/d = ½ Z Bond tan φ_f tan(45° + φ_f/2).
 //!
-//! This is an upper bound of H: it assumes a slip along a plane, and other ways of failure may need less.
+//! This height is an upper bound, because it assumes a slip along a plane. Other ways of failure may need a smaller
+//! height.
 
 use super::collapse::CollapsingColumn;
 use super::experiment::*;
@@ -32,9 +35,9 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 
 const ASPECT: f64 = 2.0;
 const STANDS: f64 = 0.2;
-/// Approximate tan φ_f of discs with μ = 0.5.
+/// Approximate tangent of the friction angle φ_f of discs with the friction coefficient μ = 0.5.
 const TAN_OF_FRICTION: f64 = 0.36;
-/// Approximate Z of the columns.
+/// Approximate number Z of contacts per grain in the columns.
 const COORDINATION: f64 = 3.6;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
@@ -51,16 +54,17 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     })
 }
 
-/// Upper bound of the height of a cliff by Mohr and Coulomb, in d.
+/// Returns the upper bound of the height of a cliff by Mohr and Coulomb, in diameters.
 fn bound(bond: f64) -> f64 {
     let angle = TAN_OF_FRICTION.atan();
     let steepness = (0.25 * std::f64::consts::PI + 0.5 * angle).tan();
     0.5 * COORDINATION * bond * TAN_OF_FRICTION * steepness
 }
 
-/// The Bond number above which the columns of a seed stand: the geometric mean of the last value that falls and the
-/// first that stands; NaN if there is no such pair. At large Δt, columns with even stronger cohesion may fall again,
-/// which is the paper's finding and not part of Mohr's theory.
+/// Returns the Bond number above which columns made from the same seed remain standing: the geometric mean of the last
+/// Bond number at which a column falls and the first at which a column stands; NaN if there is no such pair. At large
+/// Δt, columns with even stronger cohesion may fall again. This is a finding of Abramian and Staron (2020) and not part
+/// of Mohr's theory.
 fn standing_from(of_seed: &Measurements) -> f64 {
     let runs = &of_seed.0;
     let Some(first) = runs.iter().position(|case| case.reading("slump") < STANDS) else {
@@ -71,7 +75,8 @@ fn standing_from(of_seed: &Measurements) -> f64 {
     (falls * runs[first].at("bond")).sqrt()
 }
 
-/// The rows of [`judge`].
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source.
 const PUBLISHED: &str = "
     rank correlation of run-out and Bond | -1 -1 -0.7 | recalled: Abramian et al. 2020, Gans et al. 2023: it falls
     rank correlation of roughness and Bond, of those that fall | 0.5 1 1 \
@@ -96,7 +101,8 @@ fn judge(all: &Measurements) -> Vec<Measured> {
     });
     let heights = all.by_seed(|mut of_seed| {
         of_seed.0.sort_by(|one, other| one.at("bond").total_cmp(&other.at("bond")));
-        // H₀ = a R₀, with R₀ in d from the number of grains.
+        // The height of a column is a·R₀, with the aspect ratio a and the half width R₀, in diameters, which follows
+        // from the number of grains.
         let height = mean(&of_seed.readings("aspect")).mean * half_width(grains as usize, ASPECT);
         height / bound(standing_from(&of_seed))
     });

@@ -1,26 +1,30 @@
-//! A gas of cohesive discs without gravity and friction: how a bond's loss of energy depends on Δt.
+//! Validates a gas of cohesive discs without gravity and friction: the dependence of a bond's loss of energy on the
+//! time step Δt.
 //!
-//! N discs with T = ½ m⟨v²⟩ collide N R √(T/T₀) times per second, R = √π n d χ √(T₀/m) (`validate::cooling`), and
-//! have the energy N T. In collisions the approach speed v of a pair has the mean √(πT/m) and the mean square 4T/m, and
-//! m_ij = m/2.
+//! Consider N discs of mass m. Their temperature is T = ½ m⟨v²⟩, at first T₀, and their energy is N T. They collide N R
+//! √(T/T₀) times per second, with R = √π n d χ √(T₀/m) (`validate::cooling`). Here n is the number of discs per area, d
+//! the diameter, and χ the pair correlation at contact. In collisions the approach speed v of a pair has the mean
+//! √(πT/m) and the mean square 4T/m. The effective mass of a pair is m_ij = m/2. ρ is the restitution.
 //!
-//! **`range`, ρ = 1.** Each collision makes a bond, and breaking it takes the work W = C₀ δ_c. So dT/dt = −R W √(T/T₀):
+//! **`range`, ρ = 1.** Each collision makes a bond, and breaking the bond takes the work W = C₀ δ_c, with the cohesion
+//! force C₀ and the debonding distance δ_c. So dT/dt = −R W √(T/T₀):
 //!
 //! > T = T₀ (1 − t/t₀)²,  t₀ = 2 T₀/(R W),  until T is about W.
 //!
-//! A pair with less energy than W is captured. This happens to the part W/T of the collisions, and the next collision of
-//! such a pair breaks its bond.
+//! A pair with less energy than W is captured. This happens in the fraction W/T of the collisions, and the next
+//! collision of such a pair breaks its bond.
 //!
 //! **`moreau`, touch tolerance 0.** A pair overlaps as a step begins, at the distance L of its centres, and bounces in
-//! this step, without a loss by cohesion: u = 0, σ > 0. For ρ = 1 its velocity is then the mirror image of the one with
-//! which it came, so that it ends the step as far apart as it was one step before the overlap: not in touch.
+//! this step without a loss by cohesion: in the contact law of `docs/theory.md`, u = 0 and σ > 0. For ρ = 1 the
+//! velocity of the pair is then the mirror image of its velocity before. So at the end of the step the pair is as far
+//! apart as it was one step before the overlap, and does not touch.
 //!
-//! > Without a loss by restitution, cohesion of any strength takes nothing: T = T₀.
+//! > Without a loss by restitution, cohesion of any strength takes no energy: T = T₀.
 //!
-//! For ρ < 1 the gap one step before the overlap is g, evenly distributed in 0 … vΔt, and after the bounce it is
-//! g − (1 − ρ) vΔt. So in the part 1 − ρ of the collisions (ρ ≥ ½) the pair is still in touch and opens with w = ρ v. In
-//! the next step cohesion takes the capture speed c = C₀Δt/m_ij, and the energy ½ m_ij (2 w c − c²). With the loss
-//! (1 − ρ²) T by restitution and x = √(T₀/T),
+//! For ρ < 1 the gap one step before the overlap is g, evenly distributed in 0 … vΔt. After the bounce the gap is g −
+//! (1 − ρ) vΔt. So in the fraction 1 − ρ of the collisions (if ρ ≥ ½) the pair still touches and opens with the speed w
+//! = ρ v. In the next step cohesion takes the capture speed c = C₀Δt/m_ij, and the energy ½ m_ij (2 w c − c²). With the
+//! loss (1 − ρ²) T by restitution and x = √(T₀/T),
 //!
 //! > dx/dt = ½ R (1 − ρ²) + ¼ R (1 − ρ) (√π ρ k x − ½ k² x²),  k = c √(m/T₀).
 //!
@@ -28,7 +32,7 @@
 //!
 //! > 1/τ = ½ π ρ (1 − ρ) n d χ C₀Δt/m_ij:  τ Δt is constant.
 //!
-//! The loss by restitution is measured in the same gas without cohesion. The factor of the rest is fitted.
+//! The loss by restitution is measured in the same gas without cohesion. A factor of the cohesive term is fitted.
 
 use std::f64::consts::PI;
 
@@ -56,12 +60,14 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// C₀/m_ij, m/s². A bond of `range` takes a fortieth of T₀, and the capture speed is at most a fifth of √(2T₀/m).
+/// Cohesion force divided by the effective mass, C₀/m_ij, m/s². With this value, breaking a bond of `range` takes a
+/// fortieth of the initial temperature T₀, and the capture speed is at most a fifth of the thermal speed √(2T₀/m).
 const COHESION: f64 = 5.0;
-/// The two Δt, s.
+/// The two time steps of the experiment, s.
 const SHORT: f64 = 2e-3;
 const LONG: f64 = 4e-3;
-/// Duration under `range`, in t₀, and under `moreau`, in 2/(R (1 − ρ²)).
+/// Durations of the runs. Under `range`, the unit is the time in which breaking bonds would take all energy. Under
+/// `moreau`, the unit is 2/(R (1 − ρ²)), with the collision rate R per disc and the restitution ρ.
 const OF_BONDS: f64 = 0.5;
 const OF_RESTITUTION: f64 = 3.0;
 /// Number of moments at which the temperature is measured.
@@ -89,9 +95,9 @@ fn cases(effort: Effort) -> Vec<ExperimentCase> {
 
 struct CooledGas {
     run: WatchedRun,
-    /// Times, s, and x.
+    /// Times, s, and the values of x = √(T₀/T) at these times, with the temperature T and the initial temperature T₀.
     points: Vec<(f64, f64)>,
-    /// √(2T₀/m), m/s.
+    /// Thermal speed √(2T₀/m) at the start, m/s, with the initial temperature T₀ and the mass m of a disc.
     thermal_speed: f64,
 }
 
@@ -105,12 +111,16 @@ struct GasRun {
 }
 
 impl GasRun {
-    /// R for a given √(2T₀/m), 1/s.
+    /// Returns the number R of collisions per disc and second at the initial temperature T₀, 1/s, for a given initial
+    /// thermal speed √(2T₀/m), m/s, with the mass m of a disc.
     fn rate(&self, thermal_speed: f64) -> f64 {
         collisions_per_distance(f64::from(self.discs)) * thermal_speed / 2f64.sqrt()
     }
 
-    /// t₀ for a given √(2T₀/m), s. T₀/W is its square over C₀δ_c/m_ij.
+    /// Returns the time t₀, s, in which breaking bonds would take all energy of the gas, for a given initial thermal
+    /// speed √(2T₀/m), m/s, with the initial temperature T₀ and the mass m of a disc. If W is the work to break a bond,
+    /// T₀/W is the square of this speed divided by C₀δ_c/m_ij, with the cohesion force C₀, the debonding distance δ_c
+    /// and the effective mass m_ij.
     fn bond_time(&self, thermal_speed: f64) -> f64 {
         let work = COHESION * DEBONDING_DISTANCE * DIAMETER;
         2.0 * thermal_speed.powi(2) / (self.rate(thermal_speed) * work)
@@ -123,7 +133,7 @@ impl GasRun {
         2.0 * OF_RESTITUTION / (self.rate(THERMAL_SPEED) * (1.0 - self.restitution.powi(2)))
     }
 
-    /// The gas after a run with this C₀/m_ij, m/s².
+    /// Runs the gas with a cohesion force of `cohesion` times the effective mass (m/s²), and returns its temperatures.
     fn cooled(&self, cohesion: f64) -> Result<CooledGas> {
         let mut scene = gas(self.discs as usize, self.seed);
         let half = 0.5 * side(f64::from(self.discs));
@@ -166,8 +176,9 @@ impl GasRun {
         Ok(run.with([("factor", self.factor(&points, without, thermal_speed))]))
     }
 
-    /// The factor f of x − 1 − a t = f ∫ ¼ R (1 − ρ) (√π ρ k x − ½ k² x²) dt, by least squares; a, 1/s, is dx/dt
-    /// without cohesion.
+    /// Returns the ratio f of the measured effect of cohesion to the predicted effect, by least squares. With the
+    /// temperature T, its initial value T₀ and x = √(T₀/T), it is the factor f in x − 1 − a t = f ∫ ¼ R (1 − ρ) (√π ρ k
+    /// x − ½ k² x²) dt. a is dx/dt without cohesion (`without`, 1/s). The comment of the module explains R, ρ and k.
     fn factor(&self, points: &[(f64, f64)], without: f64, thermal_speed: f64) -> f64 {
         let rho = self.restitution;
         let k = 2f64.sqrt() * COHESION * self.time_step_secs / thermal_speed;
@@ -187,8 +198,9 @@ impl GasRun {
     }
 }
 
-/// The rows of [`judge`]. The bands are those of Haff's law for times. A tenth of the collisions of 2,000 discs
-/// determines the factors, whose bands are wider.
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source. Times have the same bands as Haff's law. The
+/// factors have wider bands, because only a tenth of the collisions of 2,000 discs determines them.
 const PUBLISHED: &str = "
     range: t₀ over that of kinetic theory, short Δt | 0.9 1 1.1 | derived: Enskog's rate, work of a bond
     range: t₀ over that of kinetic theory, long Δt | 0.9 1 1.1 | derived: Enskog's rate, work of a bond

@@ -1,10 +1,13 @@
-//! Plane shear of cohesive grains: the effect of cohesion on friction and solid fraction at one inertial number.
+//! Validates plane shear of cohesive grains: the effect of cohesion on friction and solid fraction at one inertial
+//! number I (`validate::shear`).
 //!
-//! Grains that attract with C₀ under the pressure P have a second dimensionless number in addition to I, η = C₀/(P d).
-//! With C₀ = Bond·m g/2 for two grains of mass m, and P in units of m g/d, η = Bond/(2P).
+//! Grains of diameter d that attract each other with the force C₀ under the pressure P have a second dimensionless
+//! number in addition to I, η = C₀/(P d). With C₀ = Bond·m g/2 for two grains of mass m, and P in units of m g/d, η =
+//! Bond/(2P).
 //!
-//! If the law defines the work W that breaks a bond, there is a third number, E = W/(m γ̇² d²), the ratio of this work
-//! to the kinetic energy with which grains pass each other. Under `range` W = C₀ δc, so E = η (δc/d)/I².
+//! If the contact law defines the work W that breaks a bond, there is a third number, E = W/(m γ̇² d²) with the shear
+//! rate γ̇. It is the ratio of this work to the kinetic energy with which grains pass each other. Under `range` the
+//! work is W = C₀ δ_c with the debonding distance δ_c, so E = η (δ_c/d)/I².
 
 use super::experiment::*;
 use super::fit::rank_correlation;
@@ -28,11 +31,14 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 };
 
 pub(super) const INERTIAL: f64 = 0.08;
-/// Weak and strong values of η.
+/// Values of the dimensionless cohesion η = C₀/(P d) that count as weak and as strong cohesion. C₀ is the cohesion
+/// force, P the pressure and d the diameter.
 pub(super) const WEAK: f64 = 1.0;
 const STRONG: f64 = 30.0;
 
-/// η and E of the layers with a prescribed bond energy. Steps of 1 ms resolve the breaking of the weakest bonds.
+/// Values of the cohesion η = C₀/(P d) and of the bond energy E = W/(m γ̇² d²) of the layers with a prescribed bond
+/// energy. C₀ is the cohesion force, P the pressure, W the work to break a bond, γ̇ the shear rate, and m and d are
+/// mass and diameter of a grain. Time steps of 1 ms resolve the breaking of the weakest of these bonds.
 const FORCES: [f64; 2] = [3.0, 10.0];
 const ENERGIES: [f64; 4] = [1.0, 3.0, 10.0, 30.0];
 
@@ -55,7 +61,8 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     layers(effort, variant, &kinds)
 }
 
-/// The rows of [`judge`].
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source.
 const PUBLISHED: &str = "
     T/N at η = 1 over that without cohesion | 0.85 1 1.2 | recalled: Rognon et al. 2006: weak cohesion leaves it
     φ at η = 1 less that without cohesion | -0.04 -0.01 0 | recalled: Rognon et al. 2006: weak cohesion dilates
@@ -75,7 +82,7 @@ fn judge(measured: &Measurements) -> Vec<Measured> {
     let all = &measured.with("energy", 0.0);
     let (grains, strengths) = (all.first("grains"), all.list("strength"));
     let system = format!("{grains} grains, η = {strengths}, {}", all.seeds());
-    // Each layer is compared with that of the same seed without cohesion.
+    // Each layer is compared with the layer of the same seed without cohesion.
     let against = |strength: f64, reading: &str, of: fn(f64, f64) -> f64| {
         all.by_seed(|of_seed| {
             let at = |strength| of_seed.with("strength", strength).reading(reading);
@@ -95,7 +102,7 @@ fn judge(measured: &Measurements) -> Vec<Measured> {
     quantities
 }
 
-/// The change of friction with the energy of a bond at one force, and with the force at one energy.
+/// Returns the change of friction with the energy of a bond at the same force, and with the force at the same energies.
 fn of_energies(all: &Measurements) -> Vec<Measured> {
     if all.0.is_empty() {
         return Vec::new();

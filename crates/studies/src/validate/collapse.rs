@@ -1,4 +1,5 @@
-//! Columns of dry grains that collapse and spread: their run-out and final height as functions of their aspect ratio.
+//! Validates columns of dry grains that collapse and spread: the run-out and the final height as functions of the
+//! aspect ratio.
 
 use super::experiment::*;
 use super::fit::power_law;
@@ -28,15 +29,18 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 };
 
 const FRICTION: f64 = 0.5;
-/// Aspect ratio up to which the run-out is linear in a, and the final height is that of the column if it is lower.
+/// Aspect ratio (height divided by half the width) of a column up to which the run-out is proportional to the aspect
+/// ratio.
 const LINEAR_TO: f64 = 2.0;
-/// Duration of a run after the release, in √(H₀/g).
+/// Duration of a run after the release of the column, in units of √(H₀/g), with the height H₀ of the column and gravity
+/// g.
 const TIMES: f64 = 6.0;
-/// Time at which the gates are removed, s.
+/// Simulated time at which the gates are removed, s.
 const RELEASE_SECS: f64 = 0.02;
-/// Level of the floor, in diameters: the lowest points of grains in the hollows between the discs of the floor.
+/// Level of the floor, in diameters: the height of the lowest points of grains that lie in the hollows between the
+/// discs of the floor.
 const FLOOR: f64 = 0.37;
-/// Windows in which the surface of a heap is compared with a straight line, in diameters.
+/// Widths of the windows in which the surface of a heap is compared with a straight line, in diameters.
 const WINDOWS: [f64; 2] = [4.0, 12.0];
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
@@ -54,7 +58,7 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CollapsingColumn {
     pub grains: usize,
-    /// Nominal aspect ratio H₀/R₀.
+    /// Nominal aspect ratio H₀/R₀: the height of the column divided by half its width.
     pub aspect: f64,
     pub seed: u64,
     pub bond: f64,
@@ -69,7 +73,7 @@ impl CollapsingColumn {
         scene.parameters.bond = self.bond;
         let mut scene = collapse_of(scene, half, RELEASE_SECS);
         variant.apply(&mut scene);
-        // Twice the height of the centre of mass, because the surface is uneven.
+        // The height of the column is twice the height of its centre of mass, because the surface is uneven.
         let floor = FLOOR * DIAMETER;
         let height = 2.0 * (centre_of_mass(&settled.simulation).y - floor);
         scene.duration_secs = RELEASE_SECS + TIMES * (height / GRAVITY).sqrt();
@@ -91,7 +95,7 @@ impl CollapsingColumn {
         ]))
     }
 
-    /// The column's grains above the floor, loosely packed between two walls.
+    /// Returns the scene of the column's grains above the floor, loosely packed between two walls.
     fn between_walls(&self, half: f64, variant: StepVariant) -> Scene {
         let mut grains = loose(self.grains, 2.0 * half, self.seed);
         for grain in &mut grains {
@@ -113,7 +117,7 @@ fn column_scene(grains: Vec<Grain>) -> Scene {
     scene
 }
 
-/// The grains of the largest cluster of touching grains.
+/// Returns the grains of the largest cluster of touching grains.
 fn joined(moment: &Moment) -> Vec<GrainState> {
     let grains = &moment.grains;
     let mut set: Vec<usize> = (0..grains.len()).collect();
@@ -137,7 +141,8 @@ fn joined(moment: &Moment) -> Vec<GrainState> {
     grains.iter().zip(roots).filter(|(_, root)| *root == largest).map(|(grain, _)| *grain).collect()
 }
 
-/// Extent of grains from the middle, as the mean of both sides, and their highest point, m.
+/// Returns the extent of the grains from the middle, as the mean of both sides, and the height of their highest point,
+/// m.
 fn reach_and_top(grains: &[GrainState]) -> [f64; 2] {
     let (mut left, mut right, mut top) = (0.0f64, 0.0f64, 0.0f64);
     for grain in grains {
@@ -148,7 +153,8 @@ fn reach_and_top(grains: &[GrainState]) -> [f64; 2] {
     [0.5 * (left + right), top]
 }
 
-/// The rows of [`judge`].
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source.
 const PUBLISHED: &str = "
     run-out over a, a ≤ 2, simulated | 1.9 2.5 3.1 | recalled: Staron, Hinch 2005: 2.5
     run-out over a, a ≤ 2, in a channel | 0.9 1.2 1.5 | recalled: Lube et al. 2005: 1.2
@@ -163,13 +169,14 @@ const PUBLISHED: &str = "
 fn judge(all: &Measurements) -> Vec<Measured> {
     let (grains, aspects) = (all.first("grains"), all.list("aspect"));
     let system = format!("{grains} grains, a = {aspects}, {}", all.seeds());
-    // Run-out divided by a, for the columns of each seed with small aspect ratio.
+    // Mean run-out divided by the aspect ratio, over the columns of each seed with a small aspect ratio.
     let low_factors = all.by_seed(|of_seed| {
         let low = of_seed.such_that(|case| case.at("aspect") <= LINEAR_TO).0;
         let ratios = low.iter().map(|case| case.reading("run_out") / case.reading("aspect"));
         mean(&ratios.collect::<Vec<_>>()).mean
     });
-    // Exponents, and the power law's values at a = 1, for the columns of each seed with at least this aspect ratio.
+    // Exponent of a power law in the aspect ratio a, and value of this law at a = 1, for the columns of each seed whose
+    // aspect ratio is at least `least`.
     let power_laws = |reading: &str, least: f64| -> (Vec<f64>, Vec<f64>) {
         let law = |of_seed: Measurements| {
             let slender = of_seed.such_that(|case| case.at("aspect") >= least);

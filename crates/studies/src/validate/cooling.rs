@@ -1,18 +1,22 @@
-//! A gas of discs that cools by collisions with a constant restitution e (P. K. Haff, J. Fluid Mech. 134, 401, 1983).
+//! Validates a gas of discs that cools by collisions with a constant restitution e (P. K. Haff, J. Fluid Mech. 134,
+//! 401, 1983).
 //!
-//! With T = ½ m⟨v²⟩, the temperature of the plane, each collision dissipates (1 − e²) T on average: the relative
-//! velocity along the normal has the variance 2T/m, its mean square over collisions is 4T/m, and ¼ m (1 − e²) of that
-//! is lost. A disc collides ω = 2√π n d χ √(T/m) times per second (Enskog), χ = (1 − 7φ/16)/(1 − φ)² (D. Henderson
-//! 1975), and two discs share a collision. For N discs, dE/dt = −N √π n d χ (1 − e²) T √(T/m), E = N T.
+//! Let T = ½ m⟨v²⟩ be the temperature in the plane, with the mass m and the mean square velocity ⟨v²⟩ of a disc. Each
+//! collision dissipates (1 − e²) T on average: the relative velocity along the normal has the variance 2T/m, its mean
+//! square over collisions is 4T/m, and the energy ¼ m (1 − e²) times this square is lost. A disc collides ω = 2√π n d χ
+//! √(T/m) times per second (Enskog), with n discs of diameter d per area, and the pair correlation at contact χ = (1 −
+//! 7φ/16)/(1 − φ)² at the solid fraction φ (D. Henderson 1975). Two discs share a collision. For N discs with the
+//! energy E = N T, dE/dt = −N √π n d χ (1 − e²) T √(T/m).
 //!
-//! The walls have the same restitution as the discs. A unit length of wall is hit n_w √(T/2πm) times per second, where
-//! n_w = n (1 + 2φχ) is the density at the wall, which bears the pressure. There ½ m ⟨v_n²⟩ = T, and (1 − e²) T is
-//! lost. With the length L_w of the walls as seen by the centres, the total is
+//! The walls have the same restitution as the discs. A unit length of wall is hit n_w √(T/2πm) times per second. Here
+//! n_w = n (1 + 2φχ) is the density of discs at the wall, which bears the pressure. For discs that hit the wall with
+//! the normal velocity v_n, ½ m ⟨v_n²⟩ = T, and (1 − e²) T is lost. With the length L_w of the walls as seen by the
+//! centres of the discs, the total is
 //!
 //! > dT/dt = −2 T √(T/T₀)/τ,  2/τ = (1 − e²) √(T₀/m) (√π n d χ + L_w n_w/(√(2π) N)),
 //!
-//! so that T = T₀/(1 + t/τ)². Distributions stay close to Maxwell's: at e = 0.9 the fourth cumulant is −0.03 and
-//! changes the rate by half a per cent (T. P. C. van Noije, M. H. Ernst 1998).
+//! so that T = T₀/(1 + t/τ)². Distributions of the velocity stay close to Maxwell's: at e = 0.9 the fourth cumulant is
+//! −0.03 and changes the rate by half a per cent (T. P. C. van Noije, M. H. Ernst 1998).
 
 use std::f64::consts::{PI, TAU};
 
@@ -44,9 +48,9 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 
 pub(super) const RESTITUTION: f64 = 0.9;
 const SOLID_FRACTION: f64 = 0.1;
-/// √(2T₀/m), m/s: in 1e-3 s a disc moves a hundredth of its diameter.
+/// Thermal speed √(2T₀/m) at the start, m/s. At this speed a disc moves by a hundredth of its diameter in 1e-3 s.
 pub(super) const THERMAL_SPEED: f64 = 0.1;
-/// Duration of a run, in τ.
+/// Duration of a run, in units of the cooling time τ.
 const TIMES: f64 = 6.0;
 /// Number of moments at which the temperature is measured.
 const MOMENTS: u32 = 120;
@@ -61,22 +65,23 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     })
 }
 
-/// Side of the box, m.
+/// Returns the side of the box that contains the discs, m.
 pub(super) fn side(discs: f64) -> f64 {
     (discs * 0.25 * PI * DIAMETER * DIAMETER / SOLID_FRACTION).sqrt()
 }
 
-/// χ.
+/// Returns the pair correlation χ of the discs at contact.
 fn contact_value() -> f64 {
     (1.0 - 7.0 / 16.0 * SOLID_FRACTION) / (1.0 - SOLID_FRACTION).powi(2)
 }
 
-/// √π n d χ, 1/m: the number of collisions of pairs per disc and per distance √(T/m).
+/// Returns √π n d χ, 1/m, with n discs of diameter d per area and the pair correlation χ at contact: the number of
+/// collisions of pairs per disc and per distance √(T/m).
 pub(super) fn collisions_per_distance(discs: f64) -> f64 {
     PI.sqrt() * discs / side(discs).powi(2) * DIAMETER * contact_value()
 }
 
-/// τ, s (see the module).
+/// Returns the cooling time τ of Haff's law, s. The comment of the module gives the formula.
 fn time_secs(discs: f64) -> f64 {
     let at_wall = discs / side(discs).powi(2) * (1.0 + 2.0 * SOLID_FRACTION * contact_value());
     let of_walls = 4.0 * (side(discs) - DIAMETER) * at_wall / (TAU.sqrt() * discs);
@@ -84,14 +89,14 @@ fn time_secs(discs: f64) -> f64 {
     2.0 / ((1.0 - RESTITUTION.powi(2)) * root * (collisions_per_distance(discs) + of_walls))
 }
 
-/// Discs on a regular grid in a box, with velocities from Maxwell's distribution.
+/// Returns a scene with discs on a regular grid in a box. Their velocities are drawn from Maxwell's distribution.
 pub(super) fn gas(discs: usize, seed: u64) -> Scene {
     let side = side(discs as f64);
     let columns = (discs as f64).sqrt().ceil();
     let spacing = side / columns;
     let mut random = Pcg64::seed_from_u64(seed);
     let mut normal = || {
-        // G. E. P. Box, M. E. Muller 1958.
+        // Two normally distributed numbers, by the method of G. E. P. Box and M. E. Muller (1958).
         let (radius, angle) = (random.random_range(0.0..1.0f64), random.random_range(0.0..TAU));
         (-2.0 * (1.0 - radius).ln()).sqrt() * DVec2::from_angle(angle)
     };
@@ -129,15 +134,17 @@ fn cool(discs: usize, seed: u64, variant: StepVariant) -> Result<RunReadings> {
         points.push((simulation.time_secs(), simulation.observables().kinetic_energy / start));
     }
     let [exponent, _] = cooling_law(&points);
-    // E is the energy of these velocities, not of the distribution from which they were drawn: τ scales with 1/√E.
+    // The initial energy E is computed from the velocities that were drawn, because it differs from the mean energy of
+    // their distribution. The cooling time τ scales with 1/√E.
     let mass: f64 = run.simulation.world().grains.masses.iter().sum();
     let expected = tau * THERMAL_SPEED / (2.0 * start / mass).sqrt();
-    // 1/√T = (1 + t/τ)/√T₀.
+    // By Haff's law 1/√T = (1 + t/τ)/√T₀, which is a straight line in the time t.
     let roots: Vec<(f64, f64)> = points.iter().map(|(t, energy)| (*t, energy.powf(-0.5))).collect();
     Ok(run.with([("exponent", exponent), ("time", 1.0 / slope(&roots) / expected)]))
 }
 
-/// The rows of [`judge`].
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source.
 const PUBLISHED: &str = "
     exponent p of T = T₀ (1 + t/τ)^−p | 1.85 2 2.15 | exact: Haff 1983
     τ over that of kinetic theory | 0.9 1 1.1 | recalled: Enskog's collision rate, Henderson 1975, walls included

@@ -1,21 +1,23 @@
-//! The apparent elasticity of Contact Dynamics with unsolved steps (T. Unger, L. Brendel, D. E. Wolf, J. Kertész, Phys.
-//! Rev. E 65, 061305, 2002).
+//! Validates the apparent elasticity of Contact Dynamics with unsolved steps (T. Unger, L. Brendel, D. E. Wolf, J.
+//! Kertész, Phys. Rev. E 65, 061305, 2002).
 //!
-//! Discs stand in a row on a wall. A step is N sweeps that start from the impulses of the previous step. Let v be the
-//! velocity of a long wave, and x the change of v in a step by the difference between the present impulses and those at
-//! rest. Impulses with x = −v would end the motion. The sweeps multiply the distance of x from −v by a factor S, so
-//! that
+//! Discs of mass m and diameter d form a row on a wall. A step of length Δt consists of N sweeps that start from the
+//! impulses of the previous step. Let v be the velocity of a long wave, and x the change of v in a step by the
+//! difference between the present impulses and the impulses at rest. Impulses with x = −v would end the motion. The
+//! sweeps multiply the distance of x from −v by a factor S. So with x' and v' after the step
 //!
 //! > x' = −v + S (x + v),  v' = v + x' = S (x + v),
 //!
-//! which is a matrix with trace 2S and determinant S: a damped wave that decreases by √S and rotates by θ per step, cos
-//! θ = √S. For a wave of wave number k, sweeps act as diffusion, S = exp(−q N (kd)²). For small kd this is the paper's
-//! row of springs κ = q m N/Δt² and dashpots γ = q m N/Δt, with c = √(qN) d/Δt and 1/τ = q N (kd)²/2Δt. Period and
-//! damping therefore each determine q. The longest wave on n discs has kd = π/2n.
+//! which is a matrix with trace 2S and determinant S: a damped wave that decreases by √S and rotates by θ per step,
+//! with cos θ = √S. For a wave of wave number k, sweeps act as diffusion, S = exp(−q N (kd)²), with a coefficient q.
+//! For small kd this is the row of springs κ = q m N/Δt² and dashpots γ = q m N/Δt of Unger et al., with the wave speed
+//! c = √(qN) d/Δt and the decay rate 1/τ = q N (kd)²/2Δt. Period and damping therefore each determine q. The longest
+//! wave on n discs has kd = π/2n.
 //!
-//! The value of q: one parallel (Jacobi) sweep multiplies the wave by cos kd, so q = ½. With the mass splitting of
-//! `jacobi` it is half of that, because a disc with two contacts is split in two. A chain has no loops, so every order
-//! of Gauss–Seidel that is the same in every sweep multiplies the wave by cos² kd (D. M. Young 1971), and q = 1.
+//! The value of q depends on the method. One parallel (Jacobi) sweep multiplies the wave by cos kd, so q = ½. With the
+//! mass splitting of `jacobi` it is half of this value, because a disc with two contacts is split in two. A chain has
+//! no loops, so every order of Gauss–Seidel that is the same in every sweep multiplies the wave by cos² kd (D. M. Young
+//! 1971), and q = 1.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -38,21 +40,23 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// Δt, s. Periods in steps do not depend on it; a smaller value makes the row sag less.
+/// Time step, s. The number of steps per period does not depend on the time step. With a smaller value, the row sags
+/// less.
 const TIME_STEP_SECS: f64 = 1e-4;
-/// Gap below which discs touch, in diameters.
+/// Gap below which discs count as touching, in diameters.
 const TOUCHES_WITHIN: f64 = 1e-2;
 /// Number of periods to wait, until shorter waves have decayed, and number of periods to observe.
 const PERIODS: [f64; 2] = [1.0, 3.0];
 
-/// A method with an order of its sweeps.
+/// A solver method with the order in which its sweeps visit the contacts.
 #[derive(Clone, Copy, Debug)]
 struct SweepVariant {
     method: Method,
     ordering: Ordering,
-    /// Diffusion of the velocities of a row per sweep, d²: ½ if all contacts are updated simultaneously; half of that
-    /// with mass splitting, which splits discs with two contacts in two; 1 for sweeps in a fixed order, because a row
-    /// has no loops (D. M. Young 1971: each sweep of Gauss–Seidel reduces an error as much as two of Jacobi).
+    /// Coefficient q: the diffusion of the velocities of a row per sweep, in units of d² (diameter squared). It is ½ if
+    /// all contacts are updated simultaneously, and half of this value with mass splitting, which splits discs with two
+    /// contacts in two. It is 1 for sweeps in a fixed order, because a row has no loops (D. M. Young 1971: each sweep
+    /// of Gauss–Seidel reduces an error as much as two of Jacobi).
     q: f64,
 }
 
@@ -83,12 +87,12 @@ fn cases(effort: Effort) -> Vec<ExperimentCase> {
     cases
 }
 
-/// kd of the longest wave.
+/// Returns kd of the longest wave on a row: the wave number k times the diameter d.
 fn wave_number(discs: usize) -> f64 {
     FRAC_PI_2 / discs as f64
 }
 
-/// Steps per period, as predicted from q.
+/// Returns the number of steps per period of the longest wave, as predicted from the coefficient q of diffusion.
 fn period(variant: &SweepVariant, discs: usize, sweeps: u32) -> f64 {
     let shrinkage = (-variant.q * f64::from(sweeps) * wave_number(discs).powi(2)).exp();
     TAU / shrinkage.sqrt().acos()
@@ -98,7 +102,7 @@ fn steps(variant: &SweepVariant, discs: usize, sweeps: u32) -> f64 {
     (PERIODS[0] + PERIODS[1]) * period(variant, discs, sweeps)
 }
 
-/// Excites the longest wave of a row, and measures its period and q.
+/// Excites the longest wave of a row of discs, and measures the period of the wave and the coefficient q of diffusion.
 fn ring(variant: &SweepVariant, discs: usize, sweeps: u32) -> Result<RunReadings> {
     let mut scene = column_on_line(discs);
     scene.gap_tolerance = TOUCHES_WITHIN * scene.mean_diameter;
@@ -106,7 +110,7 @@ fn ring(variant: &SweepVariant, discs: usize, sweeps: u32) -> Result<RunReadings
     let solver = SolverSettings::to_residual(variant.method, f64::MIN_POSITIVE, sweeps);
     scene.solver = SolverSettings { ordering: variant.ordering, ..solver };
     let mut simulation = scene.simulation()?;
-    // The initial wave: zero velocity at the wall, and no force at the free end.
+    // Shape of the longest wave: zero velocity at the wall, and no force at the free end.
     let k = wave_number(discs);
     let shape: Vec<f64> = (0..discs).map(|disc| (k * (disc as f64 + 0.5)).sin()).collect();
     let mut amplitudes = Vec::new();
@@ -132,7 +136,8 @@ fn ring(variant: &SweepVariant, discs: usize, sweeps: u32) -> Result<RunReadings
     })
 }
 
-/// The rows of [`judge`].
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source.
 const PUBLISHED: &str = "
     q of jacobi, from the period | 0.245 0.25 0.255 | derived: half of ½ by mass splitting
     q of jacobi, from the damping | 0.245 0.25 0.255 | derived: half of ½ by mass splitting

@@ -1,4 +1,5 @@
-//! Experiments: cases to be computed, and published quantities to compare their results with.
+//! Defines experiments. An experiment consists of cases to be computed, and of published quantities with which their
+//! results are compared.
 
 use super::variants::StepVariant;
 use crate::error::Result;
@@ -7,14 +8,14 @@ use crate::statistics::{Mean, mean};
 
 pub(super) struct Experiment {
     pub name: &'static str,
-    /// Heading of its section of the report and of its chart.
+    /// Heading of the experiment's section in the report, and of its chart.
     pub title: &'static str,
-    /// Description and reference.
+    /// Description of the experiment, with references.
     pub about: &'static str,
     pub cases: ExperimentCases,
-    /// The published quantities, one row each ([`PublishedQuantity::new`]).
+    /// Published quantities, one row each, in the form that [`PublishedQuantity::new`] parses.
     pub published: &'static str,
-    /// Values of each row, measured in the cases of one solver variant.
+    /// Function that returns the measured values of each row, from the cases of one solver variant.
     pub judge: fn(&Measurements) -> Vec<Measured>,
 }
 
@@ -26,16 +27,17 @@ impl Experiment {
 
 /// The cases of an experiment, for a quick or a full pass.
 pub(super) enum ExperimentCases {
-    /// Cases with methods of their own, independent of the chosen methods.
+    /// Cases that use solver methods of their own, whichever methods the user chooses.
     Own(fn(Effort) -> Vec<ExperimentCase>),
-    /// Cases for each chosen variant, except variants for which the function returns none.
+    /// Cases for each solver variant that the user chooses. The function returns no cases for a variant that the
+    /// experiment cannot use.
     Chosen(fn(Effort, StepVariant) -> Vec<ExperimentCase>),
 }
 
 pub(super) struct ExperimentCase {
-    /// Parameters that distinguish it from the other cases of its experiment and variant.
+    /// Parameters that distinguish this case from the other cases of the same experiment and solver variant.
     pub at: Vec<(&'static str, f64)>,
-    /// Expected cost, in a common unit of all cases: grains times steps.
+    /// Expected computing cost, in a unit that all cases share: grains times steps.
     pub cost: f64,
     pub run: Box<dyn Fn() -> Result<RunReadings> + Send + Sync>,
 }
@@ -50,7 +52,7 @@ impl ExperimentCase {
     }
 }
 
-/// One case for each value and each seed, from 1 on.
+/// Returns one case for each value and each seed, with the seeds from 1 to `seeds`.
 pub(super) fn seeded<T: Copy>(
     values: &[T],
     seeds: u32,
@@ -60,16 +62,16 @@ pub(super) fn seeded<T: Copy>(
     values.iter().flat_map(of).map(|(value, seed)| case(value, seed)).collect()
 }
 
-/// Source of a published number.
+/// Kind of source of a published number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SourceKind {
-    /// Read in the source, or in a review that quotes it.
+    /// The number was read in the source, or in a review that quotes the source.
     Read,
-    /// Recalled: nobody has looked the number up, so it gets no verdict.
+    /// The number was recalled. Nobody has looked it up, so it gets no verdict.
     Memory,
-    /// Derived for the scene, with approximations that the experiment names.
+    /// The number was derived for the scene, with approximations that the experiment names.
     Derived,
-    /// Derived for the scene, without approximations.
+    /// The number was derived for the scene, without approximations.
     Exact,
 }
 
@@ -86,12 +88,12 @@ impl SourceKind {
     }
 }
 
-/// Comparison of the measured value with the published one.
+/// Result of the comparison of a measured value with the published value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Agreement {
     Agrees,
     Differs,
-    /// The interval is partly inside the band, or there is no value.
+    /// The interval of the measured value is not fully inside or outside the band, or there is no value.
     NotDecided,
     /// The published number was recalled and not read.
     NoVerdict,
@@ -108,7 +110,8 @@ impl Agreement {
     }
 }
 
-/// Values of a published quantity, measured by one solver variant: the system, and one value per seed or run.
+/// Values of a published quantity, measured by one solver variant: a description of the system, and one value per seed
+/// or run.
 pub(super) type Measured = (String, Vec<f64>);
 
 /// A published quantity, and its mean as measured by one solver variant.
@@ -118,19 +121,19 @@ pub(super) struct PublishedQuantity {
     pub system: String,
     /// The published value, or the centre of the published values.
     pub published: f64,
-    /// Values within it count as equal: the spread of published values, or the uncertainty from the experiment's size
-    /// and its idealisations.
+    /// Band of values that count as equal to the published value. Its width is the spread of published values, or the
+    /// uncertainty due to the experiment's size and its idealisations.
     pub band: [f64; 2],
     pub kind: SourceKind,
-    /// Reference, or derivation.
+    /// Reference to the publication, or the derivation of the number.
     pub source: &'static str,
     pub measured: Mean,
 }
 
 impl PublishedQuantity {
-    /// Parses a row of a table: name | low end of the band, published value, high end | kind of source: source. The
-    /// interval of a `rank correlation` is limited to 1, because no correlation is larger. `None` if the row has
-    /// another form.
+    /// Parses a row of a table of published values: name | low end of the band, published value, high end | kind of
+    /// source: source. The interval of a `rank correlation` is limited to 1, because no correlation is larger. Returns
+    /// `None` if the row has another form.
     pub(super) fn new(row: &'static str, (system, values): Measured) -> Option<Self> {
         let mut cells = row.split(" | ").map(str::trim);
         let (name, numbers, (kind, source)) =
@@ -149,12 +152,13 @@ impl PublishedQuantity {
         Some(Self { name, system, published, band: [low, high], kind, source, measured })
     }
 
-    /// Relative deviation of the mean from the published value; `None` if that is 0.
+    /// Returns the relative deviation of the measured mean from the published value; `None` if the published value is
+    /// 0.
     pub(super) fn error(&self) -> Option<f64> {
         (self.published != 0.0).then(|| (self.measured.mean / self.published - 1.0).abs())
     }
 
-    /// The verdict, if all runs are sound.
+    /// Returns the verdict that is valid if all runs succeeded.
     pub(super) fn verdict(&self) -> Agreement {
         let (Mean { low, high, .. }, band) = (self.measured, self.band);
         if self.kind == SourceKind::Memory {
@@ -205,7 +209,7 @@ mod tests {
             let row = "rank correlation | 0.5 1 1 | read: it grows";
             PublishedQuantity::new(row, (String::new(), values.to_vec())).expect("a row")
         };
-        // Student's interval would reach 1.27.
+        // Student's interval of these values would reach 1.27.
         let few = of(&[1.0, 1.0, 0.5, 1.0]);
         assert_eq!(few.measured.high, 1.0);
         assert_eq!(few.verdict(), Agreement::NotDecided);
@@ -216,7 +220,7 @@ mod tests {
 
     #[test]
     fn tables_have_a_row_for_each_quantity() {
-        // Some quantities concern layers whose bonds have an energy.
+        // Some rows only concern layers with a prescribed bond energy, so the case has such an energy.
         let at = vec![("energy", 1.0)];
         let case = MeasuredCase { at, run: RunReadings::default(), wall_secs: 0.0 };
         for experiment in &super::super::EXPERIMENTS {

@@ -1,21 +1,22 @@
-//! Fits of laws to measurements.
+//! Fits laws to measurements.
 
 use crate::statistics::{mean, slope};
 
-/// Change of a damped wave x_n = c rⁿ cos(nθ + φ) per step.
+/// A damped wave x_n = c rⁿ cos(nθ + φ), with the number n of the step, as described by its change per step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DampedWave {
-    /// θ, rad.
+    /// Angle θ by which the wave rotates per step, rad.
     pub angle: f64,
+    /// Factor r by which the amplitude of the wave changes per step.
     pub shrinkage: f64,
 }
 
-/// Fits a damped wave to evenly spaced values, by G. de Prony's recursion over `lag` values,
+/// Fits a damped wave x_n = c rⁿ cos(nθ + φ) to evenly spaced values, by G. de Prony's recursion over `lag` = m values,
 ///
 /// > x_{n+m} = 2 r^m cos(mθ) x_n − r^{2m} x_{n−m},
 ///
-/// whose two coefficients are determined by least squares. A lag of about a quarter of a period separates them best.
-/// NaN if the values are not a damped wave with a period longer than twice the lag.
+/// whose two coefficients are determined by least squares. A lag of about a quarter of a period separates the
+/// coefficients best. The result is NaN if the values are not a damped wave with a period longer than twice the lag.
 pub(super) fn damped_wave(values: &[f64], lag: usize) -> DampedWave {
     let (mut xx, mut xy, mut yy, mut xz, mut yz) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for window in values.windows(2 * lag + 1) {
@@ -36,8 +37,9 @@ pub(super) fn damped_wave(values: &[f64], lag: usize) -> DampedWave {
     }
 }
 
-/// The power p and the time τ of the law y = y₀ (1 + t/τ)^−p that best fits points (t, y) in the logarithm of y, with y
-/// > 0 and t increasing from 0. For a given τ the law is linear in ln(1 + t/τ), so the fit is a straight line.
+/// Returns the power p and the time τ of the law y = y₀ (1 + t/τ)^−p that best fits points (t, y) in the logarithm of
+/// y. All y are positive, and t increases from 0. For a given τ the law is linear in ln(1 + t/τ), so the fit is a
+/// straight line.
 pub(super) fn cooling_law(points: &[(f64, f64)]) -> [f64; 2] {
     let line = |tau: f64| {
         let line: Vec<(f64, f64)> =
@@ -48,7 +50,8 @@ pub(super) fn cooling_law(points: &[(f64, f64)]) -> [f64; 2] {
     [-line(tau).0, tau]
 }
 
-/// The number with the least misfit, on a geometric grid around a first guess that is refined three times.
+/// Returns the number with the smallest misfit, on a geometric grid around a first guess. The grid is refined three
+/// times.
 pub(super) fn nearest(guess: f64, misfit: impl Fn(f64) -> f64) -> f64 {
     let (mut best, mut ratio) = (guess, 1e3f64);
     for _ in 0..4 {
@@ -60,7 +63,7 @@ pub(super) fn nearest(guess: f64, misfit: impl Fn(f64) -> f64) -> f64 {
     best
 }
 
-/// Slope of the least-squares line, and the remaining sum of squares.
+/// Returns the slope of the least-squares line through points (x, y), and the remaining sum of squares.
 pub(super) fn line_through(points: &[(f64, f64)]) -> (f64, f64) {
     let slope = slope(points);
     let (x_mean, y_mean) = middle(points);
@@ -68,13 +71,13 @@ pub(super) fn line_through(points: &[(f64, f64)]) -> (f64, f64) {
     (slope, points.iter().map(left).sum())
 }
 
-/// The means of both coordinates, which lie on the least-squares line.
+/// Returns the means of both coordinates of points (x, y). This point lies on the least-squares line.
 pub(super) fn middle(points: &[(f64, f64)]) -> (f64, f64) {
     let mean = |of: fn(&(f64, f64)) -> f64| mean(&points.iter().map(of).collect::<Vec<_>>()).mean;
     (mean(|point| point.0), mean(|point| point.1))
 }
 
-/// The power law that best fits points in their logarithms: its exponent, and its value at 1.
+/// Returns the power law that best fits points (x, y) in their logarithms: its exponent, and its value at x = 1.
 pub(super) fn power_law(points: &[(f64, f64)]) -> (f64, f64) {
     let logarithms: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
     let exponent = slope(&logarithms);
@@ -82,10 +85,10 @@ pub(super) fn power_law(points: &[(f64, f64)]) -> (f64, f64) {
     (exponent, (y - exponent * x).exp())
 }
 
-/// Rank correlation of two columns (C. Spearman 1904). Equal values share their mean rank. NaN if a value is NaN, or if
-/// all values of a column are equal.
+/// Returns the rank correlation of two columns (C. Spearman 1904). Equal values share their mean rank. The result is
+/// NaN if a value is NaN, or if all values of a column are equal.
 pub(super) fn rank_correlation(pairs: &[(f64, f64)]) -> f64 {
-    // Twice the rank, relative to the middle of the column.
+    // Twice the rank of each value, counted from the middle of the column.
     let ranks = |of: fn(&(f64, f64)) -> f64| -> Vec<f64> {
         let compare = |one: &(f64, f64), other: &(f64, f64)| {
             of(one).partial_cmp(&of(other)).map_or(f64::NAN, |order| f64::from(order as i8))
@@ -130,7 +133,7 @@ mod tests {
         assert_eq!(rank_correlation(&[(1.0, 9.0), (2.0, 7.0), (5.0, 1.0)]), -1.0);
         assert_eq!(rank_correlation(&[(1.0, 1.0), (2.0, 7.0), (5.0, 9.0)]), 1.0);
         assert_eq!(rank_correlation(&[(1.0, 2.0), (2.0, 1.0), (3.0, 3.0)]), 0.5);
-        // Ranks 1 to 5 against 1, 2, 4, 4, 4: Pearson's coefficient of those is 8/√(10·8).
+        // The ranks are 1 to 5 against 1, 2, 4, 4, 4. Pearson's coefficient of these ranks is 8/√(10·8).
         let tied = [(1.0, 1.0), (2.0, 2.0), (3.0, 9.0), (4.0, 9.0), (5.0, 9.0)];
         assert!((rank_correlation(&tied) - 0.8f64.sqrt()).abs() < 1e-12);
         assert!(rank_correlation(&tied.map(|(x, _)| (x, 9.0))).is_nan());

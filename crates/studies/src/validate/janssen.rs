@@ -1,14 +1,16 @@
-//! A narrow closed silo: the part of the weight that its walls carry (H. A. Janssen 1895).
+//! Validates a narrow closed silo: the fraction of the weight that its walls carry (H. A. Janssen 1895).
 //!
-//! Between two walls at a distance W, let the horizontal pressure be K times the vertical one, and the friction at the
-//! walls fully mobilised. Then a slice of height dz satisfies W dp = ρ_b g W dz − 2 μ_w K p dz, so that below the
+//! Consider grains of the bulk density ρ_b between two walls at a distance W, with the friction coefficient μ_w at the
+//! walls. Let the horizontal pressure be K times the vertical pressure p, and let the friction at the walls be fully
+//! mobilised. Then a slice of height dz satisfies W dp = ρ_b g W dz − 2 μ_w K p dz, so that at the depth z below the
 //! surface
 //!
 //! > p = λ ρ_b g (1 − e^(−z/λ)),  λ = W/(2 μ_w K),
 //!
 //! and the bottom carries the fraction (λ/H)(1 − e^(−H/λ)) of the weight of a filling of height H.
 //!
-//! Friction is fully mobilised if grains slide down the walls, so the bottom is lowered slowly while it is weighed.
+//! Friction is fully mobilised if grains slide down the walls, so the bottom is lowered slowly while its load is
+//! measured.
 
 use glam::DVec2;
 
@@ -36,16 +38,17 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 
 /// Coefficient of friction μ, between grains and at the walls.
 const FRICTION: f64 = 0.5;
-/// W, in diameters.
+/// Distance W between the walls, in diameters.
 const WIDTH: f64 = 8.0;
-/// Number of grains in a square of side W, at a solid fraction of 0.82.
+/// Number of grains in a square whose side is the distance W between the walls, at a solid fraction of 0.82.
 const GRAINS_OF_SQUARE: f64 = 1.04 * WIDTH * WIDTH;
-/// Distance by which the bottom is lowered, in diameters, and the fraction of it after which weighing begins.
+/// Distance by which the bottom is lowered, in diameters, and the fraction of this distance after which weighing
+/// begins.
 const LOWERED: f64 = 0.5;
 const WEIGHED_FROM: f64 = 0.2;
-/// Speed of the bottom, in √(g d).
+/// Speed of the bottom, in √(g d), with gravity g and diameter d.
 const SPEED: f64 = 0.02;
-/// Heights whose loads are compared, in W.
+/// Heights of the fillings whose loads are compared, in units of the distance W between the walls.
 const HIGH: f64 = 5.0;
 const HALF_AS_HIGH: f64 = 2.5;
 
@@ -83,7 +86,8 @@ fn weigh(grains: usize, seed: u64, variant: StepVariant) -> Result<RunReadings> 
     let mut loads = Vec::new();
     run.run_until(secs, |simulation| loads.push(on_bottom(simulation)))?;
     let mass: f64 = run.simulation.world().grains.masses.iter().sum();
-    // Twice the height of the centre of mass above the bottom, because the surface is uneven.
+    // The height of the filling is twice the height of its centre of mass above the bottom, because the surface is
+    // uneven.
     let height = 2.0 * (centre_of_mass(&run.simulation).y / DIAMETER + LOWERED);
     Ok(run.with([
         ("share", mean(&loads).mean / (mass * GRAVITY)),
@@ -92,19 +96,21 @@ fn weigh(grains: usize, seed: u64, variant: StepVariant) -> Result<RunReadings> 
     ]))
 }
 
-/// Load on the bottom, N.
+/// Returns the load on the bottom, N.
 fn on_bottom(simulation: &Simulation) -> f64 {
     let contacts = simulation.moment().contacts.into_iter();
     let of_bottom = contacts.filter(|contact| contact.other == OtherBody::Boundary(0));
     of_bottom.map(|contact| contact.force.y).sum()
 }
 
-/// Fraction of a filling of height `heights`·λ that the bottom carries.
+/// Returns the fraction of the weight that the bottom carries, for a filling of height `heights`·λ with Janssen's
+/// length λ.
 fn share(heights: f64) -> f64 {
     -(-heights).exp_m1() / heights
 }
 
-/// λ fitted to fractions at several heights by least squares, and the remaining root mean square.
+/// Returns Janssen's length λ, fitted by least squares to the carried fractions at several heights, and the remaining
+/// root mean square deviation.
 fn length_of(points: &[(f64, f64)]) -> [f64; 2] {
     let misfit = |length: f64| -> f64 {
         let square = |(height, found): &(f64, f64)| (found - share(height / length)).powi(2);
@@ -114,7 +120,8 @@ fn length_of(points: &[(f64, f64)]) -> [f64; 2] {
     [length, misfit(length)]
 }
 
-/// The rows of [`judge`].
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source.
 const PUBLISHED: &str = "
     K of Janssen's λ = W/(2 μ_w K) | 0.35 0.7 1.1 | recalled: Janssen 1895; K of 0.4 … 1 for grains
     deviation of the share from Janssen's law, r.m.s. | 0 0.03 0.1 | recalled: Janssen 1895

@@ -1,12 +1,15 @@
-//! Comparison with published experiments: for a choice of methods, time steps and budgets, it measures published
-//! quantities with intervals, judges their agreement, and reports the cost.
+//! Compares simulations with published experiments. For chosen solver methods, time steps and efforts (numbers of
+//! sweeps or tolerances), it measures published quantities with confidence intervals, judges their agreement, and
+//! reports the cost.
 //!
-//! Each experiment has one file and one row in [`EXPERIMENTS`]. A verdict compares the whole interval with a band: it
-//! agrees if the interval lies inside, differs if it lies outside, and is not decided otherwise. Numbers that were
-//! recalled and not read are marked as such and have wide bands.
+//! Each experiment has one file and one row in [`EXPERIMENTS`]. A verdict compares the whole measured interval with a
+//! band around the published value. The quantity agrees if the interval lies inside the band, differs if the interval
+//! lies outside the band, and is not decided otherwise. Published numbers that were recalled and not read are marked as
+//! such and have wide bands.
 //!
-//! The folder contains `report.md`, `quantities.csv`, a figure (`errors.png`, `.svg`, `.csv`), and `measured/` with
-//! journals of finished runs by program and processor. The same command therefore resumes if it was stopped.
+//! The folder of results contains `report.md`, `quantities.csv`, a figure (`errors.png`, `.svg`, `.csv`), and the
+//! folder `measured/`. In that folder, each program and processor has its own journals of finished runs. So the same
+//! command resumes if it was stopped.
 
 mod cliff;
 mod cohesive_cooling;
@@ -92,7 +95,8 @@ fn experiment_names() -> Vec<&'static str> {
     EXPERIMENTS.iter().map(|experiment| experiment.name).collect()
 }
 
-/// Runs experiments into a folder. `version` is the program's version in the report.
+/// Runs the chosen experiments and writes the results to a folder. `version` is the version of the program that the
+/// report names.
 ///
 /// # Errors
 /// If a value is outside its range, the folder cannot be written, or a scene is invalid.

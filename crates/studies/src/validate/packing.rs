@@ -1,11 +1,11 @@
-//! Static packings: their solid fraction, coordination, and distribution of forces.
+//! Validates static packings of discs: their solid fraction, coordination number, and distribution of forces.
 //!
 //! Discs fall through a medium into a box and come to rest. N supported discs, without rattlers, have 2N equations of
-//! balance without friction and 3N with it. Frictionless rigid discs have exactly as many contacts as these need, N_c =
-//! 2N, so Z = 2N_c/N = 4. With friction a contact carries two forces, so the minimum is N_c = 3N/2, Z = 3. A contact
-//! with a wall counts like one between discs.
+//! balance without friction and 3N with friction. Frictionless rigid discs have exactly as many contacts as these
+//! equations need, N_c = 2N, so the number of contacts per disc is Z = 2N_c/N = 4. With friction a contact carries two
+//! force components, so the minimum is N_c = 3N/2, Z = 3. A contact with a wall counts like a contact between discs.
 //!
-//! Forces are relative to their mean at the same height, because in a box under gravity the mean grows with depth.
+//! Forces are divided by the mean force at the same height, because in a box under gravity the mean grows with depth.
 
 use std::collections::BTreeMap;
 
@@ -29,9 +29,9 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// Stands for μ → ∞.
+/// Friction coefficient that represents the limit of infinite friction.
 const LARGE_FRICTION: f64 = 10.0;
-/// Fraction of the mean force above which a contact bears a force.
+/// Fraction of the mean force above which a contact counts as bearing a force.
 const BEARS_FROM: f64 = 1e-6;
 /// Distance from walls and surface within which grains are left out, in diameters.
 const MARGIN: f64 = 2.5;
@@ -62,7 +62,7 @@ fn pack(
     scene.duration_secs = 60.0;
     let run = settled(&scene)?;
     let moment = run.simulation.moment();
-    // Only cells away from walls and surface.
+    // Only cells away from the walls and the surface count.
     let margin = MARGIN * DIAMETER;
     let surface = moment.grains.iter().map(|grain| grain.position.y).fold(0.0, f64::max);
     let solid_fraction = solid_fraction(&moment, |place| {
@@ -74,7 +74,7 @@ fn pack(
     let held = is_rattler.iter().filter(|is_rattler| !**is_rattler).count();
     Ok(run.with([
         ("solid_fraction", solid_fraction),
-        // Z = 2N_c/N without rattlers.
+        // The coordination number is Z = 2N_c/N, with N_c contacts and N discs without rattlers.
         ("coordination", 2.0 * bearing.len() as f64 / held as f64),
         ("tail", tail(&bearing)),
         ("energy", mean_energy(&run.simulation)),
@@ -82,7 +82,7 @@ fn pack(
     ]))
 }
 
-/// The contacts that bear a force and do not involve a rattler.
+/// Returns the contacts that bear a force and do not involve a rattler, a grain that transmits no force.
 fn bearing<'a>(moment: &'a Moment, is_rattler: &[bool]) -> Vec<&'a ContactState> {
     let sum: f64 = moment.contacts.iter().map(|contact| contact.force.length()).sum();
     let least = BEARS_FROM * sum / moment.contacts.len() as f64;
@@ -97,14 +97,15 @@ fn bearing<'a>(moment: &'a Moment, is_rattler: &[bool]) -> Vec<&'a ContactState>
     moment.contacts.iter().filter(bears).collect()
 }
 
-/// β of the forces f > 1. For an exponential tail the mean of f − 1 is 1/β.
+/// Returns the constant β of the tail P(f) ∝ exp(−βf) of normal forces f above 1, where 1 is the mean at the same
+/// height. For an exponential tail the mean of f − 1 is 1/β.
 fn tail(bearing: &[&ContactState]) -> f64 {
     let mut layers: BTreeMap<i64, Vec<f64>> = BTreeMap::new();
     for contact in bearing {
         let layer = (contact.point.y / (LAYER * DIAMETER)).floor() as i64;
         layers.entry(layer).or_default().push(contact.normal_force);
     }
-    // The highest layer is the surface, the lowest the floor.
+    // The highest layer is at the surface and the lowest at the floor, so both are left out.
     let inside = layers.len().saturating_sub(2);
     let mut beyond = Vec::new();
     for forces in layers.values().skip(1).take(inside) {
@@ -114,7 +115,8 @@ fn tail(bearing: &[&ContactState]) -> f64 {
     1.0 / mean(&beyond).mean
 }
 
-/// The rows of [`judge`].
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source.
 const PUBLISHED: &str = "
     φ without friction | 0.82 0.84 0.86 | read: reported for nearly monodisperse discs
     Z without friction | 3.9 4 4.1 | read: 2D = 4: isostatic

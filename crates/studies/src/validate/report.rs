@@ -1,4 +1,4 @@
-//! The results in words, as a table and as a figure.
+//! Presents the results of the comparison with experiments in words, as a table and as a figure.
 
 use std::fmt::Write as _;
 
@@ -137,7 +137,8 @@ fn of_variant(runs: &ExperimentRuns) -> String {
     text
 }
 
-/// Draws one point for each experiment and variant: the error of its quantities against its speed.
+/// Draws two charts, the error and the speed, with one row for each experiment and one point in a row for each solver
+/// variant.
 pub(super) fn sheet(all: &[ExperimentRuns], machine: &str) -> Sheet {
     let variants = distinct(all.iter().filter_map(|runs| runs.variant));
     let names = distinct(all.iter().map(|runs| runs.experiment.name));
@@ -185,14 +186,16 @@ pub(super) fn sheet(all: &[ExperimentRuns], machine: &str) -> Sheet {
     Sheet { size: (1300, 120 + 46 * names.len() as u32), charts, caption }
 }
 
-/// Mean relative error of the quantities of an experiment by one variant, limited to the axis. NaN if a quantity has no
-/// value, because the mean of the others would be too favourable.
+/// Returns the mean relative error of the quantities of an experiment by one solver variant, limited to the range of
+/// the axis. The error is NaN if a quantity has no value, because the mean of the other quantities would be too
+/// favourable.
 fn error(runs: &ExperimentRuns) -> f64 {
     let errors = runs.judged().into_iter().filter_map(|(quantity, _)| quantity.error());
     mean(&errors.collect::<Vec<_>>()).mean.clamp(LEAST_ERROR, MOST_ERROR)
 }
 
-/// One colour per method and time step; discs for sweeps and rings for residuals, larger for more work.
+/// Returns name, colour and style of a solver variant in the charts. There is one colour per method and time step.
+/// Numbers of sweeps are filled discs and tolerances are rings; the size grows with the effort.
 fn look_of(variant: &StepVariant, variants: &[StepVariant]) -> (String, Rgb, Look) {
     let kinds = distinct(variants.iter().map(|one| (one.method, one.time_step_secs)));
     let kind = (variant.method, variant.time_step_secs);

@@ -1,5 +1,5 @@
-//! Slopes: the angle of the surface in a rotating drum, the angle at which a layer begins to flow, and the increase of
-//! both with cohesion.
+//! Validates slopes: the angle of the surface in a rotating drum, the angle at which a layer begins to flow, and the
+//! increase of both angles with cohesion.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -27,12 +27,12 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// Numbers of the scenes in a case.
+/// Numbers that stand for the scenes drum and incline in the parameters of a case.
 const DRUM: f64 = 0.0;
 const INCLINE: f64 = 1.0;
-/// Time from which on the drum's slope is measured, s: after three radians.
+/// Simulated time from which on the slope in the drum is measured, s. The drum has then turned by three radians.
 const STEADY_SECS: f64 = 1.5;
-/// Displacement at which the layer counts as flowing, in diameters.
+/// Displacement above which the layer on the incline counts as flowing, in diameters.
 const FLOWN: f64 = 0.5;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
@@ -55,7 +55,7 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     cases
 }
 
-/// The scene with the sizes of its grains in random order.
+/// Returns the scene with the sizes of its grains in random order.
 pub(super) fn shuffled(mut scene: Scene, seed: u64) -> Scene {
     let mut radii: Vec<f64> = scene.grains.iter().map(|grain| grain.radius).collect();
     radii.shuffle(&mut Pcg64::seed_from_u64(seed));
@@ -86,12 +86,13 @@ fn tilt(scene: &Scene) -> Result<RunReadings> {
         let time_secs = run.simulation.time_secs();
         run.run_until(time_secs + 0.01, |_| ())?;
     }
-    // A layer that does not flow at the largest angle does not flow at all.
+    // If the layer does not flow, this is the largest angle of the run.
     let angle = TILT_RATE * (run.simulation.time_secs() - LEVEL_SECS);
     Ok(run.with([("angle", angle.to_degrees())]))
 }
 
-/// The rows of [`judge`].
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source.
 const PUBLISHED: &str = "
     angle without cohesion, drum, degrees | 18 25 32 | recalled: slopes of discs with μ = 0.5: 20° … 30°
     rank correlation of angle and Bond, drum | 0.5 1 1 | recalled: it grows with cohesion

@@ -1,4 +1,4 @@
-//! The runs of experiments: every case of every experiment by every solver variant.
+//! Runs the experiments: every case of every experiment by every solver variant.
 
 use super::experiment::*;
 use super::variants::{SolveBudget, StepVariant};
@@ -7,7 +7,7 @@ use crate::harness::{Case, Runner, Threads};
 
 pub(super) struct ExperimentRuns {
     pub experiment: &'static Experiment,
-    /// `None` if the experiment has its own methods.
+    /// Solver variant of the runs; `None` if the experiment uses methods of its own.
     pub variant: Option<StepVariant>,
     pub cases: Vec<MeasuredCase>,
 }
@@ -17,7 +17,8 @@ impl ExperimentRuns {
         words(self.variant)
     }
 
-    /// The reason why no verdict is possible, if any: failed runs, whose remainder is not a fair sample.
+    /// Returns the reason why no verdict is possible, if there is one: some runs failed, and the remaining runs are not
+    /// a fair sample.
     pub(super) fn spoilt(&self) -> Option<String> {
         let blew_up = self.cases.iter().filter(|case| case.run.blew_up).count();
         let lost = self.cases.iter().filter(|case| case.run.lost_grains > 0).count();
@@ -42,7 +43,7 @@ impl ExperimentRuns {
         self.experiment.rows().zip((self.experiment.judge)(&sound)).filter_map(judge).collect()
     }
 
-    /// True if steps only have a maximum number of sweeps, and no tolerance.
+    /// True if the steps have no tolerance, but only a maximum number of sweeps.
     pub(super) fn has_sweeps_alone(&self) -> bool {
         self.variant.is_none_or(|StepVariant { stepper, budget, .. }| {
             !stepper.reads("solver") || matches!(budget, SolveBudget::Sweeps(_))
@@ -58,7 +59,7 @@ impl ExperimentRuns {
         simulated / self.wall_secs()
     }
 
-    /// Fraction of unsolved steps.
+    /// Returns the fraction of steps that missed their tolerance.
     pub(super) fn unsolved(&self) -> f64 {
         let sum = |number: fn(&RunReadings) -> u64| {
             self.cases.iter().map(|case| number(&case.run)).sum::<u64>() as f64
@@ -71,7 +72,7 @@ fn words(variant: Option<StepVariant>) -> String {
     variant.map_or("methods of its own".to_owned(), |variant| variant.words())
 }
 
-/// Runs the unfinished cases, and returns all runs in the order of the report.
+/// Runs the cases that are not finished, and returns the runs of all cases in the order of the report.
 pub(super) fn run_all(
     experiments: &[&'static Experiment],
     variants: &[StepVariant],

@@ -1,18 +1,18 @@
-//! Plane shear: friction and solid fraction of grains between rough plates, one of which moves along under a constant
-//! pressure, as functions of the inertial number.
+//! Validates plane shear: friction and solid fraction, as functions of the inertial number, of grains between two rough
+//! plates. One plate moves along the layer under a constant pressure.
 //!
 //! Rigid grains of mass m in a plane have no intrinsic time. The effect of a shear rate γ̇ under the pressure P, a
-//! force per length, therefore only depends on I = γ̇ √(m/P). In the published definition γ̇ d √(ρ_g/P), the density
-//! refers to the disc's bounding square or to the disc itself, which makes a factor of up to 2/√π = 1.13 in I. The band
-//! of the slopes includes it.
+//! force per length, therefore only depends on the inertial number I = γ̇ √(m/P). In the published definition γ̇ d
+//! √(ρ_g/P) with the diameter d, the density ρ_g refers to the disc's bounding square or to the disc itself, which
+//! makes a factor of up to 2/√π = 1.13 in I. The band of the slopes includes this factor.
 //!
-//! γ̇ is the slope of the velocity over the height, away from the plates, where grains slip. T and N are the means over
-//! both plates.
+//! The shear rate γ̇ is the slope of the velocity over the height, away from the plates, where grains slip. The
+//! tangential force T and the normal force N are means over both plates.
 //!
 //! A transient in a layer of height H decays over a shear of (H/d)² I²/(π² T/N) heights, because momentum is
-//! transferred by T = (T/N) P. That is eleven to eighteen heights at H = 37 d and I = 0.2. Layers therefore begin with
-//! the expected linear profile from plate to plate, and are sheared for three decay lengths before the measurement. The
-//! flow is checked for steadiness: both plates must exert the same force.
+//! transferred by the shear stress (T/N) P. This is eleven to eighteen heights at H = 37 d and I = 0.2. Layers
+//! therefore begin with the expected linear profile of velocity from plate to plate, and are sheared for three decay
+//! lengths before the measurement. Both plates must exert the same force, which checks that the flow is steady.
 
 use std::f64::consts::PI;
 
@@ -47,21 +47,22 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 
 const FRICTION: f64 = 0.4;
 const RESTITUTION: f64 = 0.1;
-/// P, in m g/d: √(m/P) is 0.03 s.
+/// Pressure P, in m g/d, with mass m and diameter d of a grain and gravity g. √(m/P) is then 0.03 s.
 pub(super) const PRESSURE: f64 = 1.0;
-/// Approximate solid fraction of the layers, to compute their height.
+/// Approximate solid fraction of the layers, from which their height is computed.
 const DENSE: f64 = 0.79;
 /// Time in which the plate compresses the loose grains, s.
 const PRESSING_SECS: f64 = 0.5;
-/// Least shear of a layer before the measurement, and shear during the measurement, in heights of the layer.
+/// Least shear of a layer before the measurement, and shear during the measurement: displacement of the plate divided
+/// by the height of the layer.
 const STRAINS: [f64; 2] = [1.5, 3.0];
-/// Number of decay lengths of a transient, computed with [`SLOWEST`], by which a layer is also sheared before the
-/// measurement.
+/// Additional shear of a layer before the measurement, as a multiple of the shear over which a transient decays. That
+/// shear is computed with [`SLOWEST`].
 const TIMES_TO_STEADY: f64 = 3.0;
-/// T/N of a layer with slow decay.
+/// Friction T/N of a layer in which a transient decays slowly: tangential force divided by normal force.
 const SLOWEST: f64 = 0.4;
 const MOMENTS: u32 = 250;
-/// Interval, in moments, between measurements of the solid fraction.
+/// Number of moments from one measurement of the solid fraction to the next.
 const MOMENTS_OF_CELLS: u32 = 5;
 /// Distance from a plate within which grains are left out, in diameters.
 const MARGIN: f64 = 2.5;
@@ -82,19 +83,21 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
 /// Parameters of a sheared layer.
 #[derive(Clone, Debug)]
 pub(super) struct LayerKind {
-    /// Parameters by which cases are looked up.
+    /// Parameters by which the cases of this layer are identified.
     pub at: Vec<(&'static str, f64)>,
     /// Nominal inertial number I.
     pub inertial: f64,
     /// Bond number.
     pub bond: f64,
-    /// Work that slowly breaks a bond, in m (γ̇ d)²; `None` for the value of the stepper's own parameters.
+    /// Work that slowly breaks a bond, in m (γ̇ d)², with mass m, diameter d and shear rate γ̇; `None` for the work
+    /// that follows from the stepper's own parameters.
     pub breaking_energy: Option<f64>,
-    /// Cone, and touch tolerance in d; `None` for the defaults.
+    /// Friction cone, and touch tolerance in diameters d; `None` for the defaults.
     pub bounds: Option<(FrictionCone, f64)>,
 }
 
-/// Cases of layers; empty if the stepper does not support walls that a force drives.
+/// Returns the cases of sheared layers. There are no cases if the stepper or the solver does not support walls that a
+/// force drives.
 pub(super) fn layers(
     effort: Effort,
     variant: StepVariant,
@@ -131,18 +134,20 @@ impl ShearedLayer {
         f64::from(self.cell.columns) * f64::from(self.cell.rows)
     }
 
-    /// Height of the compressed layer, in diameters.
+    /// Returns the height of the compressed layer, in diameters.
     fn height(&self) -> f64 {
         let area = 0.25 * PI * self.grains();
         area / (DENSE * f64::from(self.cell.wide))
     }
 
-    /// Nominal γ̇, 1/s: √(m/P) = √(d/(g P)), P in m g/d.
+    /// Returns the nominal shear rate γ̇ = I/√(m/P), 1/s, with the inertial number I, the mass m of a grain and the
+    /// pressure P. √(m/P) = √(d/(g P)) if P is in m g/d, with diameter d and gravity g.
     fn rate(&self) -> f64 {
         self.kind.inertial / inertial_secs()
     }
 
-    /// Shear until the flow is steady, in heights (see the module).
+    /// Returns the shear until the flow is steady: displacement of the plate divided by the height of the layer. The
+    /// comment of the module gives the formula.
     fn strains_to_steady(&self) -> f64 {
         let times = (self.height() * self.kind.inertial).powi(2) / (PI * PI * SLOWEST);
         STRAINS[0] + TIMES_TO_STEADY * times
@@ -171,7 +176,7 @@ impl ShearedLayer {
         scene
     }
 
-    /// Shears the layer until it is steady, and then measures it.
+    /// Shears the layer until its flow is steady, and then measures the layer.
     fn run(&self, variant: StepVariant) -> Result<RunReadings> {
         let mut run = WatchedRun::start(&self.scene(variant))?;
         let begin_secs = PRESSING_SECS + self.strains_to_steady() / self.rate();
@@ -201,12 +206,12 @@ impl ShearedLayer {
     }
 }
 
-/// √(m/P), s.
+/// Returns the time √(m/P) of a grain of mass m under the pressure P, s.
 fn inertial_secs() -> f64 {
     (DIAMETER / (GRAVITY * PRESSURE)).sqrt()
 }
 
-/// Forces of the lower and of the upper plate on the grains, N.
+/// Returns the forces of the lower and of the upper plate on the grains, N.
 fn on_plates(moment: &Moment, of_plate: u32) -> [DVec2; 2] {
     let on = |is_upper: bool| -> DVec2 {
         let of_it = moment.contacts.iter().filter(|contact| {
@@ -217,13 +222,13 @@ fn on_plates(moment: &Moment, of_plate: u32) -> [DVec2; 2] {
     [on(false), on(true)]
 }
 
-/// Heights between which a layer is measured, m.
+/// Returns the two heights between which a layer is measured, m.
 fn inside(moment: &Moment) -> [f64; 2] {
     let top = moment.surroundings.fixed_discs.iter().map(|disc| disc.position.y);
     [MARGIN * DIAMETER, top.fold(0.0, f64::max) - MARGIN * DIAMETER]
 }
 
-/// γ̇, 1/s.
+/// Returns the shear rate γ̇ of a layer, 1/s: the slope of the velocity over the height.
 fn rate(moment: &Moment) -> f64 {
     let [low, high] = inside(moment);
     let grains = moment.grains.iter().filter(|grain| (low..high).contains(&grain.position.y));
@@ -232,7 +237,8 @@ fn rate(moment: &Moment) -> f64 {
     slope(&points)
 }
 
-/// The rows of [`judge`].
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source.
 const PUBLISHED: &str = "
     T/N, extended to I = 0 | 0.2 0.25 0.32 | recalled: da Cruz et al. 2005: 0.25
     slope of T/N in I | 0.6 1.1 1.6 | recalled: da Cruz et al. 2005: 1.1
@@ -244,7 +250,7 @@ const PUBLISHED: &str = "
 fn judge(all: &Measurements) -> Vec<Measured> {
     let (grains, numbers) = (all.first("grains"), all.list("inertial"));
     let system = format!("{grains} grains, I ≈ {numbers}, {}", all.seeds());
-    // The value at I = 0 and the slope of a line fitted to a reading, for each seed.
+    // The value at the inertial number I = 0, and the slope, of a line fitted to a reading, for each seed.
     let lines = |reading: &str| -> [Vec<f64>; 2] {
         let line = |of_seed: Measurements| {
             let points = of_seed.points(|case| (case.reading("inertial"), case.reading(reading)));
@@ -258,8 +264,8 @@ fn judge(all: &Measurements) -> Vec<Measured> {
     values.map(|values| (system.clone(), values)).collect()
 }
 
-/// Relative difference between the forces of the upper and the lower plate, in the layers with the largest value of a
-/// parameter. It is not 0 while one plate still accelerates the flow.
+/// Returns the relative difference between the forces of the upper and the lower plate, in the layers with the largest
+/// value of a parameter. The difference is not 0 while one plate still accelerates the flow.
 pub(super) fn imbalances(all: &Measurements, name: &str) -> Vec<f64> {
     let most = all.values(name).last().copied().unwrap_or(f64::NAN);
     all.with(name, most).readings("imbalance")
@@ -273,7 +279,8 @@ mod tests {
     use crate::sim::Stepper;
     use crate::solver::Method;
 
-    /// Under `range` E = η (δc/d)/I², with η = Bond/(2P).
+    /// Checks that breaking a bond takes the prescribed energy E. Under `range` E = η (δ_c/d)/I², with η = Bond/(2P),
+    /// the debonding distance δ_c, the diameter d and the inertial number I.
     #[test]
     fn a_bond_takes_the_energy_that_its_layer_asks_for() {
         let (bond, energy, inertial) = (6.0, 3.0, 0.08);
@@ -293,7 +300,7 @@ mod tests {
             if stepper == Stepper::Range {
                 let strength = bond / (2.0 * PRESSURE);
                 let found = strength * scene.parameters.debonding_distance / inertial.powi(2);
-                // Grains vary in size, and their mean mass is a few per cent above that of the mean size.
+                // Grains vary in size, and their mean mass is a few per cent above the mass of a grain of mean size.
                 assert!((found / energy - 1.0).abs() < 0.1, "{found}");
             }
         }

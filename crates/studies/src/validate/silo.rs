@@ -1,8 +1,8 @@
-//! A silo with a flat bottom: the discharge rate of an orifice of width W.
+//! Validates a silo with a flat bottom: the discharge rate Q of an orifice of width W.
 //!
-//! Q ∝ ρ_b √g (W − k d)^{3/2} in the plane (W. A. Beverloo, H. A. Leniger, J. van de Velde 1961, in two dimensions).
-//! Therefore Q^{2/3} is linear in W and vanishes at k d. For rigid grains, Q ∝ √g follows from dimensional analysis
-//! alone.
+//! In the plane, Q ∝ ρ_b √g (W − k d)^{3/2} with the bulk density ρ_b, gravity g, the diameter d and a constant k (W.
+//! A. Beverloo, H. A. Leniger, J. van de Velde 1961, in two dimensions). Therefore Q^{2/3} is linear in W and vanishes
+//! at W = k d. For rigid grains, Q ∝ √g follows from dimensional analysis alone.
 
 use glam::DVec2;
 
@@ -29,14 +29,15 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 };
 
 const FRICTION: f64 = 0.5;
-/// Discharged mass fractions at the beginning and at the end of the measurement.
+/// Discharged mass fractions at which the measurement begins and ends.
 const OUT: [f64; 2] = [0.08, 0.4];
-/// Time at which the plate falls, s.
+/// Simulated time at which the plate below the orifice falls, s.
 const RELEASE_SECS: f64 = 0.02;
-/// Orifice for the test with stronger gravity, in diameters, and the factor of gravity.
+/// Width of the orifice in the test with stronger gravity, in diameters, and the factor of gravity.
 const OF_GRAVITY: f64 = 8.0;
 const TIMES_GRAVITY: f64 = 4.0;
-/// Assumed k in the test of the exponent.
+/// Value of the constant k that the test of the exponent assumes in the law Q ∝ (W − k d)^{3/2}, with the discharge
+/// rate Q, the width W of the orifice and the diameter d.
 const TAKEN_K: f64 = 1.4;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
@@ -79,7 +80,7 @@ fn discharge(
     let mut run = WatchedRun::start(&open)?;
     let all: f64 = run.simulation.world().grains.masses.iter().sum();
     let mut fallen = Vec::new();
-    // Several times the expected duration. If the flow jams, there is no discharge rate.
+    // The limit is several times the expected duration. If the flow jams, there is no discharge rate.
     let limit_secs = 4.0 / gravity.sqrt();
     let mut part = 0.0;
     while part < OUT[1] && run.simulation.time_secs() < limit_secs {
@@ -93,12 +94,13 @@ fn discharge(
         }
     }
     let rate = if part < OUT[1] { f64::NAN } else { slope(&fallen) };
-    // In σ d √(g d): σ is 1 kg/m².
+    // The unit of the rate is σ d √(g d), with the diameter d and the areal density σ = 1 kg/m².
     let unit = DIAMETER.powf(1.5) * GRAVITY.sqrt();
     Ok(run.with([("rate", rate / unit)]))
 }
 
-/// The rows of [`judge`].
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source.
 const PUBLISHED: &str = "
     k of (W − k d) | 0.8 1.4 2 | recalled: Beverloo et al. 1961: 1.3 … 1.5
     exponent of Q in W − 1.4 d | 1.3 1.5 1.7 | recalled: Beverloo et al. 1961 in the plane: 1.5

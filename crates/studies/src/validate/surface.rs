@@ -1,15 +1,15 @@
-//! The upper surface of a heap of discs, and its roughness.
+//! Measures the upper surface of a heap of discs, and its roughness.
 
 use super::fit::line_through;
 use crate::scene::stability::DIAMETER;
 use crate::sim::GrainState;
 use crate::statistics::mean;
 
-/// Distance between heights, in diameters.
+/// Horizontal distance between two points of the surface, in diameters.
 const SPACING: f64 = 0.5;
 
-/// Heights of the surface at points half a diameter apart, from the middle out to the first point without discs below,
-/// in diameters.
+/// Returns the heights of the surface, in diameters, at points half a diameter apart. The points extend from the middle
+/// to both sides, as far as there are discs below.
 pub(super) fn profile(grains: &[GrainState]) -> Vec<f64> {
     let above = |x: f64| {
         let arcs = grains.iter().filter_map(|grain| {
@@ -28,9 +28,10 @@ pub(super) fn profile(grains: &[GrainState]) -> Vec<f64> {
     heights
 }
 
-/// Roughness of a profile: the root mean square deviation from the least-squares line in windows of `window` diameters,
-/// in diameters; NaN if the profile is shorter than a window. For a self-affine profile it grows as a power of the
-/// window (J. Schmittbuhl, J.-P. Vilotte, S. Roux, Phys. Rev. E 51, 131, 1995, "variable bandwidth").
+/// Returns the roughness of a profile, in diameters: the root mean square deviation from the least-squares line in
+/// windows of `window` diameters. The roughness is NaN if the profile is shorter than a window. For a self-affine
+/// profile it grows as a power of the window (J. Schmittbuhl, J.-P. Vilotte, S. Roux, Phys. Rev. E 51, 131, 1995,
+/// "variable bandwidth").
 pub(super) fn roughness(heights: &[f64], window: f64) -> f64 {
     let count = (window / SPACING).round() as usize + 1;
     let squares: Vec<f64> = heights
@@ -63,7 +64,7 @@ mod tests {
         assert!(roughness(&slope[..5], 10.0).is_nan());
     }
 
-    /// A random walk is self-affine with the exponent ½.
+    /// Checks the exponent of the roughness of a random walk, which is self-affine with the exponent ½.
     #[test]
     fn a_random_walk_is_rougher_by_the_root_of_the_window() {
         use rand::{RngExt, SeedableRng};

@@ -1,4 +1,4 @@
-//! The solver variants of experiments: methods, each with every time step and budget.
+//! Lists the solver variants of experiments: solver methods, each with every time step and every effort.
 
 use std::fmt::{Debug, Display};
 
@@ -7,19 +7,19 @@ use crate::scene::Scene;
 use crate::sim::Stepper;
 use crate::solver::{Method, SolverSettings};
 
-/// Largest number of sweeps to solve a step to a residual.
+/// Largest number of sweeps per step if a step is solved to a residual.
 const MOST_SWEEPS: u32 = 1_000;
 
-/// Default budgets of a method other than `auto`.
+/// Default efforts (numbers of sweeps per step) of a solver method other than `auto`.
 const UNASKED: [SolveBudget; 2] = [SolveBudget::Sweeps(20), SolveBudget::Sweeps(100)];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SolveBudget {
-    /// A fixed number of sweeps, whatever the residual.
+    /// Makes a fixed number of sweeps per step, without a limit of the residual.
     Sweeps(u32),
-    /// To this residual, within [`MOST_SWEEPS`].
+    /// Solves each step to this residual, with at most [`MOST_SWEEPS`] sweeps.
     Residual(f64),
-    /// The default: to an estimated error of the velocities.
+    /// Solves each step to the default tolerance of the estimated velocity error.
     Default,
 }
 
@@ -38,7 +38,7 @@ impl SolveBudget {
 pub(super) struct StepVariant {
     pub stepper: Stepper,
     pub method: Method,
-    /// Δt, s.
+    /// Time step Δt, s.
     pub time_step_secs: f64,
     pub budget: SolveBudget,
 }
@@ -52,7 +52,7 @@ impl StepVariant {
             stepper if stepper.reads("solver") => {
                 format!("{stepper}, {method}, {of_step}, {}", budget.words())
             }
-            // This stepper determines its effort itself.
+            // This stepper uses no solver method, and determines its effort itself.
             stepper => format!("{stepper}, {of_step}"),
         }
     }
@@ -71,10 +71,12 @@ impl StepVariant {
     }
 }
 
-/// Every requested method with every requested time step and budget. An empty list stands for the defaults.
+/// Returns the variants of every requested solver method with every requested time step and effort. An empty list
+/// stands for the defaults.
 ///
 /// # Errors
-/// Names the first value that is outside its range, is given twice, or is not read by the stepper.
+/// If a value is outside its range, is given twice, or is not used by the stepper. The error names the first such
+/// value.
 pub(super) fn step_variants(
     stepper: Stepper,
     methods: &[Method],

@@ -1,4 +1,4 @@
-//! Runs of experiments, their initial states, and their measurements.
+//! Runs the scenes of experiments, makes their initial states, and provides common measurements.
 
 use std::f64::consts::PI;
 
@@ -14,14 +14,14 @@ use crate::scene::stability::DIAMETER;
 use crate::sim::{Moment, Simulation, Tally};
 use crate::world::{Boundary, Grain};
 
-/// Relative spread: diameters are uniform in d·[1 − SPREAD, 1 + SPREAD].
+/// Relative spread of diameters, which are uniform in d·[1 − SPREAD, 1 + SPREAD] with the mean diameter d.
 const SPREAD: f64 = 0.2;
-/// Terminal speed of discs that fall through a medium, in √(g d).
+/// Terminal speed of discs that fall through a medium, in √(g d), with gravity g and mean diameter d.
 const TERMINAL_SPEED: f64 = 0.5;
-/// Mean kinetic energy below which discs count as at rest, in m g d.
+/// Mean kinetic energy below which discs count as at rest, in m g d (weight of a disc times mean diameter).
 const REST_ENERGY: f64 = 1e-8;
 
-/// A run in progress, with the sums over its steps.
+/// A run in progress, with the sums over its steps so far.
 pub(super) struct WatchedRun {
     pub simulation: Simulation,
     tally: Tally,
@@ -32,7 +32,7 @@ impl WatchedRun {
         Ok(Self { simulation: scene.simulation()?, tally: Tally::default() })
     }
 
-    /// Steps until a simulated time (s), and calls `after` after each step.
+    /// Computes steps until a simulated time (s), and calls `after` after each step.
     pub(super) fn run_until(
         &mut self,
         secs: f64,
@@ -46,7 +46,7 @@ impl WatchedRun {
         Ok(())
     }
 
-    /// The result of the run, with these readings.
+    /// Returns the result of the run, with the given readings (named numbers).
     pub(super) fn with<const COUNT: usize>(&self, readings: [(&str, f64); COUNT]) -> RunReadings {
         RunReadings {
             readings: named(readings),
@@ -59,8 +59,8 @@ impl WatchedRun {
     }
 }
 
-/// Lets the discs of a scene fall through a medium for the time that the highest disc needs. Then removes the medium
-/// until they are at rest, or for the same time again.
+/// Lets the discs of a scene fall through a medium for the time that the highest disc needs. Then the medium is
+/// removed, and the run continues until the discs are at rest, or for the same time again.
 pub(super) fn settled(scene: &Scene) -> Result<WatchedRun> {
     let mut run = WatchedRun::start(scene)?;
     let world = run.simulation.world();
@@ -68,7 +68,7 @@ pub(super) fn settled(scene: &Scene) -> Result<WatchedRun> {
     let gravity = world.gravity.magnitude();
     let terminal = TERMINAL_SPEED * (gravity * world.mean_diameter).sqrt();
     let falling_secs = 0.6 * highest / terminal + 0.1;
-    // Linear, because an exponential could differ in its last digits between machines.
+    // The drag is linear in the time step, because an exponential could differ in its last digits between machines.
     let drag = 1.0 - run.simulation.parameters().time_step_secs * gravity / terminal;
     run.run_until(falling_secs, |simulation| simulation.scale_velocities(drag))?;
     let piece_secs = 0.1 * falling_secs;
@@ -81,7 +81,7 @@ pub(super) fn settled(scene: &Scene) -> Result<WatchedRun> {
     Ok(run)
 }
 
-/// The grains of a run at their present positions, at rest.
+/// Returns the grains of a run at their present positions, at rest.
 pub(super) fn at_rest(run: &WatchedRun) -> Vec<Grain> {
     let grains = &run.simulation.world().grains;
     let rest = |index| {
@@ -91,19 +91,19 @@ pub(super) fn at_rest(run: &WatchedRun) -> Vec<Grain> {
     (0..grains.len()).map(rest).collect()
 }
 
-/// A half-space through a point, in diameters.
+/// Returns a wall: a half-space whose boundary goes through the point (x, y), in diameters.
 pub(super) fn wall(x: f64, y: f64, normal: DVec2) -> Boundary {
     Boundary::HalfSpace { point: DIAMETER * DVec2::new(x, y), normal }
 }
 
-/// The floor and two walls of a box that is open above, `width` diameters wide.
+/// Returns the floor and the two side walls of a box that is open above and `width` diameters wide.
 pub(super) fn open_box(width: f64) -> Vec<Boundary> {
     let half = 0.5 * width;
     vec![wall(0.0, 0.0, DVec2::Y), wall(-half, 0.0, DVec2::X), wall(half, 0.0, -DVec2::X)]
 }
 
-/// Discs of random sizes on a jittered lattice, row by row from below, in the middle of a box that is open above,
-/// `width` diameters wide.
+/// Returns discs of random sizes on a randomly disturbed lattice, row by row from below, in the middle of a box that is
+/// open above and `width` diameters wide.
 pub(super) fn loose(count: usize, width: f64, seed: u64) -> Vec<Grain> {
     let spacing = 1.05 * (1.0 + SPREAD);
     let columns = (width / spacing).floor().max(1.0);
@@ -120,7 +120,7 @@ pub(super) fn loose(count: usize, width: f64, seed: u64) -> Vec<Grain> {
     (0..count).map(place).collect()
 }
 
-/// Mean kinetic energy of a disc, in m g d.
+/// Returns the mean kinetic energy of a disc, in m g d (weight of a disc times mean diameter).
 pub(super) fn mean_energy(simulation: &Simulation) -> f64 {
     let world = simulation.world();
     let mass: f64 = world.grains.masses.iter().sum();
@@ -135,7 +135,7 @@ pub(super) fn centre_of_mass(simulation: &Simulation) -> DVec2 {
     pairs.map(|(mass, place)| *mass * *place).sum::<DVec2>() / mass
 }
 
-/// Solid fraction of the cells whose grains are inside.
+/// Returns the solid fraction of the cells of those grains whose centres are inside a region.
 pub(super) fn solid_fraction(moment: &Moment, is_inside: impl Fn(DVec2) -> bool) -> f64 {
     let (mut discs, mut cells) = (0.0, 0.0);
     for (grain, measures) in moment.grains.iter().zip(&measure(moment).grains) {

@@ -1,9 +1,10 @@
-//! The friction of a sheared layer with weak cohesion, η = C₀/(P d) = 1, against the cone and the touch tolerance.
+//! Validates the friction of a sheared layer with weak cohesion, η = C₀/(P d) = 1, with different friction cones and
+//! touch tolerances. C₀ is the cohesion force, P the pressure and d the diameter.
 //!
 //! `validate::cohesive_shear` finds more friction at η = 1 than without cohesion. Three causes are possible. The
-//! shifted cone bounds friction by μ(N + C₀), so that sliding contacts bear up to μC₀ more. Cohesion at touch tolerance 0
-//! ends within one step, and so depends on Δt. A tolerance lets open contacts pull, and bear friction in the shifted
-//! cone.
+//! shifted cone bounds friction by μ(N + C₀) with the normal force N, so that sliding contacts bear up to μC₀ more.
+//! Cohesion at touch tolerance 0 ends within one step, and so depends on Δt. A larger touch tolerance lets open
+//! contacts pull, and bear friction in the shifted cone.
 
 use super::cohesive_shear::{INERTIAL, WEAK};
 use super::experiment::*;
@@ -23,7 +24,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// Cones and touch tolerances, d.
+/// Friction cones and touch tolerances, in diameters d.
 const BOUNDS: [(FrictionCone, f64); 4] = [
     (FrictionCone::Shifted, 0.0),
     (FrictionCone::Compressive, 0.0),
@@ -47,7 +48,8 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     layers(effort, variant, &kinds)
 }
 
-/// The rows of [`judge`], in the order of [`BOUNDS`].
+/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
+/// lower end of the accepted band, published value, upper end | source. The rows are in the order of [`BOUNDS`].
 const PUBLISHED: &str = "
     T/N over that without cohesion, shifted cone, tolerance 0 \
         | 0.85 1 1.2 | recalled: Rognon et al. 2006: weak cohesion leaves it

@@ -1,11 +1,11 @@
-//! Drop and roll: the quick way to make a pile.
+//! Drop and roll: a quick method to generate a pile.
 //!
-//! Discs are dropped one by one, and each rolls until two others hold it ([`dropped`]). This packing carries itself
-//! except for a few grains, because each of the two supports carries the weight of one side. Only the contact forces
-//! are missing. They travel by about a layer per sweep, so the pile first sways up and down as a whole, for a number
-//! of steps that grows with its layers. A medium damps this motion: with less damping the pile keeps swaying, with
-//! more it creeps. Then the medium becomes thin, so that grains whose supports gave way can fall, and is removed
-//! before the pile counts as at rest.
+//! Discs are dropped one by one, and each rolls until two other bodies support it ([`dropped`]). Almost all grains of
+//! this packing are in stable positions, because each of the two supports carries the weight of one side. Only the
+//! contact forces are missing. They spread by about one layer per sweep, so the pile first oscillates up and down as
+//! a whole, for a number of steps that grows with the number of its layers. A medium damps this motion. With less
+//! damping the pile keeps oscillating, and with more it creeps. Then the medium becomes thin, so that grains that
+//! have lost their supports can fall. The medium is removed before the pile counts as at rest.
 
 use glam::DVec2;
 use rand::{RngExt, SeedableRng};
@@ -23,44 +23,49 @@ use crate::sim::Simulation;
 use crate::solver::SolverSettings;
 use crate::world::{Disc, Grain, Parameters};
 
-/// Number of random places tried per disc; the disc takes the lowest. With one try the deposit has slopes that
-/// avalanche for many steps when the pile is released. More than a few change little.
+/// Number of random positions that are tried for each disc. The disc takes the position at which it comes to rest
+/// lowest. With one trial, the deposit has slopes that avalanche for many steps when the simulation begins. More than
+/// a few trials change little.
 const TRIES: usize = 4;
-/// Fraction of its height by which a pile is compressed before it settles, so that all contacts touch. If smaller,
-/// the errors of the first steps (gΔt² = 8e-5 d) open contacts; if larger, the remaining overlap is larger.
+/// Fraction of its height by which a pile is compressed before it settles, so that all contacts touch. With a smaller
+/// fraction, the errors of the first steps (gΔt² = 8e-5 d) open contacts. With a larger fraction, the remaining
+/// overlaps are larger.
 const PRESSED: f64 = 2e-4;
-/// Time step of the settling, s. It stays constant: a longer step later would open the contacts again, because errors
-/// proportional to its square exceed their overlaps.
+/// Time step while the pile settles, s. It stays constant. A longer time step later would open the contacts again,
+/// because the errors of a step are proportional to the square of its length and would exceed the overlaps.
 const TIME_STEP_SECS: f64 = 2e-4;
-/// Largest number of sweeps per step. Steps that start from each other's forces help the pile more than sweeps that
-/// end one step well.
+/// Largest number of sweeps per step. Many steps, each of which starts from the forces of the previous step, help the
+/// pile more than many sweeps in each step.
 const SWEEPS: u32 = 20;
-/// Relative change of the impulses at which the sweeps of a step stop.
+/// Relative change of the impulses in a sweep at which the solve of a step stops.
 const TOLERANCE: f64 = 1e-7;
-/// Fraction of the velocities that the medium removes per step, times the number of layers: twice the frequency of
-/// the slowest sway. With half of it the pile sways, with twice as much it creeps; both double the time.
+/// Fraction of the velocities that the thick medium removes per step, times the number of layers: twice the frequency
+/// of the slowest oscillation. With half of this value the pile oscillates, and with twice the value it creeps. Both
+/// double the time to settle.
 const DAMPING_BY_LAYERS: f64 = 7.0;
-/// Largest fraction that the medium removes per step.
+/// Largest fraction of the velocities that the medium removes per step.
 const MOST_DAMPING: f64 = 0.2;
-/// Median speed of the grains, in √(g·d), below which the pile no longer sways and the medium becomes thin.
+/// Median speed of the grains, in √(g·d) (g: gravity, d: mean diameter), below which the pile no longer oscillates
+/// and the medium becomes thin.
 const STILL_SPEED: f64 = 1e-3;
-/// Terminal speed of a grain falling through the thin medium, in √(g·d).
+/// Terminal speed of a grain that falls through the thin medium, in √(g·d) (g: gravity, d: mean diameter).
 const TERMINAL_SPEED: f64 = 0.5;
-/// Mean kinetic energy of a grain, in m g d, below which the medium is removed. Without the medium, a pile that stays
-/// below ten times this value is at rest.
+/// Mean kinetic energy of a grain, in m g d (mass, gravity, mean diameter), below which the medium is removed. After
+/// that, a pile whose energy stays below ten times this value is at rest.
 const REST_ENERGY: f64 = 1e-7;
-/// Speed, in √(g·d), above which a grain counts as falling. At rest at most one grain in [`GRAINS_A_MOVING_ONE`] is
-/// faster.
+/// Speed, in √(g·d) (g: gravity, d: mean diameter), above which a grain counts as falling. In a pile at rest at most
+/// one grain per [`GRAINS_A_MOVING_ONE`] grains is faster.
 const REST_SPEED: f64 = 1e-2;
-/// Number of grains per moving grain allowed at rest. In a large pile some grain always tips over somewhere, so
-/// waiting for the last would take longer the larger the pile.
+/// Number of grains for each grain that may still move in a pile at rest. In a large pile, grains somewhere always
+/// tip over, so waiting for the last grain would take longer the larger the pile is.
 const GRAINS_A_MOVING_ONE: usize = 10_000;
 const STEPS_PER_LOOK: u32 = 10;
-/// Number of steps after which the settling fails: a constant, and an addition per layer.
+/// Number of steps after which the generation of the pile fails: a constant, and an addition per layer of the pile.
 const LIMIT_STEPS: [f64; 2] = [10_000.0, 100.0];
 
-/// Drops discs of the given radii (m, each above 0) one by one at random places between walls at ± `half_width` (m,
-/// at least the largest radius) onto fixed discs. Returns their centres at rest, in order.
+/// Drops discs one by one at random positions between two walls at ±`half_width` onto fixed discs, and lets each roll
+/// until it is supported. Returns the discs in their final positions, in the order of `radii`. The radii are in m and
+/// above 0. `half_width` is in m and at least the largest radius.
 pub fn drop_and_roll(
     radii: &[f64],
     base: &[Disc],
@@ -154,20 +159,20 @@ pub(super) fn settled(
     }
 }
 
-/// The medium that slows the grains.
+/// The medium that damps the velocities of the grains while the pile settles.
 #[derive(Clone, Copy)]
 enum Medium {
-    /// So thick that the pile does not sway.
+    /// Medium so thick that the pile cannot oscillate up and down as a whole.
     Thick {
         damping: f64,
     },
-    /// So thin that grains can fall.
+    /// Medium so thin that grains can fall through it.
     Thin,
     None,
 }
 
 impl Medium {
-    /// The fraction of the velocities removed per step.
+    /// Returns the fraction of the velocities that the medium removes per step.
     fn damping(self) -> f64 {
         match self {
             Self::Thick { damping } => damping,
@@ -177,10 +182,11 @@ impl Medium {
     }
 }
 
-/// Motion of the grains: speeds of their centres or rims in √(g·d), energy in m g d.
+/// Measures of the motion of the grains: their mean kinetic energy in m g d, and speeds of centres or rims in √(g·d),
+/// with the mass m of a grain, gravity g and the mean diameter d.
 struct GrainSpeeds {
     energy: f64,
-    /// Fastest grain, except for the few that may move.
+    /// Speed of the fastest grain, not counting the few grains that may move in a pile at rest.
     fastest: f64,
     median_speed: f64,
 }
@@ -203,7 +209,8 @@ impl GrainSpeeds {
         self.energy <= energy && self.fastest <= REST_SPEED
     }
 
-    /// Speed relative to that of a pile at rest, the larger of the ratios by energy and by the fastest grain.
+    /// Returns the speed relative to the speed of a pile at rest: the larger of two ratios, one by the kinetic energy
+    /// and one by the fastest grain.
     fn over_rest(&self) -> f64 {
         (self.energy / REST_ENERGY).sqrt().max(self.fastest / REST_SPEED)
     }

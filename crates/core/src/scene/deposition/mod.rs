@@ -1,4 +1,5 @@
-//! New piles: discs put into a box over a rough base and left to come to rest, by rain or by drop and roll.
+//! Generation of new piles: discs are put into a box over a rough base and left to come to rest, by rain or by drop
+//! and roll.
 
 mod drop_and_roll;
 mod rain;
@@ -18,7 +19,8 @@ use crate::sim::{Observables, Simulation};
 use crate::solver::SolverSettings;
 use crate::world::{Boundary, Grain, Parameters};
 
-/// Makes an initial state. `progress` is called now and then; if it returns false, the settling stops with an error.
+/// Generates the initial state of a pile: places the grains and lets them come to rest. `progress` is called from
+/// time to time. If it returns false, the generation stops with an error.
 ///
 /// # Errors
 /// If a value is outside its range, the grains do not come to rest, or `progress` returns false.
@@ -29,7 +31,7 @@ pub fn settle(pile: &NewPile, progress: impl FnMut(Settling) -> bool) -> Result<
 /// Like [`settle`], but also returns the remaining motion and overlap of the grains.
 ///
 /// # Errors
-/// Same as [`settle`].
+/// The errors of [`settle`].
 pub fn deposit(pile: &NewPile, progress: impl FnMut(Settling) -> bool) -> Result<Settled> {
     pile.validate()?;
     match pile.deposition {
@@ -38,7 +40,7 @@ pub fn deposit(pile: &NewPile, progress: impl FnMut(Settling) -> bool) -> Result
     }
 }
 
-/// The grains before they settle. Quick.
+/// Returns the grains of a new pile before they settle. This takes little time, because no steps are computed.
 pub fn start_of(pile: &NewPile) -> Vec<Grain> {
     match pile.deposition {
         Deposition::Rain => rain::lattice(pile),
@@ -50,34 +52,34 @@ fn random_radius(pile: &NewPile, random: &mut Pcg64) -> f64 {
     0.5 * DIAMETER * pile.sizes.draw(random)
 }
 
-/// A pile counts as at rest after it has been slow for this long, s.
+/// Time for which a pile must have been slow until it counts as at rest, s.
 const REST_SECS: f64 = 0.02;
 
-/// Progress of a settling.
+/// Progress of a pile that comes to rest.
 #[derive(Clone, Copy, Debug)]
 pub struct Settling<'a> {
     /// The pile in its present state.
     pub simulation: &'a Simulation,
-    /// True if grains may still be falling through the medium of the rain.
+    /// True if grains may still be falling through the medium that slows the rain.
     pub rains: bool,
     /// Simulated time, s.
     pub time_secs: f64,
-    /// Simulated time after which the settling fails, s.
+    /// Simulated time after which the generation fails, s.
     pub limit_secs: f64,
-    /// Fastest grain, in units of the speed below which a pile is at rest.
+    /// Speed relative to the speed below which a pile is at rest. At most 1 for a pile at rest.
     pub speed_over_rest: f64,
 }
 
-/// A pile at rest, with zero velocities. The other fields describe it just before the velocities were set to zero.
+/// A pile at rest. The velocities of its grains were set to zero, and the numbers describe the pile just before that.
 #[derive(Clone, Debug)]
 pub struct Settled {
     /// The grains.
     pub grains: Vec<Grain>,
-    /// Mean kinetic energy of a grain when the pile came to rest, in m g d.
+    /// Mean kinetic energy of a grain, in m g d (mass, gravity, mean diameter).
     pub kinetic_energy: f64,
-    /// Mean overlap of touching pairs, in d.
+    /// Mean overlap of touching pairs of grains, in mean diameters.
     pub mean_overlap: f64,
-    /// Largest overlap of any contact, in d.
+    /// Largest overlap of any contact, in mean diameters.
     pub max_overlap: f64,
 }
 
@@ -103,7 +105,7 @@ fn not_at_rest(speed_over_rest: f64, limit_secs: f64) -> Error {
     Error::value("speed over rest", speed_over_rest, allowed)
 }
 
-/// The walls of a box for the pile's scene.
+/// Returns the two side walls of the box in which the grains of a pile come to rest.
 pub fn walls(box_width_in_diameters: f64) -> Vec<Boundary> {
     let wall = |side: f64| Boundary::HalfSpace {
         point: DVec2::new(side * 0.5 * box_width_in_diameters * DIAMETER, 0.0),
@@ -112,7 +114,7 @@ pub fn walls(box_width_in_diameters: f64) -> Vec<Boundary> {
     vec![wall(-1.0), wall(1.0)]
 }
 
-/// The pile's scene without cohesion and with walls.
+/// Returns the scene of a pile without cohesion, and with the side walls of the box.
 fn in_a_box(
     grains: Vec<Grain>,
     box_width_in_diameters: f64,
@@ -133,19 +135,19 @@ fn in_a_box(
     })
 }
 
-/// Speed of the fastest grain, m/s.
+/// Returns the speed of the fastest grain, m/s.
 fn fastest(simulation: &Simulation) -> f64 {
     speeds(simulation).fold(0.0, f64::max)
 }
 
-/// Speed of each grain, of its centre or its rim, m/s.
+/// Returns the speed of each grain, m/s: the larger of the speed of its centre and the speed of its rim by rotation.
 fn speeds(simulation: &Simulation) -> impl Iterator<Item = f64> {
     let grains = &simulation.world().grains;
     let turning = grains.angular_velocities.iter().zip(&grains.radii).map(|(w, r)| (w * r).abs());
     grains.velocities.iter().map(|velocity| velocity.length()).zip(turning).map(|(v, w)| v.max(w))
 }
 
-/// Mean kinetic energy of a grain, in m g d.
+/// Returns the mean kinetic energy of a grain, in m g d (mass, gravity, mean diameter).
 fn kinetic_energy(simulation: &Simulation) -> f64 {
     let weight: f64 = simulation.world().grains.masses.iter().map(|mass| mass * GRAVITY).sum();
     simulation.observables().kinetic_energy / (weight * DIAMETER)

@@ -1,9 +1,9 @@
-//! Rain: the method that made the initial state shipped with Slump.
+//! Rain: the method by which the initial state that is shipped with Slump was generated.
 //!
-//! The discs start at rest on a loose, jittered lattice above the base and fall through a medium. It limits them to a
-//! terminal speed of √(g·d)/2, so that they land with overlaps of at most terminal speed × Δt, whatever the height of
-//! the box. Once the pile has formed, the medium is removed and the pile settles under the laws of the paper's runs
-//! without cohesion.
+//! The discs start at rest on a loose lattice above the base, with random displacements, and fall through a medium.
+//! The medium limits their speed to the terminal speed √(g·d)/2. So they land with overlaps of at most the terminal
+//! speed times the time step, whatever the height of the box is. When the pile has formed, the medium is removed.
+//! Then the pile settles without cohesion under the contact laws of the paper's runs.
 
 use glam::DVec2;
 use rand::{RngExt, SeedableRng};
@@ -18,9 +18,10 @@ use crate::scene::paper::{DIAMETER, GRAVITY};
 use crate::solver::SolverSettings;
 use crate::world::Grain;
 
-/// Time step of the settling, s. The overlaps of the initial state scale with it.
+/// Time step while the pile settles, s. The overlaps of the initial state are proportional to it.
 const TIME_STEP_SECS: f64 = 1e-4;
-/// A pile is at rest if all its grains have been slower than this, in √(g·d), for [`REST_SECS`].
+/// Speed in √(g·d) (g: gravity, d: mean diameter). A pile is at rest if all its grains have been slower than this
+/// speed for [`REST_SECS`].
 const REST_SPEED: f64 = 2e-4;
 const STEPS_PER_LOOK: u32 = 100;
 
@@ -36,10 +37,10 @@ pub(super) fn settled(
     let rows = (rain.grains as f64 / columns as f64).ceil();
     let speed_unit = (GRAVITY * DIAMETER).sqrt();
     let terminal_speed = 0.5 * speed_unit;
-    // The upper rows fall farthest; the pile they land on is lower than the lattice.
+    // Grains of the upper rows fall farthest. The pile on which they land is lower than the lattice.
     let raining_secs = rows * rain.spacing() * DIAMETER / terminal_speed + 0.1;
     let limit_secs = 4.0 * raining_secs + 2.0;
-    // Linear, because an exponential would differ between machines in its last digits.
+    // The factor is linear in Δt, because an exponential would differ between machines in its last digits.
     let drag_per_step = 1.0 - TIME_STEP_SECS * GRAVITY / terminal_speed;
     let mut slow_since_secs = f64::INFINITY;
     loop {
@@ -71,7 +72,7 @@ pub(super) fn settled(
     Ok(Settled::of(simulation))
 }
 
-/// Discs on a jittered lattice, row by row from the bottom.
+/// Returns discs on a lattice with random displacements, row by row from the bottom.
 pub(super) fn lattice(rain: &NewPile) -> Vec<Grain> {
     let columns = rain.columns();
     let mut random = Pcg64::seed_from_u64(rain.seed);

@@ -1,15 +1,21 @@
 //! Path of one dropped disc: it falls, rolls over other discs, and comes to rest where two discs, or one disc and a
-//! wall, hold it (W. M. Visscher, M. Bolsterli, *Random packing of equal and unequal spheres in two and three
+//! wall, support it (W. M. Visscher, M. Bolsterli, *Random packing of equal and unequal spheres in two and three
 //! dimensions*, 1972; W. S. Jodrey, E. M. Tory, *Simulation of random packing of spheres*, 1979).
 //!
-//! No time steps are taken. A disc of radius r rolling on one of radius r_i at c_i has its centre on the circle of
-//! radius R = r + r_i about c_i, at an angle φ from the vertical. It rolls until the first of these events. It meets
-//! another disc k: φ = α − β with α the angle of c_k from c_i, D its distance and
+//! The path is computed from geometry, without time steps. Let a disc of radius r roll on a disc i of radius r_i with
+//! the centre c_i. Its centre is on the circle of radius R = r + r_i about c_i, at an angle φ from the vertical. The
+//! disc rolls until the first of these events:
 //!
-//! > cos β = (R² + D² − (r + r_k)²) / (2 R D);
+//! * It meets another disc k of radius r_k. Then φ = α − β, where α is the angle from the vertical at which the
+//!   centre c_k is seen from c_i, D is the distance of the two centres, and
 //!
-//! It meets the wall: sin φ = (distance of the centre's limit from c_i) / R. It meets the floor. Or φ = 90°, and it
-//! falls off. An obstacle holds the disc if it is on the other side of the disc's centre than i. Otherwise the disc
+//! > cos β = (R² + D² − (r + r_k)²) / (2 R D).
+//!
+//! * It meets a wall. Then sin φ is the horizontal distance from c_i to the disc's centre at the wall, divided by R.
+//! * It meets the floor.
+//! * φ = 90°, and the disc falls off.
+//!
+//! An obstacle supports the disc if the centre of the disc is between disc i and the obstacle. Otherwise the disc
 //! rolls on over the obstacle.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -19,18 +25,19 @@ use glam::DVec2;
 use crate::number::Parts;
 use crate::world::Disc;
 
-/// Fraction of the reach that counts as rounding: a disc may overlap a disc it passes, or land above the beginning of
-/// its fall, by this much. If it were 0, a disc between two others that leave it exactly enough room would be handed
-/// from one to the other without end, and a disc that falls off at the point where it touches the next one would fall
-/// through it. Each fall still ends lower, by at least a millionth of the reach.
+/// Fraction of the sum of two radii that counts as rounding. A rolling disc may overlap a disc that it passes by this
+/// much, and a falling disc may land this much above the point where its fall began. With the value 0, a disc between
+/// two discs that leave it exactly enough room would roll from one to the other endlessly. And a disc that falls off
+/// at the point where it touches the next disc would fall through that disc. Each fall still ends at least a
+/// millionth of the sum of the radii lower than it began.
 const GRAZING: f64 = 1e-12;
 
-/// The surface that discs are dropped on: fixed discs, discs dropped before, a floor and two walls. Discs are sorted
-/// into columns, so that the obstacles of a falling disc are found in constant time.
+/// The surface onto which discs are dropped: fixed discs, discs that were dropped before, a floor and two walls. The
+/// discs are sorted into columns, so that the obstacles of a falling disc are found in constant time.
 #[derive(Clone, Debug)]
 pub struct Deposit {
     discs: Vec<Disc>,
-    /// Indices of the discs whose centres lie in each column, by height.
+    /// For each column, the indices of the discs whose centres are in it, sorted by height.
     columns: Vec<Vec<u32>>,
     column_width: f64,
     largest_radius: f64,
@@ -39,8 +46,9 @@ pub struct Deposit {
 }
 
 impl Deposit {
-    /// A box with a floor at height `floor` and walls at ± `half_width`, m, for discs of at most
-    /// `largest_radius`, m. All are finite, and `half_width` is at least `largest_radius`, above 0.
+    /// Returns an empty box with a floor at the height `floor` and walls at ±`half_width`, for discs with radii of at
+    /// most `largest_radius`. All numbers are finite and in m. `largest_radius` is above 0, and `half_width` is at
+    /// least `largest_radius`.
     pub fn new(floor: f64, half_width: f64, largest_radius: f64) -> Self {
         let column_width = 2.0 * largest_radius;
         let count = (2.0 * half_width / column_width).ceil() as usize + 2;
@@ -54,7 +62,7 @@ impl Deposit {
         }
     }
 
-    /// Adds a disc. Discs farther outside the walls than a column's width are never met.
+    /// Adds a disc. A disc that is outside the walls by more than the width of a column is never an obstacle.
     pub fn add(&mut self, disc: Disc) {
         let index = self.discs.len() as u32;
         let column = self.column(disc.position.x);
@@ -70,8 +78,9 @@ impl Deposit {
         &self.discs
     }
 
-    /// The highest place at x, not above `highest`, where a falling disc lands on a disc other than `left`, the disc
-    /// that it falls from. Returns its height and the index of that disc, or `None` if it falls to the floor.
+    /// Finds the highest point at the coordinate `x` (m), not above `highest` (m), at which a falling disc lands on
+    /// another disc. The disc `left`, from which it falls, does not count. Returns the height of the falling disc's
+    /// centre and the index of the disc below it, or `None` if it falls to the floor.
     fn landing(
         &self,
         x: f64,
@@ -101,8 +110,8 @@ impl Deposit {
         best
     }
 
-    /// Calls `visit` for each disc that a disc of this radius may touch if its centre is within the rectangle, and
-    /// for some others.
+    /// Calls `visit` for each disc that a disc of radius `radius` (m) may touch while its centre is within the
+    /// rectangle from `min` to `max` (m). It is also called for some other discs.
     fn each_near(&self, [min, max]: [DVec2; 2], radius: f64, mut visit: impl FnMut(usize, &Disc)) {
         let reach = radius + self.largest_radius;
         let middle = 0.5 * (min.x + max.x);
@@ -120,7 +129,7 @@ impl Deposit {
     }
 
     fn column(&self, x: f64) -> usize {
-        // One extra column on either side for fixed discs that reach beyond the walls.
+        // There is one extra column on either side, for fixed discs that extend beyond the walls.
         let at = ((x + self.half_width) / self.column_width).floor() + 1.0;
         at.clamp(0.0, (self.columns.len() - 1) as f64) as usize
     }
@@ -130,12 +139,12 @@ impl Deposit {
     }
 }
 
-/// A body that holds a disc.
+/// A body on which a disc at rest is supported: another disc, a wall or the floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Support {
     /// The disc with this index in the deposit.
     Disc(usize),
-    /// The nearer wall.
+    /// The wall that is nearer to the disc.
     Wall,
     /// The floor.
     Floor,
@@ -144,17 +153,17 @@ pub enum Support {
 /// Position of rest of a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
-    /// Its centre, m.
+    /// Centre of the disc, m.
     pub centre: DVec2,
-    /// The body that it lies on, and a second support if one is needed.
+    /// The body on which the disc lies, and a second support if one body is not enough.
     pub supports: (Support, Option<Support>),
 }
 
-/// Angle by which rounding may place a contact behind a rolling disc, rad.
+/// Angle, rad, by which a contact can seem to be behind a rolling disc because of rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The position of rest of a disc of this radius dropped at `x` from above all others. The radius is at most the
-/// largest of the deposit, and x leaves the disc between the walls.
+/// Returns the position of rest of a disc that is dropped at the coordinate `x` (m) from above all other discs. The
+/// radius (m) is at most the largest radius of the deposit, and at `x` the disc is between the walls.
 pub fn dropped(deposit: &Deposit, x: f64, radius: f64) -> Rest {
     let mut fall = FallingDisc { from: DVec2::new(x, f64::INFINITY), left: None, side: 1.0 };
     loop {
@@ -166,7 +175,7 @@ pub fn dropped(deposit: &Deposit, x: f64, radius: f64) -> Rest {
         let centre = DVec2::new(x, height);
         let aside = x - deposit.discs()[index].position.x;
         let side = if aside == 0.0 { fall.side } else { aside.signum() };
-        // Each fall ends lower than the one before, so the loop ends.
+        // Each fall ends lower than the previous fall, so the loop ends.
         match rolled(deposit, RollingDisc { radius, centre, on: index, side }) {
             RollEnd::Rests(rest) => return rest,
             RollEnd::FallsOff(next) => fall = next,
@@ -174,14 +183,15 @@ pub fn dropped(deposit: &Deposit, x: f64, radius: f64) -> Rest {
     }
 }
 
-/// A disc that falls from `from`, off the disc `left`, after rolling to `side`.
+/// A disc that starts to fall at `from` (m), off the disc `left`, after it has rolled to `side` (+1: right, −1:
+/// left).
 struct FallingDisc {
     from: DVec2,
     left: Option<usize>,
     side: f64,
 }
 
-/// A disc that rolls on another, to the right (side +1) or to the left (−1).
+/// A disc that rolls on the disc `on`, to the right (`side` +1) or to the left (−1).
 struct RollingDisc {
     radius: f64,
     centre: DVec2,
@@ -194,7 +204,7 @@ enum RollEnd {
     FallsOff(FallingDisc),
 }
 
-/// Obstacle of a rolling disc.
+/// Obstacle that a rolling disc meets.
 #[derive(Clone, Copy)]
 enum Obstacle {
     Disc(usize),
@@ -203,7 +213,7 @@ enum Obstacle {
     Nothing,
 }
 
-/// Rolls to one side, from disc to disc, until something holds it or it falls off.
+/// Rolls a disc to one side, from disc to disc, until it is supported or falls off.
 fn rolled(deposit: &Deposit, mut roll: RollingDisc) -> RollEnd {
     loop {
         let RollingDisc { radius, on, side, .. } = roll;
@@ -218,7 +228,7 @@ fn rolled(deposit: &Deposit, mut roll: RollingDisc) -> RollEnd {
             {
                 return held(Support::Disc(index));
             }
-            // It continues to the same side, and passes each disc once.
+            // The disc continues to the same side, so it passes each disc only once.
             Obstacle::Disc(index) => roll = RollingDisc { radius, centre, on: index, side },
             Obstacle::Nothing => {
                 return RollEnd::FallsOff(FallingDisc { from: centre, left: Some(on), side });
@@ -261,10 +271,11 @@ fn first_met(deposit: &Deposit, roll: &RollingDisc) -> Obstacle {
         let (distance, other_reach) = (there.length(), radius + other.radius);
         let cosine = (reach * reach + distance * distance - other_reach * other_reach)
             / (2.0 * reach * distance);
-        // It rolls past a disc that it would only graze.
+        // The disc rolls past a disc that it would only graze.
         if cosine.abs() < 1.0 - GRAZING {
             let angle = libm::atan2(there.x, there.y) - libm::acos(cosine);
-            // The first angle at or after the present one, except for rounding.
+            // Angle from the present position to the position at which the two discs touch. It is not negative,
+            // except for rounding.
             let ahead = (angle - now + ROUNDING).rem_euclid(TAU) - ROUNDING;
             meet(now + ahead, Obstacle::Disc(index));
         }
@@ -272,8 +283,8 @@ fn first_met(deposit: &Deposit, roll: &RollingDisc) -> Obstacle {
     first.1
 }
 
-/// The centre of a disc that has rolled to its obstacle. Uses only square roots, because sines would differ between
-/// machines in their last digits.
+/// Returns the centre (m) of a disc that has rolled to its obstacle. Uses only square roots, because sines would
+/// differ between machines in their last digits.
 fn place_at(deposit: &Deposit, roll: &RollingDisc, met: Obstacle) -> DVec2 {
     let &RollingDisc { radius, on, side, .. } = roll;
     let below = &deposit.discs()[on];

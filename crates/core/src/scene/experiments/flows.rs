@@ -1,4 +1,4 @@
-//! Flowing grains: a collapsing column, a silo, an incline, a drum and a shaken box.
+//! Scenes of flowing grains: a collapsing column, a silo, an incline, a drum and a shaken box.
 
 use std::f64::consts::TAU;
 
@@ -12,24 +12,26 @@ use crate::world::{
     Boundary, Disc, Grain, GravityTurn, Motion, MotionCourse, TurnCourse, direction,
 };
 
-/// Number of grains of a column with R₀ = H₀ = d.
+/// Number of grains of a column whose half-width R₀ and height H₀ are one diameter d each.
 const GRAINS_OF_SQUARE: f64 = 2.09;
-/// Distance (m) and time (s) of the gates' motion: 15 m/s.
+/// Distance by which each gate moves, m. With `GATE_SECS` (the time of this motion, s) its speed is 15 m/s.
 const GATE_WAY: f64 = 3.0;
 const GATE_SECS: f64 = 0.2;
-/// Half-width of the rough floor, relative to the longest known run-out. Beyond it the floor is smooth.
+/// Half-width of the rough floor, relative to the longest known run-out of a collapsed column. Farther outside the
+/// floor is smooth.
 const REACH: f64 = 1.3;
 
-/// R₀, in diameters, of a column with this number of grains.
+/// Returns the half-width R₀, in diameters, of a column with this number of grains and the aspect ratio H₀/R₀ (H₀:
+/// height).
 pub fn half_width(grains: usize, aspect: f64) -> f64 {
     (grains as f64 / (GRAINS_OF_SQUARE * aspect)).sqrt()
 }
 
-/// A column of grains between two gates over a rough floor. The gates are pulled away faster than grains can follow,
-/// and the column spreads to both sides.
+/// Returns the scene of a collapsing column: grains between two gates over a rough floor. The gates are pulled away
+/// faster than grains can follow, and the column spreads to both sides.
 ///
-/// Its half-width is R₀ and its height H₀, so that with a = H₀/R₀ and a solid fraction of 0.82 it has
-/// 2 a R₀² · 0.82/(π/4) = 2.09 a R₀²/d² grains.
+/// The column has the half-width R₀ and the height H₀, with the aspect ratio a = H₀/R₀. At a solid fraction of 0.82
+/// it has 2 a R₀² · 0.82/(π/4) = 2.09 a R₀²/d² grains of diameter d.
 pub fn collapse() -> Scene {
     let (grains, aspect) = (400, 2.0);
     let half = half_width(grains, aspect);
@@ -40,12 +42,12 @@ pub fn collapse() -> Scene {
     scene
 }
 
-/// Adds the gates and the floor to a scene of grains with half-width R₀ in diameters. The gates move at
-/// `release_secs`.
+/// Adds two gates and a floor to a scene of grains. `half` is the half-width of the column, in diameters. The gates
+/// start to move at the time `release_secs`.
 pub fn collapse_of(mut scene: Scene, half: f64, release_secs: f64) -> Scene {
     let top = |grain: &Grain| grain.position.y + grain.radius;
     let aspect = scene.grains.iter().map(top).fold(0.0, f64::max) / (half * DIAMETER);
-    // Beyond the longest known run-out of columns.
+    // The longest known run-out of columns, times a margin.
     let reach = REACH * half * (1.0 + (2.5 * aspect).max(3.25 * libm::pow(aspect, 0.7)));
     scene.fixed_discs = rough_base(2.0 * reach, DIAMETER);
     let gate = |side: f64| half_space(DVec2::new(side * half, 0.0), DVec2::new(-side, 0.0));
@@ -59,17 +61,17 @@ pub fn collapse_of(mut scene: Scene, half: f64, release_secs: f64) -> Scene {
     scene
 }
 
-/// Width and height of the silo, in diameters.
+/// Width of the silo, in diameters.
 pub const SILO_WIDTH: f64 = 26.0;
 const SILO_HEIGHT: f64 = 60.0;
-/// Depth of the catching floor below the bottom, in diameters.
+/// Distance from the bottom of the silo down to the floor that catches the grains, in diameters.
 const FLOOR_DEPTH: f64 = 30.0;
-/// Distance (m) and time (s) of the plate's fall: faster than grains.
+/// Distance by which the plate falls, m. With `PLATE_SECS` (the time of this motion, s) it falls faster than grains.
 const PLATE_WAY: f64 = 1.0;
 const PLATE_SECS: f64 = 0.1;
 
-/// A silo with a flat bottom and an orifice in its middle. A plate closes the orifice, falls away, and grains flow
-/// out onto a floor below.
+/// Returns the scene of a silo with a flat bottom and an orifice in its middle. A plate closes the orifice at first.
+/// When the plate falls away, grains flow out onto a floor below.
 pub fn silo() -> Scene {
     let mut scene = silo_of(of_loose_grains("silo", lattice(450, SILO_WIDTH, 0.7)), 7.0, 0.5);
     scene.duration_secs = 2.5;
@@ -78,7 +80,8 @@ pub fn silo() -> Scene {
     scene
 }
 
-/// Adds the silo to a scene of grains, with an orifice of this width in diameters that opens at `release_secs`.
+/// Adds a silo to a scene of grains. `orifice` is the width of its orifice, in diameters, which opens at the time
+/// `release_secs`.
 pub fn silo_of(mut scene: Scene, orifice: f64, release_secs: f64) -> Scene {
     let side = |sign: f64| Boundary::Polyline {
         points: vec![
@@ -97,18 +100,19 @@ pub fn silo_of(mut scene: Scene, orifice: f64, release_secs: f64) -> Scene {
     scene
 }
 
-/// Width of the box and height of its walls, in diameters.
+/// Width of the box that is tilted, in diameters. `INCLINE_HEIGHT` is the height of its walls.
 const INCLINE_WIDTH: f64 = 40.0;
 const INCLINE_HEIGHT: f64 = 30.0;
 /// Time for the grains to come to rest before the box is tilted, s.
 pub const LEVEL_SECS: f64 = 0.4;
-/// Rate of tilting, rad/s.
+/// Angular velocity at which the box is tilted, rad/s.
 pub const TILT_RATE: f64 = 0.12;
-/// Largest tilt, rad.
+/// Largest angle by which the box is tilted, rad.
 const STEEPEST: f64 = 0.72;
 
-/// A layer of grains in a flat box with a rough bottom that is tilted slowly. Up to some angle it stays at rest, then
-/// its surface flows. Gravity is tilted instead of the box, so pictures show the view of someone in the box.
+/// Returns the scene of an incline: a layer of grains in a flat box with a rough bottom that is tilted slowly. The
+/// layer stays at rest up to some angle, and then its surface flows. The scene turns gravity instead of the box, so
+/// pictures show the view of someone who turns with the box.
 pub fn incline() -> Scene {
     let mut scene = of_loose_grains("incline", lattice(300, INCLINE_WIDTH, 1.2));
     let tilting_secs = STEEPEST / TILT_RATE;
@@ -125,15 +129,16 @@ pub fn incline() -> Scene {
     scene
 }
 
-/// Inner radius of the drum, in diameters.
+/// Inner radius of the drum, in diameters of a grain.
 const DRUM_RADIUS: f64 = 12.0;
-/// Number of sides of its wall, and of discs on it: they are nearly a diameter apart.
+/// Number of sides of the drum's wall, and of the discs on the wall. The centres of neighbouring discs are about one
+/// diameter apart.
 const DRUM_SIDES: usize = 72;
-/// Rate of rotation Ω, rad/s: Ω²R/g is 0.05, at which grains roll down a steady slope.
+/// Angular velocity Ω of the drum, rad/s. With its radius R, Ω²R/g is 0.05, at which grains roll down a steady slope.
 const DRUM_RATE: f64 = 2.0;
 
-/// A drum that turns about its axis, two fifths full. Discs that turn with it make its wall rough; every sixth is
-/// larger, so that the rotation is visible.
+/// Returns the scene of a drum that turns about its axis and is two fifths full. Discs that turn with the drum make
+/// its wall rough. Every sixth of these discs is larger, so that the rotation is visible.
 pub fn drum() -> Scene {
     let columns = |row: i32| {
         let y = SPACING * f64::from(row) - 0.78 * DRUM_RADIUS;
@@ -159,17 +164,17 @@ pub fn drum() -> Scene {
     scene
 }
 
-/// Half-width and height of the box, in diameters.
+/// Half-width of the shaken box, in diameters. `BOX_HEIGHT` is its height.
 const HALF_WIDTH: f64 = 8.0;
 const BOX_HEIGHT: f64 = 30.0;
-/// Radius of the large grain, in diameters.
+/// Radius of the large grain, in diameters of the other grains.
 const LARGE: f64 = 1.5;
-/// Frequency of shaking, Hz.
+/// Frequency at which the box is shaken, Hz.
 const FREQUENCY_HZ: f64 = 10.0;
-/// Largest acceleration of the box, in g. Above 1 the grains are thrown up.
+/// Largest acceleration of the box, in units of gravity g. Above 1 the grains are thrown up.
 const ACCELERATION: f64 = 3.0;
 
-/// A shaken box with 120 grains and a large one.
+/// Returns the scene of a shaken box with 120 grains and one large grain.
 pub(crate) fn vibrated() -> Scene {
     let large = DVec2::new(0.0, 2.0 * SPACING + LARGE);
     let columns = |row: i32| {

@@ -1,4 +1,4 @@
-//! Experiments of granular physics: grains among moving bodies.
+//! Experiments of granular physics: scenes with grains and moving walls or rotating gravity.
 
 mod flows;
 mod shear;
@@ -18,14 +18,15 @@ use super::tones::tone_in_layers;
 
 use crate::world::{Boundary, Grain, Motion, MotionCourse};
 
-/// The golden mean minus 1. Its multiples are spread evenly over an interval, whatever their number.
+/// The golden ratio minus 1. The fractional parts of its multiples are spread evenly over the interval from 0 to 1,
+/// whatever their number is.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Spacing of grains on a lattice, in diameters.
+/// Spacing of the grains on a lattice, in diameters.
 const SPACING: f64 = 1.22;
 
-/// A scene whose grains fall from given places, with diameters spread evenly over [0.8 d, 1.2 d]. Places are in
-/// diameters, more than 1.2 apart.
+/// Returns a scene whose grains start at the given positions. Their diameters are spread evenly over [0.8 d, 1.2 d],
+/// with the mean diameter d. The positions are in diameters and more than 1.2 apart.
 fn of_loose_grains(name: &str, places: impl Iterator<Item = DVec2>) -> Scene {
     let grain = |(index, place): (usize, DVec2)| {
         let part = (GOLDEN * index as f64).fract();
@@ -40,8 +41,8 @@ fn of_loose_grains(name: &str, places: impl Iterator<Item = DVec2>) -> Scene {
     scene
 }
 
-/// Places of `grains` grains, in diameters: rows from the height `lowest` upwards, each with as many grains as fit
-/// into `width`.
+/// Returns the positions of `grains` grains, in diameters: rows from the height `lowest` upwards, each with as many
+/// grains as fit into `width`.
 fn lattice(grains: usize, width: f64, lowest: f64) -> impl Iterator<Item = DVec2> {
     let columns = (width / SPACING).floor().max(1.0) as usize;
     let first = -0.5 * SPACING * (columns - 1) as f64;
@@ -51,12 +52,12 @@ fn lattice(grains: usize, width: f64, lowest: f64) -> impl Iterator<Item = DVec2
     })
 }
 
-/// Converts a place from diameters to m.
+/// Converts a position from diameters to m.
 fn place(x: f64, y: f64) -> DVec2 {
     DIAMETER * DVec2::new(x, y)
 }
 
-/// A box without a lid, its bottom on y = 0, with sizes in diameters.
+/// Returns a box without a lid and with its bottom on y = 0. The sizes are in diameters.
 fn open_box(half_width: f64, height: f64) -> Boundary {
     let corners =
         [(-half_width, height), (-half_width, 0.0), (half_width, 0.0), (half_width, height)];

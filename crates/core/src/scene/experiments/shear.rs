@@ -1,4 +1,4 @@
-//! Grains under stress: sheared between plates, sheared without walls, and compressed.
+//! Scenes of grains under stress: sheared between plates, sheared without walls, and compressed.
 
 use glam::DVec2;
 
@@ -7,34 +7,36 @@ use crate::scene::Scene;
 use crate::scene::stability::{DIAMETER, GRAVITY, floor, half_space};
 use crate::world::{Disc, Drive, Motion, MotionCourse, Periodic};
 
-/// Number of grains and size of the plates.
+/// Size of a shear cell: the width of the plates, and the lattice of the grains between them.
 #[derive(Clone, Copy, Debug)]
 pub struct ShearCell {
-    /// Width of the cell in diameters, which is also the number of discs of a plate.
+    /// Width of the cell in diameters. It is also the number of discs of each plate.
     pub wide: u8,
-    /// Columns of grains at the start.
+    /// Number of columns of grains at the start.
     pub columns: u8,
-    /// Rows of grains at the start.
+    /// Number of rows of grains at the start.
     pub rows: u8,
 }
 
 const CELL: ShearCell = ShearCell { wide: 24, columns: 19, rows: 12 };
 /// Spacing of rows at the start, in diameters.
 const ROW_SPACING: f64 = 1.22;
-/// Distance from a plate to the nearest row, in diameters.
+/// Distance from the centres of a plate's discs to the nearest row of grains, in diameters.
 const PLATE_ROOM: f64 = 1.2;
-/// Pressure P, in m g/d: √(m/P) is 0.01 s.
+/// Pressure P on the upper plate, in m g/d (mass, gravity, diameter). The time √(m/P) is then 0.01 s.
 const SHEAR_PRESSURE: f64 = 10.0;
-/// Speed of the upper plate, m/s. The compressed grains are about 9 d high, and I is 0.07.
+/// Speed of the upper plate, m/s. The compressed grains are about 9 diameters high, and the inertial number I is
+/// 0.07.
 const PLATE_SPEED: f64 = 0.6;
 
-/// Plane shear at constant pressure: grains between two rough plates in a periodic cell. The upper plate moves at a
-/// given speed and is pressed down by a given pressure (F. da Cruz and others, *Rheophysics of dense granular
-/// materials*, Phys. Rev. E 72, 2005).
+/// Returns the scene of plane shear at constant pressure: grains between two rough plates in a periodic cell. The
+/// upper plate moves at a given speed and is pressed down by a given pressure (F. da Cruz and others, *Rheophysics of
+/// dense granular materials*, Phys. Rev. E 72, 2005).
 ///
-/// The effect of the plates depends only on I = γ̇ √(m/P), with γ̇ the shear rate, m the mass of a grain of diameter
-/// d and P the pressure, a force per length in a plane. The friction T/N of the plate increases with I, and the solid
-/// fraction decreases. Grains do not feel gravity; it only sets the scale of the Bond number.
+/// The effect of the plates depends only on the inertial number I = γ̇ √(m/P), with the shear rate γ̇ (1/s), the mass
+/// m (kg) of a grain of diameter d, and the pressure P (N/m, because the scene is plane). The friction T/N of the
+/// plate, the tangential force divided by the normal force, increases with I, and the solid fraction decreases.
+/// Gravity does not act on the grains. It only sets the scale of the Bond number.
 pub fn shear() -> Scene {
     let mut scene = shear_of(CELL, SHEAR_PRESSURE, PLATE_SPEED);
     scene.parameters.time_step_secs = 2e-4;
@@ -42,7 +44,8 @@ pub fn shear() -> Scene {
     scene
 }
 
-/// Grains between two plates, the upper plate with a pressure in m g/d and a speed in m/s.
+/// Returns the scene of grains between two plates. `pressure` is the pressure on the upper plate in m g/d (mass,
+/// gravity, diameter), and `speed` is its speed in m/s.
 pub fn shear_of(cell: ShearCell, pressure: f64, speed: f64) -> Scene {
     let ShearCell { wide, columns, rows } = cell;
     let spacing = [f64::from(wide) / f64::from(columns), ROW_SPACING];
@@ -79,25 +82,25 @@ pub fn shear_of(cell: ShearCell, pressure: f64, speed: f64) -> Scene {
     scene
 }
 
-/// Columns and rows of grains at the start. The number of rows is even, because every other row is shifted by half a
-/// spacing.
+/// Number of columns of grains at the start in `shear_periodic`. `ROWS` is the number of rows. It is even, because
+/// every other row is shifted by half a spacing.
 const COLUMNS: u32 = 16;
 const ROWS: u32 = 14;
-/// Distance of neighbours at the start, in diameters: slightly more than the largest diameter. Grains cover 0.74 of
-/// the cell.
+/// Distance of neighbouring grains at the start, in diameters. It is slightly more than the largest diameter. The
+/// grains cover a fraction of 0.74 of the cell.
 const PERIODIC_SPACING: f64 = 1.11;
-/// Largest deviation of a diameter from the mean, relative to the mean.
+/// Largest deviation of a diameter from the mean diameter, relative to the mean diameter.
 const SPREAD: f64 = 0.1;
 /// Shear rate γ̇, 1/s.
 const SHEAR_RATE: f64 = 10.0;
 
-/// Shear without walls, in a cell with periodic borders whose upper border slides along the lower one
-/// (`world::periodic`).
+/// Returns the scene of shear without walls: grains in a cell with periodic borders, the upper of which slides along
+/// the lower (`world::periodic`).
 ///
-/// Only the shear rate γ̇ sets a time scale, as long as grains are rigid and do not cohere. So at another rate the
-/// same grains take the same paths in other times, and stresses grow with γ̇² (R. A. Bagnold, *Experiments on a
-/// gravity-free dispersion of large solid spheres in a Newtonian fluid under shear*, Proc. R. Soc. A 225, 1954).
-/// Grains do not feel gravity; it only sets the scale of the Bond number.
+/// As long as grains are rigid and do not cohere, only the shear rate γ̇ sets a time scale. So at another shear rate
+/// the grains follow the same paths at other times, and stresses are proportional to γ̇² (R. A. Bagnold, *Experiments
+/// on a gravity-free dispersion of large solid spheres in a Newtonian fluid under shear*, Proc. R. Soc. A 225, 1954).
+/// Gravity does not act on the grains. It only sets the scale of the Bond number.
 pub fn shear_periodic() -> Scene {
     let row_height = PERIODIC_SPACING * 0.75f64.sqrt();
     let place = |k: u32| {
@@ -131,30 +134,32 @@ pub fn shear_periodic() -> Scene {
 const GRAINS: usize = 300;
 /// Width of the box at the start, in diameters.
 const WIDTH: f64 = 19.0;
-/// Distance from the lattice to the walls, in diameters.
+/// Distance from the lattice of grains to the walls, in diameters.
 const ROOM: f64 = 0.75;
-/// Confining pressure, in m g/d, when the walls have the height of the middle of the test.
+/// Confining pressure, in m g/d (mass, gravity, diameter), at the height that the box has in the middle of the test.
 const CONFINING_PRESSURE: f64 = 10.0;
 /// Height of the grains in the middle of the test, in diameters.
 const HEIGHT: f64 = 18.0;
-/// Distance (diameters) and time (s) by which the lid moves down while the sides compress the grains.
+/// Distance by which the lid moves down at first, in diameters, while the sides compress the grains. `CLOSING_SECS`
+/// is the time of this motion, s.
 const CLOSING: f64 = 5.5;
 const CLOSING_SECS: f64 = 0.35;
-/// Distance (diameters) and time (s) of the lid's further motion: γ̇ √(m/P) is 1.4e-3.
+/// Distance by which the lid then moves on, in diameters. With `COMPRESSION_SECS` (the time of this motion, s) the
+/// inertial number γ̇ √(m/P) is 1.4e-3.
 const COMPRESSION: f64 = 5.0;
 const COMPRESSION_SECS: f64 = 2.0;
 
-/// A biaxial test: a box of grains whose side walls are pressed inward by a constant force each and whose lid moves
-/// down at a given speed. Grains do not feel gravity.
+/// Returns the scene of a biaxial test: grains in a box. A constant force presses each side wall inward, and the lid
+/// moves down at a given speed. Gravity does not act on the grains.
 ///
-/// First the lid moves down fast onto loose grains while the sides compress them; then it moves slowly. The strength
-/// of the grains is their stress ratio σ_yy/σ_xx, in the table `measures` of a recording. Flowing grains reach
-/// (1 + sin φ_f)/(1 − sin φ_f), with φ_f their friction angle (Mohr, Coulomb). Each wall's force is constant, so its
-/// pressure varies with the height, by about ten per cent.
+/// First the lid moves down fast onto loose grains while the side walls compress them. Then it moves slowly. The
+/// strength of the grains is the ratio σ_yy/σ_xx of their stresses, which is in the table `measures` of a recording.
+/// Flowing grains reach (1 + sin φ_f)/(1 − sin φ_f), with their friction angle φ_f (Mohr, Coulomb). The force on a
+/// side wall is constant, so its pressure varies with the height of the box, by about ten per cent.
 pub fn biaxial() -> Scene {
     let mut scene = of_loose_grains("biaxial", lattice(GRAINS, WIDTH, ROOM));
     scene.grains.iter_mut().for_each(|grain| grain.feels_gravity = false);
-    // As many columns as the lattice has.
+    // The number of columns of the lattice.
     let columns = (WIDTH / SPACING).floor();
     let rows = (GRAINS as f64 / columns).ceil();
     let half = 0.5 * SPACING * (columns - 1.0) + ROOM;

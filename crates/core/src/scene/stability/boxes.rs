@@ -1,4 +1,4 @@
-//! Discs between walls that leave them no room.
+//! Scenes of discs that are compressed between walls.
 
 use glam::DVec2;
 use rand::{RngExt, SeedableRng};
@@ -8,14 +8,14 @@ use super::{DIAMETER, GRAVITY, TOUCH, disc, dry, floor, view};
 use crate::scene::Scene;
 use crate::world::Boundary;
 
-/// Discs per column.
+/// Number of discs per column.
 const HIGH: u8 = 6;
-/// Final spacing of columns, in diameters.
+/// Final spacing of the columns, in diameters.
 const NARROWEST: f64 = 0.6;
-/// Speed of each wall, m/s. The highest disc rises at half of √(g d) at most.
+/// Speed of each wall, m/s. At this speed the highest disc rises at most at half of √(g d) (g: gravity, d: diameter).
 const SPEED: f64 = 0.007;
 
-/// Correct places of the discs, in diameters, when the columns are `spacing` diameters apart.
+/// Returns the correct positions of the discs, in diameters, when the columns are `spacing` diameters apart.
 fn places(spacing: f64) -> Vec<DVec2> {
     let height = (1.0 - spacing * spacing).sqrt();
     let column = |x: f64, lift: f64| {
@@ -24,19 +24,20 @@ fn places(spacing: f64) -> Vec<DVec2> {
     column(-spacing, 0.0).chain(column(0.0, height)).chain(column(spacing, 0.0)).collect()
 }
 
-/// A packing between two walls that move in, without friction and open above.
+/// Returns the scene of a packing between two walls that move inward, without friction and open at the top.
 ///
-/// Three columns of discs stand side by side, the middle one higher by h. With d = 1, columns at distance s touch if
-/// s² + h² = 1. At the start h = 1/2, and an inner disc touches six others: there are more contacts than degrees of
-/// freedom. As the walls push the columns together, h grows and the discs of a column separate. Each disc then rests
-/// on two bodies below it (discs, a wall or the floor), which share its weight and the load above it. Every contact
-/// pushes, and there are as many contacts as degrees of freedom. So no disc can sink, and if the walls move slowly
-/// the places are unique: the k-th disc of a column is at
+/// Three columns of discs are next to each other, and the middle column is higher by h (lengths in diameters).
+/// Columns at the distance s touch if s² + h² = 1. At the start h = 1/2, and an inner disc touches six other discs,
+/// so there are more contacts than degrees of freedom. As the walls push the columns together, h grows, and the discs
+/// within a column separate. Then each disc rests on two bodies below it (discs, a wall or the floor), which share
+/// its weight and the load above it. All contacts push, and there are as many contacts as degrees of freedom. So no
+/// disc can sink, and if the walls move slowly the positions are unique. The k-th disc of a column is at
 ///
 /// > x = −s, 0 or s,  y = 1/2 + 2kh, and h higher in the middle column,
 ///
-/// as long as s > 1/2. At s = 1/2 the outer columns meet and nothing can give way any more. With more columns, a disc
-/// on the floor would only touch the discs that lean on it from both sides, and they push it away.
+/// as long as s > 1/2. At s = 1/2 the outer columns meet, and nothing can move any more. With more than three
+/// columns, a disc on the floor would be in contact only with the floor and with the discs that lean on it from both
+/// sides, and these would push it away.
 pub fn press() -> Scene {
     let widest = 0.75f64.sqrt();
     let grains = places(widest).into_iter().map(|place| place * (1.0 - TOUCH));
@@ -53,23 +54,24 @@ pub fn press() -> Scene {
     scene
 }
 
-/// Correct final places of the discs, m, in the order of the scene.
+/// Returns the correct final positions of the discs, m, in the order of the scene.
 pub fn pressed_places() -> Vec<DVec2> {
     places(NARROWEST).into_iter().map(|place| DIAMETER * place).collect()
 }
 
-/// Time at which the walls reach their final places, s.
+/// Returns the time at which the walls reach their final positions, s.
 pub fn pressing_secs() -> f64 {
     DIAMETER * (0.75f64.sqrt() - NARROWEST) / SPEED
 }
 
-/// Discs along each side.
+/// Number of discs along each side of the box.
 const SIDE: i32 = 5;
-/// Speed of each disc at the start, in √(g d).
+/// Largest component of the initial velocity of each disc, in √(g d) (g: gravity, d: diameter).
 const SQUEEZED_SPEED: f64 = 0.3;
 
-/// A lattice of 5 × 5 discs in a box that is too small for it: each side is shorter than the lattice by the fraction
-/// `strain`. There are more contacts than degrees of freedom, and each contact demands restitution.
+/// Returns the scene of a lattice of 5 × 5 discs in a box that is too small: each side of the box is shorter than the
+/// lattice by the fraction `strain`. There are more contacts than degrees of freedom, and restitution requires a
+/// bounce at each contact.
 pub fn squeeze(strain: f64) -> Scene {
     let mut random = Pcg64::seed_from_u64(1);
     let speed = SQUEEZED_SPEED * (GRAVITY * DIAMETER).sqrt();

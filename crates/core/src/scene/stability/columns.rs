@@ -1,4 +1,4 @@
-//! Discs on discs: columns, unequal masses and sizes, initial overlaps.
+//! Scenes of discs on top of each other: columns, unequal masses and sizes, initial overlaps.
 
 use glam::DVec2;
 
@@ -6,18 +6,20 @@ use super::{DIAMETER, GRAVITY, TOUCH, disc, half_space, on_floor};
 use crate::scene::Scene;
 use crate::world::{Grain, Gravity, Physics};
 
-/// A column of n discs. The floor carries n·m·g, and the k-th contact carries n − k times m·g.
+/// Returns the scene of a column of n discs with mass m. The floor carries n·m·g, and the k-th contact above the
+/// floor carries (n − k)·m·g.
 ///
-/// On the chain of contacts, Jacobi's iteration is P_k ← (P_{k−1} + P_{k+1})/2, with P_{−1} = P_1 at the floor and
-/// P_n = 0 at the top. Its modes cos kθ require cos nθ = 0, so the slowest decays by cos(π/2n) per iteration. A chain
-/// has no loops, so every order of the contacts is consistent (D. M. Young, 1971), and Gauss–Seidel decays by
-/// cos²(π/2n) per sweep.
+/// On this chain of contacts, Jacobi's iteration for the impulses is P_k ← (P_{k−1} + P_{k+1})/2, with P_{−1} = P_1
+/// at the floor and P_n = 0 at the top. Its modes cos kθ require cos nθ = 0, so the slowest mode decays by the factor
+/// cos(π/2n) per iteration. A chain has no loops, so every order of the contacts is consistent (D. M. Young, 1971),
+/// and in Gauss–Seidel the slowest mode decays by cos²(π/2n) per sweep.
 pub fn column(count: usize) -> Scene {
     let place = |k: usize| (0.5 + k as f64) * (1.0 - TOUCH) - 0.5 * TOUCH;
     on_floor("column", (0..count).map(|k| disc(0.0, place(k))).collect())
 }
 
-/// The same column lying along the x axis, with gravity along it: the smallest model.
+/// Returns the scene of [`column`] turned onto the x axis, with gravity along this axis. It uses the smallest
+/// mechanical model: one axis, without friction and rotation.
 pub fn column_on_line(count: usize) -> Scene {
     let mut scene = column(count);
     for grain in &mut scene.grains {
@@ -30,8 +32,9 @@ pub fn column_on_line(count: usize) -> Scene {
     scene
 }
 
-/// A heavy disc on a light one. With R the ratio of their masses, Gauss–Seidel on the two contacts reduces its error
-/// by W₀₁²/(W₀₀W₁₁) = R/(R + 1) per sweep, so the number of sweeps is proportional to R.
+/// Returns the scene of a heavy disc on a light disc. Let R be the ratio of their masses and W the Delassus operator
+/// of the two contacts. Gauss–Seidel reduces its error by the factor W₀₁²/(W₀₀W₁₁) = R/(R + 1) per sweep, so the
+/// number of sweeps is proportional to R.
 pub fn mass_ratio(ratio: f64) -> Scene {
     let radius = 0.5 * ratio.sqrt();
     let heavy =
@@ -39,12 +42,12 @@ pub fn mass_ratio(ratio: f64) -> Scene {
     on_floor("mass-ratio", vec![disc(0.0, 0.5 - TOUCH), heavy])
 }
 
-/// Discs below the heavy one.
+/// Number of discs below the heavy disc.
 const BELOW: usize = 5;
 
-/// A column of five discs with a heavy disc on top, `ratio` times as heavy and last in the list, that is removed in
-/// mid-run. The impulses that carried it are the starting point of the next step's iteration, and must not throw the
-/// other discs up.
+/// Returns the scene of a column of five discs under a heavy disc, which is removed during the run. The heavy disc is
+/// `ratio` times as heavy as the other discs and is the last grain. The next step starts its iteration from the
+/// impulses that carried the heavy disc. These impulses must not throw the other discs up.
 pub fn lift_off(ratio: f64) -> Scene {
     let mut scene = column(BELOW);
     scene.name = "lift-off".into();
@@ -55,13 +58,14 @@ pub fn lift_off(ratio: f64) -> Scene {
     scene
 }
 
-/// A large disc on two small ones, as logs are piled.
+/// Returns the scene of a large disc on two small discs, as in a pile of logs.
 ///
-/// With the centres of the small discs (radius r) 2r apart and the large disc of radius R, the contacts lean by θ
-/// from the vertical, sin θ = r/(R + r). The two forces on a small disc, from the floor and from the large disc, pass
-/// through its two contact points and exert no torque. So the force from above is inclined by θ/2 to its contact's
-/// normal, and the contact holds if μ ≥ tan(θ/2). For R = r, θ = 30°, this is μ ≥ tan 15° = 2 − √3. The floor needs
-/// less.
+/// The two small discs of radius r touch each other, and the large disc has the radius R. The upper contacts are
+/// inclined by θ to the vertical, with sin θ = r/(R + r). Two forces act on a small disc, from the floor and from the
+/// large disc. They pass through the two contact points of the small disc and exert no torque on it. So the force
+/// from above is inclined by θ/2 to the normal of its contact, and the contact does not slide if the friction
+/// coefficient is μ ≥ tan(θ/2). For R = r, θ is 30°, and the condition is μ ≥ tan 15° = 2 − √3. The contacts with the
+/// floor need less friction.
 pub fn logs(ratio: f64) -> Scene {
     let half = 0.5 * (1.0 - TOUCH);
     let reach = 0.5 * (1.0 + ratio) - TOUCH;
@@ -71,8 +75,8 @@ pub fn logs(ratio: f64) -> Scene {
     on_floor("logs", vec![small(-half), small(half), large])
 }
 
-/// Two discs, each overlapping the body below by `overlap` diameters. A correct solver separates them without
-/// throwing them.
+/// Returns the scene of two discs, one on top of the other, each of which overlaps the body below by `overlap`
+/// diameters. A correct solver separates them without throwing them up.
 pub fn overlapped(overlap: f64) -> Scene {
     on_floor("overlap", vec![disc(0.0, 0.5 - overlap), disc(0.0, 1.5 - 2.0 * overlap)])
 }

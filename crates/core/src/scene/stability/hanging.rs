@@ -1,4 +1,4 @@
-//! Grains held only by cohesion: a hanging chain, a cantilever and a bridge.
+//! Scenes of grains that are held only by cohesion: a hanging chain, a cantilever and a bridge.
 
 use glam::DVec2;
 
@@ -6,12 +6,13 @@ use crate::scene::Scene;
 use crate::scene::stability::{DIAMETER, disc, dry, view};
 use crate::world::{Disc, Grain};
 
-/// Overlap of neighbours, in diameters, as in a pile at rest. Springs need some overlap to find their balance.
+/// Overlap of neighbouring discs of the chain, in diameters, as in a pile at rest. Springs need some overlap to find
+/// their equilibrium.
 const OVERLAP: f64 = 1e-3;
 
-/// A chain of n ≥ 2 equal discs under a fixed one. The contact with the fixed disc has C₀ = Bond·m·g and carries
-/// n·m·g; the contact below has C₀ = Bond·(m/2)·g and carries (n − 1)·m·g. So the chain holds above
-/// Bond = max(n, 2(n − 1)), at every time step.
+/// Returns the scene of a chain of n ≥ 2 equal discs of mass m that hang from a fixed disc. The contact with the
+/// fixed disc has the cohesion force C₀ = Bond·m·g and carries n·m·g. The next contact has C₀ = Bond·(m/2)·g and
+/// carries (n − 1)·m·g. So the chain does not break if the Bond number is above max(n, 2(n − 1)), at every time step.
 pub fn hanging_chain(count: usize, bond: f64) -> Scene {
     let place = |k: usize| -(k as f64) * (1.0 - OVERLAP);
     let mut scene = dry("chain", (1..=count).map(|k| disc(0.0, place(k))).collect());
@@ -22,12 +23,13 @@ pub fn hanging_chain(count: usize, bond: f64) -> Scene {
     scene
 }
 
-/// The Bond number below which a chain of `count` discs breaks.
+/// Returns the Bond number below which a chain of `count` discs breaks.
 pub fn breaking_bond(count: usize) -> f64 {
     (count as f64).max(2.0 * (count as f64 - 1.0))
 }
 
-/// Distance of neighbours, in diameters: an overlap as in a pile at rest.
+/// Distance of neighbouring discs of the cantilever and the bridge, in diameters. The discs overlap as in a pile at
+/// rest.
 const SPACING: f64 = 1.0 - 1e-4;
 /// Bond number of the cantilever and the bridge.
 const BOND: f64 = 100.0;
@@ -40,8 +42,8 @@ fn upper(k: i32) -> Grain {
     disc(SPACING * (f64::from(k) + 0.5), SPACING * 0.75f64.sqrt())
 }
 
-/// Two rows of grains in a triangular lattice, held by fixed discs on one or both sides. Its upper or lower row is
-/// under tension: without cohesion both rows fall at once.
+/// Returns the scene of two rows of grains in a triangular lattice, with fixed discs on one or both sides. Either the
+/// upper or the lower row is under tension, so without cohesion both rows fall at once.
 fn truss(name: &str, grains: Vec<Grain>, fixed: Vec<Grain>) -> Scene {
     let mut scene = dry(name, grains);
     scene.parameters.bond = BOND;
@@ -53,32 +55,36 @@ fn truss(name: &str, grains: Vec<Grain>, fixed: Vec<Grain>) -> Scene {
     scene
 }
 
-/// A cantilever of 2L discs weighs 2L·m·g, at L/2 diameters from its root on average, so its rows carry L²·m·g·d over
-/// their distance of 0.87 d. A contact holds 50 m·g at Bond 100. L = 4, with 18 m·g, is far from tearing; L = 8, with
-/// 74, must tear.
+/// Returns the scene of a cantilever: two rows of L discs each, fixed to a wall on one side.
 ///
-/// Without friction a cantilever is a truss of 4L bars between 2L joints, and so statically determinate. Cut a bar of
-/// the upper row with n discs of each row beyond the cut, and take moments about the lower row's disc next to the
-/// cut. The lever arms are 1 + 2 + … + (n − 1) diameters in the lower row, and half a diameter more per disc in the
-/// upper. So the tension of the bar is (n² − n/2) m·g/(√3/2) = (2n² − n) m·g/√3. A diagonal that carries the 2n discs
-/// beyond it has 4n·m·g/√3. At the root n = L and C₀ = Bond·m·g; at the next cut n = L − 1 and C₀ = Bond·(m/2)·g; all
-/// other bars carry less. So at every time step the cantilever holds above
+/// **Estimate.** The cantilever weighs 2L·m·g, and its weight acts L/2 diameters from the wall on average. So its
+/// rows carry a force of L²·m·g·d divided by their distance of 0.87 d. A contact carries up to 50 m·g at Bond 100. A
+/// cantilever with L = 4 needs 18 m·g and is far from tearing. With L = 8 it needs 74 m·g and must tear.
+///
+/// **Exact limit.** Without friction the cantilever is a truss of 4L bars (contacts) between 2L joints (discs), so it
+/// is statically determinate. Cut a bar of the upper row, with n discs of each row beyond the cut, and take moments
+/// about the disc of the lower row next to the cut. The lever arms are 1 + 2 + … + (n − 1) diameters in the lower
+/// row, and half a diameter more for each disc in the upper row. So the tension of the bar is (n² − n/2) m·g/(√3/2) =
+/// (2n² − n) m·g/√3. A diagonal bar that carries the 2n discs beyond it has the tension 4n·m·g/√3. At the wall n is L
+/// and the cohesion force is C₀ = Bond·m·g. At the next cut n is L − 1 and C₀ = Bond·(m/2)·g. All other bars carry
+/// less. So at every time step the cantilever does not tear if the Bond number is above
+///
 /// > Bond = max(2L² − L, 4L, 2(2(L−1)² − (L−1)), 8(L−1))/√3,
 ///
-/// which is 10√3 for L = 4. Friction helps: with a friction of 0.5 the measured value is 5 % lower.
+/// which is 10√3 for L = 4. Friction helps: with a friction coefficient of 0.5 the measured limit is 5 % lower.
 pub fn cantilever(length: i32) -> Scene {
     let grains = (0..length).flat_map(|k| [lower(k), upper(k)]).collect();
     truss("cantilever", grains, vec![lower(-1), upper(-1)])
 }
 
-/// The Bond number below which a cantilever of `length` ≥ 2 tears without friction.
+/// Returns the Bond number below which a cantilever of two rows of `length` ≥ 2 discs tears without friction.
 pub fn breaking_bond_of_cantilever(length: i32) -> f64 {
     let times_root_3 = |n: f64| (2.0 * n * n - n).max(4.0 * n);
     let n = f64::from(length);
     times_root_3(n).max(2.0 * times_root_3(n - 1.0)) / 3f64.sqrt()
 }
 
-/// Two rows between two walls. The lower row has `length` grains.
+/// Returns the scene of a bridge: two rows of grains between two walls. The lower row has `length` grains.
 pub fn bridge(length: i32) -> Scene {
     let mut grains: Vec<_> = (0..length).map(lower).collect();
     grains.extend((0..length - 1).map(upper));

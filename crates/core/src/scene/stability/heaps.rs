@@ -1,4 +1,4 @@
-//! Heaps, an arch and a full box, whose geometry keeps them at rest.
+//! Scenes of discs that stay at rest because of their geometry: heaps, an arch and a full box.
 
 use std::f64::consts::{FRAC_PI_4, FRAC_PI_8, SQRT_2};
 
@@ -10,19 +10,19 @@ use super::{DIAMETER, TOUCH, disc, dry, floor, half_space, view};
 use crate::scene::{Scene, rough_base};
 use crate::world::{Disc, direction};
 
-/// Start of the falling disc relative to the highest disc, in diameters.
+/// Initial position of the falling disc relative to the highest disc, in diameters.
 const FALLING: [f64; 2] = [0.3, 1.5];
 
-/// A heap of `rows` rows over a rough base, the lowest row with `rows` discs, with slopes of 60°. Each disc lies in
-/// the notch between two below it, and the load on an edge disc passes straight on to the one below. So the heap
-/// stays at rest even without friction.
+/// Returns the scene of a triangular heap over a rough base, with slopes of 60°. It has `rows` rows, and its lowest
+/// row has `rows` discs. Each disc is in the notch between two discs below it, and the load on a disc at the edge
+/// passes straight on to the disc below. So the heap stays at rest even without friction.
 pub fn heap(rows: usize) -> Scene {
     let height = 0.75f64.sqrt() * (1.0 - 3.0 * TOUCH);
     let mut grains = Vec::new();
     for row in 0..rows {
         let count = rows - row;
         let left = -0.5 * (count as f64 - 1.0);
-        // The discs of the lowest row lie between those of the base.
+        // The discs of the lowest row are between discs of the base.
         let shift = if rows.is_multiple_of(2) { 0.0 } else { 0.5 };
         for column in 0..count {
             let x = (left + column as f64 + shift) * (1.0 - TOUCH);
@@ -39,14 +39,14 @@ pub fn heap(rows: usize) -> Scene {
     scene
 }
 
-/// The largest heap with at most `count` ≥ 1 discs.
+/// Returns the scene of the largest triangular heap with at most `count` ≥ 1 discs.
 pub fn heap_of(count: usize) -> Scene {
     let rows = (1..).take_while(|rows| rows * (rows + 1) / 2 <= count).count();
     Scene { name: "size".into(), ..heap(rows) }
 }
 
-/// The same heap, with one more disc that falls on its slope, moved by `distance` diameters from the origin along
-/// both axes.
+/// Returns the scene of [`heap`] with one more disc, which falls onto the slope. All discs are moved by `distance`
+/// diameters from the origin along both axes.
 pub fn heap_far_away(rows: usize, distance: f64) -> Scene {
     let mut scene = heap(rows);
     scene.name = "far".into();
@@ -61,26 +61,29 @@ pub fn heap_far_away(rows: usize, distance: f64) -> Scene {
     scene
 }
 
-/// The steepest slope on which the heap stays at rest, degrees.
+/// Steepest slope on which the heap of [`heap_on_slope`] stays at rest, degrees.
 pub const STEEPEST_DEGREES: f64 = 30.0;
 
-/// The heap of [`heap`] on a slope. It stays at rest up to an inclination of exactly 30°, whatever its size and for
-/// every friction below √3.
+/// Returns the scene of [`heap`] on a slope. The heap stays at rest up to an inclination of exactly 30°, whatever its
+/// size is and for every friction coefficient below √3.
 ///
-/// Up to 30° every disc can rest on the two below it without friction. The forces of these, f₁ (the disc up the
-/// slope) and f₂ (the disc down the slope), act along the lattice, at 60° to the base. With θ the inclination and w a
-/// disc's weight, balance requires (f₁ + f₂) sin 60° = w cos θ and (f₂ − f₁) cos 60° = w sin θ, so that
+/// **Up to 30°** every disc can rest on the two discs below it without friction. Let f₁ be the force of the lower
+/// disc on the uphill side and f₂ the force of the lower disc on the downhill side. Both act along the lattice, at
+/// 60° to the base. With the inclination θ and the weight w of a disc, equilibrium requires (f₁ + f₂) sin 60° = w cos
+/// θ and (f₂ − f₁) cos 60° = w sin θ, so that
 ///
 /// > f₁ = w (cos θ/√3 − sin θ) ≥ 0  if tan θ ≤ 1/√3.
 ///
-/// The load on a disc passes straight on to the discs below, and the sums along each line of the lattice push as
-/// well.
+/// The load on a disc passes straight on to the discs below. So the forces along each line of the lattice add up, and
+/// all of them push.
 ///
-/// Beyond 30° the weight of the highest disc passes below its lower contact, about which the disc turns: its upper
-/// contact opens at 30° to that contact's normal, and only a friction of at least tan 60° = √3 could hold it. Without
-/// friction the whole base would have to pull, Σf₁ < 0, so that nothing holds.
+/// **Beyond 30°** the line of the weight of the highest disc passes outside its downhill contact, about which the
+/// disc turns. Its uphill contact opens at 30° to the normal of that contact, so only a friction coefficient of at
+/// least tan 60° = √3 could hold the disc. Without friction the whole base would have to pull, Σf₁ < 0, so no
+/// equilibrium exists.
 ///
-/// A heap of grains poured at random has no such value: its angle of repose depends on its history.
+/// A heap of grains that are poured at random does not have such an exact limit: its angle of repose depends on its
+/// history.
 pub fn heap_on_slope(rows: usize, degrees: f64) -> Scene {
     let mut scene = heap(rows);
     scene.name = "repose-angle".into();
@@ -96,19 +99,21 @@ pub fn heap_on_slope(rows: usize, degrees: f64) -> Scene {
     scene
 }
 
-/// The smallest friction that holds the arch.
+/// Smallest friction coefficient at which the arch of [`arch`] stays at rest.
 pub const FRICTION_OF_ARCH: f64 = 3.0 - 2.0 * SQRT_2;
 
-/// Depth of the ground below the fixed discs' centres, in diameters. A fallen arch lies on it.
+/// Depth of the ground below the centres of the fixed discs, in diameters. The discs fall onto it if the arch breaks.
 const GROUND: f64 = 0.5;
 
-/// Three discs as a semicircular arch between two fixed ones: the centres of all five lie on half a
-/// circle, an eighth of a turn apart.
+/// Returns the scene of an arch: three discs between two fixed discs. The centres of all five discs are on a
+/// semicircle, an eighth of a turn apart.
 ///
-/// A contact whose normal, from the lower disc to the higher, rises at the angle φ carries N along the normal and T
-/// across it. So the force up the arch is H = N cos φ − T sin φ, V = N sin φ + T cos φ. With w the weight of a disc,
-/// each crown contact carries half the keystone (V = w/2, φ = β), and the spring contact below carries one disc more
-/// (V = 3w/2, φ = α) at the same thrust H, so that
+/// The highest disc is the keystone. Its two contacts are the crown contacts, and the contacts with the fixed discs
+/// are the spring contacts. A contact whose normal, from the lower to the higher disc, rises at the angle φ transmits
+/// a force N along the normal and T across it. So the force that pushes up the arch has the components H = N cos φ −
+/// T sin φ (thrust) and V = N sin φ + T cos φ. With the weight w of a disc, each crown contact carries half of the
+/// keystone (V = w/2, φ = β). The spring contact below carries one disc more (V = 3w/2, φ = α) at the same thrust H,
+/// so that
 ///
 /// > T_β = (w/2) cos β − H sin β,  T_α = (3w/2) cos α − H sin α.
 ///
@@ -117,15 +122,16 @@ const GROUND: f64 = 0.5;
 /// > H = (w/2) (cos β + 3 cos α)/(sin α + sin β),
 /// > T_β = (w/2) (sin α cos β − 3 cos α sin β)/(sin α + sin β).
 ///
-/// T vanishes if tan α = 3 tan β, on the funicular. On the semicircle β = 22.5° and α = 67.5°; with
-/// c = cos β = sin α and s = sin β = cos α, 4cs = √2 and c² − 3s² = √2 − 1, the crown contacts have
+/// T is zero if tan α = 3 tan β, which is the shape of the funicular curve. On the semicircle β = 22.5° and α =
+/// 67.5°. With c = cos β = sin α and s = sin β = cos α, 4cs = √2 and c² − 3s² = √2 − 1, so the crown contacts have
 ///
 /// > T/N = (c² − 3s²)/(1 + 4cs) = (√2 − 1)/(√2 + 1) = 3 − 2√2.
 ///
-/// The spring contacts need (√2 − 1)/(3 + √2), about half as much. Below μ = 3 − 2√2 the keystone slips through.
+/// The spring contacts need T/N = (√2 − 1)/(3 + √2), about half of this value. If the friction coefficient μ is below
+/// 3 − 2√2, the keystone slips through.
 ///
-/// This balance is unstable at any friction, because discs can roll. Rounding and solver errors grow until the arch
-/// rolls aside, after about 0.7 s. The measurement ends long before.
+/// This equilibrium is unstable at any friction, because discs can roll. Rounding and solver errors grow until the
+/// arch rolls aside after about 0.7 s. The measurement ends long before this time.
 pub fn arch() -> Scene {
     let radius = 0.5 * (1.0 - TOUCH) / libm::sin(FRAC_PI_8);
     let place = |eighth: u8| radius * direction(f64::from(eighth) * FRAC_PI_4);
@@ -138,22 +144,22 @@ pub fn arch() -> Scene {
     scene
 }
 
-/// Overlap of neighbours in the regular lattice, in units of the displacement: two neighbours can open by two units,
-/// and half as much is added.
+/// Overlap of neighbouring discs in the regular lattice, in units of the largest displacement of a disc. The
+/// displacements can move two neighbours apart by two units, and half of that is added as a margin.
 const SPARE: f64 = 3.0;
 
-/// A box full of discs in a triangular lattice, each displaced by up to `perturbation` diameters along each axis. The
-/// rows have `columns` discs and one disc less in turn.
+/// Returns the scene of a box full of discs in a triangular lattice. Each disc is displaced at random by up to
+/// `perturbation` diameters along each axis. The rows have `columns` and `columns` − 1 discs in turn.
 ///
-/// An inner disc touches six others, so there are three contacts per disc, while the degrees of freedom of a disc
-/// require one and a half. The displacements turn every normal by a small angle.
+/// An inner disc touches six other discs. So there are three contacts per disc, but only one and a half would be
+/// needed for the degrees of freedom of a disc. The displacements turn every normal by a small angle.
 ///
-/// The lattice is at rest. In the regular lattice the horizontal contacts may carry no force: the load on a disc
-/// rests on two contacts below it, or on one contact and a wall, and all of these push, inside their friction cones.
-/// They have four impulses per disc for three balance equations, so a small rotation of the normals needs only a
-/// small change of the impulses and no motion.
+/// The lattice is in equilibrium. In the regular lattice the horizontal contacts may be without force. Then the load
+/// on a disc rests on two contacts below the disc, or on one contact and a wall. All of these contacts push, with
+/// forces inside their friction cones. They have four impulses per disc for three equations of equilibrium. So a
+/// small rotation of the normals needs only a small change of the impulses, and no motion.
 ///
-/// The overlap of neighbours is three times the displacement, so that no contact opens.
+/// The overlap of neighbouring discs is three times the displacement, so that no contact opens.
 pub fn lattice(columns: usize, rows: usize, perturbation: f64) -> Scene {
     let mut random = Pcg64::seed_from_u64(5);
     let mut displaced = || DVec2::from_array([0; 2].map(|_| random.random_range(-1.0..=1.0)));

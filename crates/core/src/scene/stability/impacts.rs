@@ -1,4 +1,4 @@
-//! Discs that collide, bounce and slide.
+//! Scenes of discs that collide, bounce and slide.
 
 use glam::DVec2;
 
@@ -6,11 +6,12 @@ use crate::scene::Scene;
 use crate::scene::stability::{DIAMETER, GRAVITY, TOUCH, disc, dry, mass_ratio, on_floor, view};
 use crate::world::{Boundary, Gravity, Physics};
 
-/// Height of the fall, in diameters.
+/// Height from which the disc falls, in diameters.
 const DROP: f64 = 5.0;
 
-/// A disc dropped on the floor. It rises to ρ² of its height. For ρ < 1 it is at rest after infinitely many bounces,
-/// at √(2h/g)·(1 + ρ)/(1 − ρ).
+/// Returns the scene of a disc that falls from the height h onto the floor. After the first bounce with the
+/// restitution ρ it rises to ρ² h. For ρ < 1 it comes to rest after infinitely many bounces, at the time √(2h/g)·(1 +
+/// ρ)/(1 − ρ).
 pub fn bounce(restitution: f64) -> Scene {
     let mut scene = on_floor("bounce", vec![disc(0.0, DROP + 0.5)]);
     scene.parameters.restitution = restitution;
@@ -19,11 +20,12 @@ pub fn bounce(restitution: f64) -> Scene {
     scene
 }
 
-/// Speed of the first ball, in √(g d).
+/// Speed of the first ball, in √(g d) (g: gravity, d: diameter).
 const BALL_SPEED: f64 = 3.0;
 
-/// Newton's cradle, without gravity: one ball hits a row of `count` − 1 touching balls at rest. At ρ = 1 the last
-/// ball flies off with the full speed, which no law that solves all impacts of a step together predicts.
+/// Returns the scene of Newton's cradle, without gravity: one ball hits a row of `count` − 1 balls, which touch each
+/// other and are at rest. For ρ = 1 (restitution) the last ball should fly off with the full speed. No contact law
+/// that solves all impacts of a step together predicts this.
 pub fn balls(count: usize) -> Scene {
     let mut grains: Vec<_> = (0..count).map(|k| disc(k as f64 * (1.0 - TOUCH), 0.0)).collect();
     grains[0].position.x -= DIAMETER;
@@ -33,33 +35,38 @@ pub fn balls(count: usize) -> Scene {
     scene.gravity = Gravity::Uniform { acceleration: DVec2::ZERO };
     scene.parameters.restitution = 1.0;
     let width = count as f64 + 6.0;
-    // A little later the last ball leaves the view.
+    // The run ends before the last ball leaves the view.
     scene.duration_secs = (count as f64 + 1.0) / BALL_SPEED * (DIAMETER / GRAVITY).sqrt();
     scene.view = view(DVec2::new(-2.5, -2.0), DVec2::new(width, 2.0));
     scene
 }
 
-/// Mass of the falling disc, relative to the sliding one.
+/// Mass of the falling disc divided by the mass of the sliding disc.
 const RATIO: f64 = 9.0;
-/// Speeds of both along the floor, and of the fall, in √(g d).
+/// Speed of both discs along the floor, in √(g d) (g: gravity, d: diameter). `FALLING` is the speed at which the
+/// heavy disc falls, in the same unit.
 const SLIDING: f64 = 6.0;
 const FALLING: f64 = 2.0;
-/// Height of the fall, in d. The steps before the blow are solved with the lower disc alone, at every Δt.
+/// Initial gap between the falling disc and the lower disc, in diameters. It is so large that at every time step the
+/// first steps have only the lower disc in contact.
 const HEIGHT: f64 = 0.05;
 
-/// A disc slides along the floor, and a heavy disc beside it in the air hits it from above. Neither turns, and there
-/// is no gravity: the floor pushes only during the blow.
+/// Returns the scene of a blow: a disc slides along the floor, and a heavy disc, which moves along above it, hits it
+/// from above. The discs do not rotate, and there is no gravity, so the floor pushes only during the blow.
 ///
-/// The floor's friction acts on the whole normal impulse of the blow. With M the total mass and p_y < 0 the momentum
-/// of the fall, both discs move horizontally after the blow, and momentum balance gives
+/// The friction of the floor belongs to the whole normal impulse of the blow. Let M be the total mass, p_y < 0 the
+/// vertical momentum of the falling disc, μ the friction coefficient, v₀ the initial and v_x the final horizontal
+/// speed. After the blow both discs move horizontally, and the balance of momentum gives
 ///
 /// > M v_x = M v₀ − μ|p_y|,
 ///
-/// whatever happens between the two discs. Because the lower disc has the mass M/10, a fraction of 0.9 μ of the blow,
-/// which is less than μ, makes both move together. `tresca` bounds the friction of this step by the floor's impulse
-/// before it, which is zero, and that of the next step by the blow: the speed is right one step late, and both discs
-/// move Δt μ|p_y|/M too far. A second solve of the step knows the blow, because the floor's normal impulse does not
-/// depend on friction here.
+/// whatever happens between the two discs. The two discs stay together, because this needs only a fraction of 0.9 μ
+/// of the blow as friction between them, which is less than μ (the lower disc has the mass M/10).
+///
+/// The friction model `tresca` bounds friction in a step by the normal impulse of the previous step. At the step of the
+/// blow this impulse of the floor is zero, and at the next step it is the blow. So the speed is right one step late,
+/// and both discs move too far by Δt μ|p_y|/M (time step Δt). A second solve of the same step uses the impulse of the
+/// blow, because here the normal impulse of the floor does not depend on friction.
 pub fn blow() -> Scene {
     let mut scene = mass_ratio(RATIO);
     scene.name = "blow".into();
@@ -76,27 +83,29 @@ pub fn blow() -> Scene {
     scene
 }
 
-/// Speed at the start, in √(g d).
+/// Speed of the disc at the start, in √(g d) (g: gravity, d: diameter).
 const SLIDING_SPEED: f64 = 3.0;
 
-/// A disc that slides on the floor and does not turn. It must keep its height, and stop.
+/// Returns the scene of a disc that slides on the floor and does not rotate. It must keep its height, and stop.
 ///
-/// A step reduces the speed v₀ by a = μ g Δt, so that the disc slides for n = ⌊v₀/a⌋ steps. Moved with the velocity
-/// at the end of each step, it gets as far as
+/// **Coulomb friction.** A time step Δt reduces the speed v₀ by a = μ g Δt (μ: friction coefficient), so the disc
+/// slides for n = ⌊v₀/a⌋ steps. If it moves with the velocity at the end of each step, it slides over the distance
 ///
-/// > Δt (n v₀ − a n(n + 1)/2) = v₀²/(2μg) − v₀Δt/2 + Δt r(a − r)/(2a),  r = v₀ − n a,
+/// > Δt (n v₀ − a n(n + 1)/2) = v₀²/(2μg) − v₀Δt/2 + Δt r(a − r)/(2a),  r = v₀ − n a.
 ///
-/// so the distance differs from v₀²/(2μg) by at most v₀Δt/2 at any step length.
+/// So at any step length the distance differs from the exact value v₀²/(2μg) by at most v₀Δt/2.
 ///
-/// `associated` requires v_n ≥ μ|v_t|, and takes the admissible velocity nearest to the free velocity, (v₀, −g Δt):
+/// **The friction model `associated`** requires v_n ≥ μ|v_t| (normal and tangential velocity at the contact). It
+/// chooses the allowed velocity that is nearest to the velocity without contact, (v₀, −g Δt):
 ///
 /// > v_t = (v₀ − a)/(1 + μ²),  v_n = μ v_t.
 ///
-/// The disc is lifted by Δt μ v_t, loses a fraction μ²/(1 + μ²) of its speed as if it had hit a slope, and flies,
-/// v_n²/2g high, at any Δt.
+/// The disc is lifted by Δt μ v_t and loses a fraction μ²/(1 + μ²) of its speed, as if it had hit a slope. Then it
+/// flies up to a height of v_n²/2g, at any time step.
 ///
-/// `desaxce` allows v_n = μ(|v_t| − |v_t| of the previous solve), which is negative for a disc that slows down. The
-/// sum over the whole path is −μ v₀: the disc ends μ v₀ Δt lower than it began.
+/// **The friction model `desaxce`** allows v_n = μ(|v_t| − |v_t| of the previous solve), which is negative for a disc
+/// that slows down. The sum over the whole path is −μ v₀, so at the end the disc is lower by μ v₀ Δt than at the
+/// start.
 pub fn dilatancy() -> Scene {
     let mut grain = disc(0.0, 0.5 - TOUCH);
     grain.velocity.x = SLIDING_SPEED * (GRAVITY * DIAMETER).sqrt();
@@ -106,12 +115,13 @@ pub fn dilatancy() -> Scene {
     scene
 }
 
-/// Position of the wall, in diameters from the disc's start.
+/// Distance of the wall from the initial position of the disc, in diameters.
 pub const WALL_DISTANCE: f64 = 20.0;
 
-/// A fast disc and a wall without thickness. The disc flies `travel` diameters per step and starts the fraction
-/// `phase` of a step further on. A step longer than the disc's radius can carry its centre past the wall before the
-/// two ever overlap, or as they first do. A fraction 1 − r/(v Δt) of all phases then passes through.
+/// Returns the scene of a fast disc and a wall without thickness. The disc moves `travel` diameters per step. Its
+/// initial position is shifted by the fraction `phase` of this distance. If a step is longer than the radius r of the
+/// disc, it can carry the centre past the wall before the disc overlaps the wall, or in the step in which the two
+/// first overlap. This happens for a fraction 1 − r/(v Δt) of all phases (speed v, time step Δt).
 pub fn thin_wall(travel: f64, phase: f64) -> Scene {
     let mut grain = disc(travel * phase, 0.0);
     let mut scene = dry("thin-wall", Vec::new());
@@ -121,7 +131,7 @@ pub fn thin_wall(travel: f64, phase: f64) -> Scene {
     let wall = DIAMETER * WALL_DISTANCE;
     scene.boundaries =
         vec![Boundary::Segment { from: DVec2::new(wall, -wall), to: DVec2::new(wall, wall) }];
-    // A little later a disc that has passed the wall leaves the view.
+    // The run ends before a disc that has passed the wall leaves the view.
     scene.duration_secs = 2.5 * WALL_DISTANCE / travel * scene.parameters.time_step_secs;
     scene.view = view(DVec2::new(-5.0, -10.0), DVec2::new(WALL_DISTANCE + 35.0, 10.0));
     scene

@@ -1,5 +1,5 @@
-//! Scenes made to break solvers. Each drives one known weakness and has a known correct answer.
-//! `slump_studies::stability` measures them.
+//! Scenes that are made to break solvers. Each scene shows one known weakness of solvers and has a known correct
+//! result. `slump_studies::stability` measures the errors.
 
 mod boxes;
 mod columns;
@@ -20,14 +20,14 @@ pub use impacts::{WALL_DISTANCE, balls, blow, bounce, dilatancy, thin_wall};
 use super::{Scene, View};
 use crate::world::{Boundary, Grain, Gravity, Parameters};
 
-/// Diameter d of all these scenes, m.
+/// Diameter d of a disc in these scenes, m.
 pub const DIAMETER: f64 = 0.01;
-/// Gravity g, m/s².
+/// Gravity g in these scenes, m/s².
 pub const GRAVITY: f64 = 9.8;
-/// Overlap of discs that touch at the start, in diameters: more than a well solved step opens them, and far less than
-/// any measured length.
+/// Overlap of discs that are in contact at the start, in diameters. It is larger than the gap that a well solved step
+/// may open, and much smaller than any measured length.
 const TOUCH: f64 = 1e-6;
-/// A scene of grains under gravity, without cohesion and restitution.
+/// Returns a scene of grains under gravity, without cohesion and without restitution.
 pub fn dry(name: &str, grains: Vec<Grain>) -> Scene {
     let gravity = Gravity::Uniform { acceleration: DVec2::new(0.0, -GRAVITY) };
     let parameters = Parameters { friction: 0.5, ..Parameters::default() };
@@ -36,27 +36,27 @@ pub fn dry(name: &str, grains: Vec<Grain>) -> Scene {
     scene
 }
 
-/// Like [`dry`], with the ground.
+/// Returns a scene of grains under gravity above the ground at y = 0, without cohesion and without restitution.
 fn on_floor(name: &str, grains: Vec<Grain>) -> Scene {
     Scene { boundaries: vec![floor()], ..dry(name, grains) }
 }
 
-/// A view with corners in diameters.
+/// Returns a view of the scene. The corners are given in diameters.
 pub(super) fn view(min: DVec2, max: DVec2) -> Option<View> {
     Some(View { min: DIAMETER * min, max: DIAMETER * max })
 }
 
-/// A half-space through a point in diameters.
+/// Returns a half-space whose surface passes through a point in diameters.
 pub(super) fn half_space(point: DVec2, normal: DVec2) -> Boundary {
     Boundary::HalfSpace { point: DIAMETER * point, normal }
 }
 
-/// The ground: all below y = 0.
+/// Returns the ground: the half-space below y = 0.
 pub(super) fn floor() -> Boundary {
     half_space(DVec2::ZERO, DVec2::Y)
 }
 
-/// A disc of diameter d at rest, at a place in diameters.
+/// Returns a disc of diameter d at rest. The position of its centre is given in diameters.
 fn disc(x: f64, y: f64) -> Grain {
     Grain::at_rest(DIAMETER * DVec2::new(x, y), 0.5 * DIAMETER)
 }

@@ -1,27 +1,31 @@
-//! The remedy `speculative`: pairs that would meet within a step also enter its problem.
+//! Remedy `speculative`: pairs that would meet within a step become contacts of the step.
 
 use crate::contact::{InTouch, LookAhead};
 use crate::sim::state::State;
 
-/// Largest search distance, in d. Without it the search would cover nearly all pairs if all grains are fast.
+/// Largest search distance, in mean diameters. Without this limit the search would cover nearly all pairs if all grains
+/// are fast.
 const FARTHEST_IN_DIAMETERS: f64 = 8.0;
 
-/// Search distance for a step that has begun: the largest approach of two bodies at the highest speed.
+/// Returns the search distances for a step that has begun: the largest approach of two bodies in the step, if both move
+/// at the highest speed.
 ///
 /// Contacts are found at the beginning of a step, so a pair that meets later in the step is missed. A fast disc may
-/// then end up inside a wall, or behind it. So pairs whose gap would close within the step also enter its problem,
-/// and may close by their gap and no more (E. Catto, *Continuous collision*, 2013):
+/// then end up inside a wall or behind it. So this remedy adds the pairs whose gap would close within the step to the
+/// contact problem. With the normal impulse P and the normal velocity v_n, such a pair may close its gap, but may not
+/// overlap (E. Catto, *Continuous collision*, 2013):
 ///
 /// > 0 ≤ P ⟂ v_n + gap/Δt ≥ 0.
 ///
-/// They do not pull. At the end of the step they touch, because the gap is increased by the rounding tolerance of
-/// contacts (`contact::range`). In the compressive cone their friction is bounded by the normal force above their
-/// later cohesion.
+/// These pairs do not pull. At the end of the step they touch, because the law adds the rounding tolerance of contacts
+/// (`contact::range`) to their gap. In the compressive cone, which bounds friction by μ max(N, 0) with the normal force
+/// N, only the part of N counts that exceeds the cohesion that the pair will have later.
 ///
-/// **Drawbacks.** The pair is slowed down to gap/Δt before it meets, and in the next step it bounces with ρ times
-/// that speed: with any fraction between 0 and 1 of the correct speed, on average half of it. The normal is that of
-/// the beginning of the step, so a pair that would pass by at an angle may be stopped without contact. And a fast
-/// grain searches its whole path. Dividing the step into pieces (`remedies::pieces`) has none of these drawbacks.
+/// **Drawbacks.** The pair is slowed down to the speed gap/Δt before it meets, and in the next step it bounces with ρ
+/// times this speed. So it bounces with any fraction between 0 and 1 of the correct speed, on average with half of it.
+/// The normal belongs to the beginning of the step, so a pair that would pass by at an angle may be stopped without
+/// touching. A fast grain has to search its whole path. Dividing the step into pieces (`remedies::pieces`) has none of
+/// these drawbacks.
 pub(in crate::sim) fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     let world = &state.world;
     let by_forces = 2.0 * state.largest_acceleration() * time_step_secs * time_step_secs;

@@ -1,4 +1,5 @@
-//! Remedies for known failures, as hooks that steppers and the simulation call. `sim::settings::remedy` is their registry.
+//! Remedies: optional corrections for known failures of a stepper, as functions that steppers and the simulation call.
+//! Their registry is `sim::settings::remedy`.
 
 #![deny(dead_code, reason = "a remedy that no step calls would not be missed")]
 
@@ -14,7 +15,7 @@ use crate::sim::settings::Settings;
 use crate::sim::stepping::Stage;
 use crate::solver::{Model, SolveReport};
 
-/// Solves the prepared problem.
+/// Solves the prepared problem, with shocks in sequence if the settings ask for this remedy.
 pub(super) fn solve<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> SolveReport {
     if settings.remedies.sequential_impacts {
         sequential_impacts::solve(stage, settings)
@@ -23,7 +24,7 @@ pub(super) fn solve<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> 
     }
 }
 
-/// Corrects positions once the grains have moved.
+/// Corrects positions after the grains have moved, if the settings ask for this remedy.
 pub(super) fn after_step<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     if settings.remedies.push_out {
         push_out::push_out(stage.state, settings.parameters.time_step_secs);

@@ -1,12 +1,13 @@
-//! The remedy `max-travel`: a step is divided into pieces in which no grain moves far.
+//! Remedy `max-travel`: divides a step into pieces in which no grain moves far.
 
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 
-/// Limit for the pieces of a step. With more, the step would no longer be comparable to the one asked for.
+/// Largest number of pieces of a step. With more pieces, a step would no longer be comparable to a step of the
+/// requested length.
 const MOST_PIECES: f64 = 100.0;
 
-/// Number of pieces of the next step: 1 unless grains are too fast.
+/// Returns the number of pieces of the next step: 1 unless grains are so fast that they would move too far.
 pub(in crate::sim) fn pieces(state: &State, settings: &Settings) -> u32 {
     let world = &state.world;
     let longest = settings.remedies.max_travel * world.mean_diameter;

@@ -1,4 +1,4 @@
-//! The remedy `push-out`: grains that overlap are moved apart after a step.
+//! Remedy `push-out`: moves grains that overlap apart after a step.
 
 use glam::DVec2;
 
@@ -6,37 +6,40 @@ use crate::contact::Numbering;
 use crate::number::Parts;
 use crate::sim::state::State;
 
-/// Remaining overlap, in d: cohesive contacts need overlap. If smaller, rounding breaks contacts; if larger, it is
-/// visible in the measurements.
+/// Overlap that remains, in mean diameters. Cohesive contacts need some overlap: with a smaller value, rounding breaks
+/// contacts. A larger value is visible in the measurements.
 const LEFT: f64 = 2e-4;
-/// Fraction of the excess overlap removed per step. If larger, piles visibly jump; if smaller, it takes longer.
+/// Fraction of the overlap beyond [`LEFT`] that is removed per step. With a larger value, piles visibly jump; with a
+/// smaller value, the removal takes more steps.
 const SHARE: f64 = 0.2;
-/// Number of sweeps. The next step corrects their remaining error.
+/// Number of Gauss–Seidel sweeps for the displacements. The next step corrects the remaining error.
 const SWEEPS: u32 = 8;
 
-/// A contact in the position correction.
+/// Contact in the calculation of displacements.
 struct PushedContact {
     i: usize,
     j: Option<usize>,
     normal: DVec2,
-    /// Required increase of the gap, m. A negative value is the allowed decrease.
+    /// Required increase of the gap, m. A negative value allows the gap to decrease by this amount.
     want: f64,
-    /// Push λ, kg·m.
+    /// Push λ of the contact, kg·m: mass times displacement.
     push: f64,
-    /// Effective mass 1/w, kg.
+    /// Effective mass of the two bodies, kg.
     mass: f64,
 }
 
-/// Moves the grains after a step of length `time_step_secs`, whose contacts are still those of its beginning.
+/// Moves overlapping grains apart after a step of length `time_step_secs`, s. The contacts of `state` are still those
+/// of the beginning of the step.
 ///
-/// After a step the grains are moved by δ so that each contact's gap grows by a fraction of its excess overlap, and
-/// no contact is pushed into overlap by its neighbours. With w = 1/m_i + 1/m_j and λ the push of a contact,
-/// δ_i = Σ n λ/m_i,
+/// The displacements δ of the grains after a step make the gap of each contact grow by a fraction of its excess
+/// overlap, and let no contact be pushed into overlap by its neighbours. Let `want` be the required increase of the
+/// gap, n the normal, λ ≥ 0 the push of a contact, and m the mass of a grain. Then δ_i = Σ n λ/m_i over the contacts of
+/// grain i, and each contact has
 ///
 /// > 0 ≤ λ ⟂ n·(δ_i − δ_j) − want ≥ 0,
 ///
-/// which is again Signorini's law, solved by a few sweeps of projected Gauss–Seidel. Velocities do not change, so no
-/// kinetic energy is gained; a lifted grain gains potential energy.
+/// This is again Signorini's law, solved by a few sweeps of projected Gauss–Seidel. Velocities do not change, so grains
+/// gain no kinetic energy; a lifted grain gains potential energy.
 pub(in crate::sim) fn push_out(state: &mut State, time_step_secs: f64) {
     let State { world, contacts, walls, .. } = state;
     let left = LEFT * world.mean_diameter;

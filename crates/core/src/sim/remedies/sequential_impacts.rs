@@ -1,42 +1,45 @@
-//! Shocks that travel through touching grains one after the other, within one step.
+//! Remedy `sequential-impacts`: lets shocks travel through touching grains one after the other, within one step.
 //!
-//! **Problem.** The term ρ v_n^{n−1} of the paper's law settles all shocks of a step at once, and depends only on a
-//! contact's velocity before the step. A ball that hits a row of balls at rest sends all of them off together,
-//! whatever ρ is: contacts within the row do not close before the step, so they may not open after it. In reality the
-//! shock travels, and only the last ball flies off.
+//! **Problem.** The term ρ v_n^{n−1} of the paper's law (restitution ρ, normal velocity v_n^{n−1} before the step)
+//! treats all shocks of a step at once, and depends only on a contact's velocity before the step. If a ball hits a row
+//! of balls at rest, all of these balls fly off together, at any ρ: contacts within the row do not close before the
+//! step, so the law does not let them open after it. In reality the shock travels through the row, and only the last
+//! ball flies off.
 //!
-//! **Remedy.** First the shocks are computed, without friction and without gravity, which has no effect in zero time.
-//! A pass takes only the contacts that close, and solves
+//! **Remedy.** First the shocks are computed, without friction, and without gravity because it has no effect in zero
+//! time. A pass takes only the contacts k that close, with their normal velocities u_k⁻ before and u_k⁺ after the pass,
+//! their impulses P_k and the Delassus operator W, and solves
 //!
 //! > 0 ≤ P_k ⟂ u_k⁺ + ρ u_k⁻ ≥ 0 for each k with u_k⁻ < 0,  u⁺ = u⁻ + W P.
 //!
-//! This makes other contacts close, which form the next pass, until no contact closes. With ρ = 1 these are the
-//! generalized reflections of B. Smith, D. M. Kaufman, E. Vouga, R. Tamstorf and E. Grinspun, *Reflections on
+//! The result makes other contacts close. These form the next pass, until no contact closes. With ρ = 1 the passes are
+//! the generalized reflections of B. Smith, D. M. Kaufman, E. Vouga, R. Tamstorf and E. Grinspun, *Reflections on
 //! simultaneous impact* (2012). If the contacts of a pass share no grain, they are binary impacts in sequence (A.
-//! Chatterjee and A. Ruina, 1998). Contacts that close together are solved together, so that the result is as
-//! symmetric as the initial state and does not depend on the numbering of grains, as it would if one contact had to
-//! come first.
+//! Chatterjee and A. Ruina, 1998). Contacts that close together are solved together. So the result is as symmetric as
+//! the initial state, and does not depend on the numbering of grains, as it would if one contact came first.
 //!
-//! **No energy is gained.** If P_k > 0, u_k⁺ = −ρ u_k⁻, so (WP)_k = u_k⁺ − u_k⁻ = (1+ρ)|u_k⁻| > 0. A pass changes the
-//! kinetic energy by
+//! **The shocks create no energy.** If P_k > 0, then u_k⁺ = −ρ u_k⁻, so (WP)_k = u_k⁺ − u_k⁻ = (1+ρ)|u_k⁻| > 0. A pass
+//! changes the kinetic energy by
 //!
 //! > ½P·(u⁺ + u⁻) = −½ (1−ρ) Σ P_k |u_k⁻| = −½ (1−ρ)/(1+ρ) Σ P_k (WP)_k ≤ 0.
 //!
-//! Contacts that still close after the last pass, at speeds too slow to bounce, are stopped by projecting the
-//! velocities onto those that close no contact. This also dissipates energy. Impulses act on pairs, so momentum is
-//! conserved.
+//! Contacts that still close after the last pass, at speeds too slow to bounce, are stopped: the velocities are
+//! projected onto those velocities at which no contact closes. This also dissipates energy. Impulses act on pairs, so
+//! momentum is conserved.
 //!
-//! **The step itself** then requires each contact that was struck to open with the speed û_k ≥ 0 given by the shocks:
-//! u_k^n − û_k replaces u_k^n + ρ u_k^{n−1} in its law. Without gravity and friction the impulses of the shocks
-//! already solve this step: they are ≥ 0, and if they are not 0, u_k^n = û_k. With friction, the bound depends on the
-//! whole normal impulse, including shocks. A single contact has û = −ρ u^{n−1}, so nothing changes for it.
+//! **The step itself** then requires each struck contact k to open with the speed û_k ≥ 0 that the shocks have given
+//! it: in its law, u_k^n − û_k replaces u_k^n + ρ u_k^{n−1}. Without gravity and friction the impulses of the shocks
+//! already solve this step: they are ≥ 0, and u_k^n = û_k if an impulse is not 0. With friction, the friction bound
+//! depends on the whole normal impulse, including shocks. A single contact has û = −ρ u^{n−1}, so the law of a single
+//! contact does not change.
 //!
-//! **Friction.** With friction, bounces may gain energy, here as in the paper's scheme (T. R. Kane, 1984). If the
-//! contacts of a step have done positive work, in addition to that of moving walls, its û_k are halved and it is
-//! solved again. With û_k = 0 this work is, without gravity, P_t·u_t − ½P·WP ≤ 0, so the process ends.
+//! **Friction.** With friction, bounces may create energy, here as in the paper's scheme (T. R. Kane, 1984). If the
+//! contacts of a step have done positive work, in addition to the work of moving walls, all û_k of the step are halved
+//! and the step is solved again. With û_k = 0 this work is, without gravity, P_t·u_t − ½P·WP ≤ 0 (P_t and u_t are the
+//! tangential impulses and velocities), so the process ends.
 //!
-//! **Not with cohesion.** In the paper's law touching grains are bonded, and bonds take part in a shock. All contacts
-//! would then belong to the first pass, which is the unmodified law.
+//! **Not with cohesion.** In the paper's law touching grains are bonded, and bonds take part in a shock. So all
+//! contacts would belong to the first pass, and the remedy would change nothing.
 
 use crate::contact::ContactList;
 use crate::number::Parts;
@@ -47,25 +50,30 @@ use crate::solver::{
     for_each_row, relative_velocities, solve as solve_problem,
 };
 
-/// Closing speed below which contacts do not bounce, in g·Δt: a step of gravity alone makes a resting contact close.
-/// If smaller, a pile at rest would be shaken in each step.
+/// Closing speed below which contacts do not bounce, in units of g·Δt. Gravity alone makes a resting contact close by
+/// g·Δt in a step, so with a smaller value a pile at rest would be shaken in each step.
 const LEAST_IN_STEPS_OF_GRAVITY: f64 = 2.0;
-/// The same limit relative to the fastest closing speed of the step, for scenes without gravity. For ρ < 1 a chain
-/// closes infinitely often. If smaller, more passes are spent on invisible motion.
+/// Closing speed below which contacts do not bounce, divided by the fastest closing speed of the step. This limit
+/// serves scenes without gravity: for ρ < 1 the contacts of a chain close infinitely often, ever more slowly. With a
+/// smaller value, more passes are spent on invisible motion.
 const LEAST_IN_FASTEST: f64 = 1e-6;
-/// Limit for the passes of a step. A row of n balls needs n − 1 passes.
+/// Largest number of passes in a step. A pass solves all contacts that close at the same time. A shock through a row of
+/// n balls needs n − 1 passes.
 const MOST_PASSES: u32 = 2000;
 
-/// Relative gain of energy that contacts may have because of rounding and the tolerance of a step.
+/// Work of the contacts of a step, divided by the sum of its absolute parts, above which the contacts count as creating
+/// energy. Rounding and the tolerance of a step cause smaller values.
 const LEAST_GAIN: f64 = 1e-6;
 
-/// Number of times that bounces with energy gain are halved; the last time they are set to 0.
+/// Number of times that the bounces of a step are reduced if they create energy: halved, and the last time set to 0.
 const HALVINGS: u32 = 5;
 
-/// Solver of a pass, whatever solver the step uses, because few contacts close together.
+/// Solver settings of a pass (one stage of a shock). They do not depend on the solver of the step, because few contacts
+/// close together.
 const PASS: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-12, 1000);
 
-/// Solves a prepared step whose contacts open as its shocks require.
+/// Solves a prepared step whose contacts open with the speeds that the shocks of the step have given them. Reduces
+/// these speeds and solves the step again while bounces create energy.
 pub(in crate::sim) fn solve<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -89,9 +97,9 @@ pub(in crate::sim) fn solve<M: Model>(
     report.after(earlier)
 }
 
-/// Computes the shocks of a prepared step and makes its contacts open accordingly. Returns the work of the solves;
-/// the caller reports if the step is solved. Returns `None`, and leaves the problem unchanged, with cohesion or
-/// without shocks that bounce.
+/// Computes the shocks of a prepared step, and changes the problem so that its contacts open with the resulting speeds.
+/// Returns a report with the sweeps of these solves; the later solve of the step tells if the step is solved. With
+/// cohesion, or without shocks that bounce, returns `None` and does not change the problem.
 pub(in crate::sim) fn follow<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -125,8 +133,8 @@ pub(in crate::sim) fn follow<M: Model>(
     Some(report)
 }
 
-/// True if the contacts of a solved step have done work on the grains, beyond rounding and beyond the work of moving
-/// walls. Velocities are relative to those walls.
+/// True if the contacts of a solved step have done positive work on the grains, beyond rounding and without the work of
+/// moving walls: velocities are relative to the walls.
 fn gains_energy<M: Model>(problem: &StepProblem<M>) -> bool {
     let (mut gain, mut scale) = (0.0, 0.0);
     for_each_row(problem, |number, row, motion| {
@@ -145,15 +153,15 @@ fn gains_energy<M: Model>(problem: &StepProblem<M>) -> bool {
     gain > LEAST_GAIN * scale
 }
 
-/// Progress of the shocks.
+/// State of the calculation of shocks, between two passes.
 struct ImpactSequence<M: Model> {
-    /// Present velocities.
+    /// Present velocities of the grains.
     bodies: Vec<M::Body<f64>>,
-    /// u of each row, m/s.
+    /// Normal velocity u of each contact of the problem, m/s.
     speeds: Vec<f64>,
-    /// P/m_ij of each row so far, m/s.
+    /// Normal impulse of each contact so far, divided by its effective mass, m/s.
     impulses: Vec<f64>,
-    /// True if a row's pair touches. A pair that will only touch within the step has no shock yet.
+    /// True for each contact whose pair touches. A pair that will only touch later in the step takes no part in shocks.
     touching: Vec<bool>,
 }
 
@@ -168,14 +176,14 @@ impl<M: Model> ImpactSequence<M> {
         Self { bodies, speeds, impulses, touching }
     }
 
-    /// Fastest closing speed max(−u), m/s, or 0.
+    /// Returns the fastest closing speed of touching contacts, max(−u), m/s, or 0 if no contact closes.
     fn fastest_closing(&self) -> f64 {
         let all = self.speeds.iter().zip(&self.touching);
         all.filter(|(_, touches)| **touches)
             .fold(0.0, |fastest, (speed, _)| fastest.max((-speed).positive_part()))
     }
 
-    /// Fills `pass` with the rows that close faster than `least` (m/s). Returns false if there are none.
+    /// Fills `pass` with the contacts that close faster than `least` (m/s). Returns false if no contact does.
     fn select(
         &self,
         problem: &StepProblem<M>,
@@ -201,7 +209,7 @@ impl<M: Model> ImpactSequence<M> {
         !pass.rows.is_empty()
     }
 
-    /// Adds the result of a pass.
+    /// Adds the impulses of a solved pass to the impulses so far, and updates the velocities.
     fn take(&mut self, problem: &StepProblem<M>, pass: &mut StepProblem<M>) {
         for ((_, row), &number) in pass.rows().zip(&pass.rows.contacts) {
             self.impulses[number as usize] += row.shifted_impulse;
@@ -210,7 +218,8 @@ impl<M: Model> ImpactSequence<M> {
         relative_velocities(problem, &self.bodies, &mut self.speeds);
     }
 
-    /// Stops all contacts that still close, without friction, with the step's own solver, because there may be many.
+    /// Stops all contacts that still close, without friction. Uses the solver of the step, because many contacts may
+    /// close.
     fn stop_the_rest(
         &mut self,
         problem: &StepProblem<M>,
@@ -239,8 +248,8 @@ impl<M: Model> ImpactSequence<M> {
         report
     }
 
-    /// Requires of each contact that was struck the speed it has reached. A contact that was not struck may not
-    /// bounce. The step starts from the impulses of the impacts.
+    /// Changes the law of each struck contact so that it opens with the speed that the shocks have given it. A contact
+    /// that was not struck may not bounce. The solver starts from the impulses of the shocks.
     fn set_rebounds(&self, problem: &mut StepProblem<M>) {
         for (number, (row, wall_speed)) in problem.rows_with_walls().enumerate() {
             let impulse = self.impulses[number];

@@ -1,27 +1,28 @@
-//! The work that breaks a bond slowly.
+//! Work of fracture: the work needed to pull two bonded grains apart slowly.
 
 use serde::{Deserialize, Serialize};
 
 use crate::contact::law::cohesion_force;
 use crate::world::{Parameters, Physics, World};
 
-/// The work that slowly separates two bonded grains of the mean mass m.
+/// Work of fracture: the work needed to pull two bonded grains, each of the mean mass m, apart slowly.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FractureWork {
-    /// Work, J.
+    /// Work of fracture, J.
     pub joules: f64,
-    /// Work in units of m·g·d, which lifts one of the grains by a diameter. Without gravity the acceleration of the
-    /// cohesion force replaces g; 0 without both.
+    /// Work of fracture divided by m·g·d, the work that lifts one of the grains by the mean diameter d. Without
+    /// gravity, g is replaced by the acceleration that defines the cohesion force. 0 if both accelerations are 0.
     pub over_mgd: f64,
 }
 
-/// m_ij of two grains of the mean mass, kg.
+/// Returns the effective mass m_ij of two grains of the mean mass, kg.
 pub(super) fn effective_mass_of_mean(world: &World) -> f64 {
     let masses = &world.grains.masses;
     0.5 * (masses.iter().sum::<f64>() / masses.len() as f64)
 }
 
-/// The work of fracture of a law in which a bond of cohesion C₀ (N) takes `work(C₀)` (J).
+/// Computes the work of fracture under a contact law in which a bond with the cohesion force C₀ (N) takes the work
+/// `work(C₀)` (J) to break. Returns `None` without cohesion.
 pub(super) fn fracture_work_of(
     world: &World,
     physics: Physics,

@@ -23,8 +23,8 @@ use crate::world::{
     FrictionCone, Gravity, MaterialPair, Motion, Parameters, Periodic, Physics, World,
 };
 
-/// Settings of a simulation's steps. Their compatibility is checked when a simulation takes them over
-/// ([`Settings::validate`]).
+/// Settings of a simulation: the stepper, the parameters of the contact laws, the solver and the remedies. A simulation
+/// checks them with [`Settings::validate`] before it uses them.
 ///
 /// ```
 /// use slump_core::sim::{Settings, Stepper};
@@ -43,26 +43,26 @@ use crate::world::{
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// The stepper, with its contact law.
+    /// Stepper: the rule that advances the grains by the time step Δt, with its contact law.
     #[serde(default)]
     pub stepper: Stepper,
-    /// Parameters of the contact laws, and Δt.
+    /// Parameters of the contact laws, and the time step Δt (s).
     pub parameters: Parameters,
-    /// Solver settings of each step.
+    /// Settings of the solver, which computes the contact impulses of each step.
     #[serde(default)]
     pub solver: SolverSettings,
-    /// Remedies for known failures; none in the paper's scheme.
+    /// Remedies: optional corrections for known failures of a stepper. The paper's scheme has none.
     #[serde(default, skip_serializing_if = "Remedies::is_none")]
     pub remedies: Remedies,
 }
 
 impl Settings {
-    /// True if steps are solved under a friction model other than Coulomb's law.
+    /// True if the solver uses a friction model other than Coulomb friction.
     pub(crate) fn solves_models(&self) -> bool {
         self.stepper.uses_method() && self.solver.solves_models()
     }
 
-    /// The setting `stepper` itself.
+    /// Description of the setting `stepper`.
     pub const STEPPER: About = About {
         name: "stepper",
         value_name: "NAME",
@@ -79,14 +79,14 @@ impl Settings {
         }),
     };
 
-    /// All settings.
+    /// Returns the descriptions of all settings.
     pub fn about() -> impl Iterator<Item = &'static About> {
         const FIRST: &[About] = &[Settings::STEPPER];
         let groups = [FIRST, Parameters::ABOUT, SolverSettings::ABOUT, Remedies::ABOUT];
         groups.into_iter().flatten()
     }
 
-    /// The value of the setting with this name.
+    /// Returns the value of the setting `name`, or `None` if no setting has this name.
     pub fn get(&self, name: &str) -> Option<Value> {
         let Self { stepper, parameters, solver, remedies } = self;
         if name == Self::STEPPER.name {
@@ -95,7 +95,8 @@ impl Settings {
         parameters.get(name).or_else(|| solver.get(name)).or_else(|| remedies.get(name))
     }
 
-    /// Sets a setting to a value of its kind. Returns false if no setting has that name and kind.
+    /// Sets the setting `name` to a value. Returns false, and changes nothing, if no setting has this name and this
+    /// kind of value.
     pub fn set(&mut self, name: &str, value: Value) -> bool {
         let Self { stepper, parameters, solver, remedies } = self;
         if name == Self::STEPPER.name {
@@ -106,13 +107,13 @@ impl Settings {
         parameters.set(name, value) || solver.set(name, value) || remedies.set(name, value)
     }
 
-    /// The same settings with another Bond number.
+    /// Returns these settings with the Bond number `bond`.
     pub fn with_bond(mut self, bond: f64) -> Self {
         self.parameters.bond = bond;
         self
     }
 
-    /// The same settings with another Δt, s.
+    /// Returns these settings with the time step `time_step_secs`, s.
     pub fn over(self, time_step_secs: f64) -> Self {
         Self { parameters: self.parameters.over(time_step_secs), ..self }
     }
@@ -123,10 +124,10 @@ fn names_of<'a>(steppers: impl Iterator<Item = &'a Stepper>) -> Vec<&'static str
 }
 
 impl Settings {
-    /// Checks every number against its range, and its compatibility with the stepper.
+    /// Checks that every number is in its range and that the stepper supports all settings.
     ///
     /// # Errors
-    /// Names the first setting that is outside its range or that the stepper does not support.
+    /// The error names the first setting that is outside its range or that the stepper does not support.
     pub fn validate(&self) -> Result<()> {
         self.parameters.validate_each()?;
         (self.stepper.info().check)(&self.parameters)?;
@@ -145,7 +146,7 @@ impl Settings {
         Ok(())
     }
 
-    /// Checks that the stepper and its cone support the friction model.
+    /// Checks that the stepper and the friction cone support the friction model.
     fn check_friction_model(&self) -> Result<()> {
         let (model, cone) = (self.solver.friction_model, self.parameters.cone);
         if model != FrictionModel::Coulomb && !self.stepper.reads("friction-model") {
@@ -165,7 +166,8 @@ impl Settings {
         Ok(())
     }
 
-    /// Checks that the rest of the settings supports rolling friction, if it is given.
+    /// Checks that the solver and the friction model support rolling friction, if rolling friction is present
+    /// (`is_given`).
     fn check_rolling(&self, is_given: bool) -> Result<()> {
         let SolverSettings { method, friction_model, .. } = self.solver;
         let refuse = |field: &str, found: String, allowed: &str| {
@@ -186,7 +188,8 @@ impl Settings {
         Ok(())
     }
 
-    /// Checks that the settings support everything in a world.
+    /// Checks that the settings support everything in a world: its driven walls, gravity, periodic borders, pairs of
+    /// materials and rolling friction.
     pub(crate) fn check_in(&self, world: &World, physics: Physics) -> Result<()> {
         self.check_drives(&world.motions)?;
         self.check_tilt(&world.gravity, physics)?;
@@ -199,7 +202,8 @@ impl Settings {
         (self.stepper.info().check_in)(world, physics, &self.parameters)
     }
 
-    /// Checks that gravity can be tilted, if there is a tilt.
+    /// Checks that gravity can be tilted if the parameter `tilt` is not 0: gravity must be uniform, in a scene with two
+    /// axes.
     pub(crate) fn check_tilt(&self, gravity: &Gravity, physics: Physics) -> Result<()> {
         let refuse = |of: &str| {
             let allowed = format!("left out or 0 where {of}");
@@ -213,7 +217,7 @@ impl Settings {
         }
     }
 
-    /// Checks that the stepper and the solver can move walls driven by a force, if there are any.
+    /// Checks that the stepper, the solver and the remedies support walls driven by a force, if `motions` contain one.
     pub(crate) fn check_drives(&self, motions: &[Motion]) -> Result<()> {
         if motions.iter().all(|motion| motion.drive.is_none()) {
             return Ok(());
@@ -240,7 +244,7 @@ impl Settings {
         Ok(())
     }
 
-    /// Checks that the solver supports sheared borders, if there are any.
+    /// Checks that the solver supports sheared periodic borders, if the borders are sheared.
     pub(crate) fn check_shear(&self, periodic: Option<Periodic>) -> Result<()> {
         let method = self.solver.method;
         let is_taken = !self.stepper.uses_method() || method.info().takes_shear;
@@ -253,7 +257,8 @@ impl Settings {
         Err(Error::value("solver", method, allowed))
     }
 
-    /// Checks that the stepper and the solver support contact laws by pairs of materials, if there are any.
+    /// Checks that the stepper, the solver and the remedies support separate contact laws for pairs of materials, if
+    /// `pairs` is not empty.
     fn check_pairs(&self, pairs: &[MaterialPair]) -> Result<()> {
         let refuse = |field: &str, found: &dyn Display, takers: Vec<&str>| {
             let allowed = format!("{} where the scene has pairs of materials", takers.join(" or "));
@@ -280,7 +285,8 @@ impl Settings {
         }
     }
 
-    /// The same settings without the remedies and the friction model that the stepper or the solver do not support.
+    /// Returns these settings without the remedies and the friction model that the stepper or the solver does not
+    /// support.
     pub fn with_only_what_is_taken(mut self) -> Self {
         self.solver = self.solver.by(self.solver.method);
         if !self.stepper.reads("friction-model") {

@@ -1,31 +1,31 @@
-//! The registry of remedies for known failures. All are off in the paper's scheme. A remedy has a row in [`REMEDIES`]
-//! and a setting in [`Remedies`]; `sim::remedies` contains the code.
+//! Registry of the remedies: optional corrections for known failures of a stepper, such as overlap. The paper's scheme
+//! uses no remedy. Each remedy has a row in [`REMEDIES`] and a setting in [`Remedies`]; its code is in `sim::remedies`.
 
 use crate::setting::{Group, Value, settings};
 use crate::sim::settings::stepper::Stepper;
 
-/// Longest travel of a grain in a piece of a step in the preset `robust`, in diameters: half of the travel that could
-/// pass a wall.
+/// Value of `max-travel` in the preset `robust`: the longest distance that a grain moves in one piece of a step, in
+/// mean diameters. It is half of the distance that could carry a grain through a wall.
 const ROBUST_TRAVEL: f64 = 0.25;
 
-/// Description of a remedy.
+/// Registry entry of a remedy: its name, the steppers that support it and its value in the preset `robust`.
 #[derive(Clone, Copy, Debug)]
 pub struct Remedy {
-    /// Name of its setting.
+    /// Name of the remedy's setting.
     pub name: &'static str,
-    /// The steppers that support it.
+    /// Steppers that support the remedy.
     pub taken_by: &'static [Stepper],
-    /// Value of its setting in the preset `robust`, if it is part of the preset.
+    /// Value of the remedy's setting in the preset `robust`; `None` if the preset leaves the remedy off.
     pub robust: Option<Value>,
 }
 
 impl Remedy {
-    /// True if the remedy is requested.
+    /// True if `remedies` turns this remedy on.
     pub(crate) fn is_on(&self, remedies: &Remedies) -> bool {
         remedies.get(self.name) != Remedies::default().get(self.name)
     }
 
-    /// Resets the remedy to its default.
+    /// Turns this remedy off in `remedies`.
     pub(crate) fn leave_out(&self, remedies: &mut Remedies) {
         if let Some(value) = Remedies::default().get(self.name) {
             remedies.set(self.name, value);
@@ -34,7 +34,7 @@ impl Remedy {
 }
 
 settings! {
-    /// Remedies for known failures.
+    /// Settings of the remedies: optional corrections for known failures of a stepper, such as overlap.
     #[serde(default)]
     pub struct Remedies, changes RemedyChanges, heading "Solver" {
         push_out: bool = false, "push-out",
@@ -71,13 +71,13 @@ settings! {
 }
 
 impl Remedies {
-    /// True if no remedy is requested.
+    /// True if all remedies are off.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
 }
 
-/// All remedies, in the order of their settings.
+/// All remedies, in the order of the settings of [`Remedies`].
 pub const REMEDIES: [Remedy; 4] = {
     const fn row(
         name: &'static str,
@@ -92,7 +92,8 @@ pub const REMEDIES: [Remedy; 4] = {
         row("push-out", MOREAU, ON),
         row("max-travel", &[Stepper::Moreau, Stepper::Range], Some(Value::Number(ROBUST_TRAVEL))),
         row("sequential-impacts", MOREAU, ON),
-        // Fast grains are handled by `max-travel`. Looking ahead would reduce their bounce.
+        // Off in the preset `robust`: `max-travel` already handles fast grains, and `speculative` would weaken their
+        // bounces.
         row("speculative", MOREAU, None),
     ]
 };

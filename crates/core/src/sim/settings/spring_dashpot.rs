@@ -1,37 +1,43 @@
-//! Springs and dashpots of discrete elements: stiffness, damping, and largest stable substep.
+//! Springs and dashpots of the discrete-element stepper `dem`: stiffness, damping, and longest stable substep.
 //!
-//! **Damping from restitution.** Two discs meet with closing speed v. With ω₀ = √(k/m_ij) and γ = 2ζ m_ij ω₀,
-//! δ̈ + 2ζω₀ δ̇ + ω₀² δ = 0 until the force is 0; from then on they fly freely. For ζ < 1 write ζ = cos φ, so that
-//! δ ∝ e^{−ζω₀t} sin(ω₀ sin φ t). Setting δ̈ = 0 gives ω₀ sin φ t = 2φ, and the speed at this time is v e^{−ζω₀t}. So
+//! **Damping from restitution.** Two discs with the effective mass m_ij meet with the closing speed v. Their contact
+//! has the stiffness k, the damping coefficient γ and the damping ratio ζ. With ω₀ = √(k/m_ij) and γ = 2ζ m_ij ω₀, the
+//! overlap δ obeys δ̈ + 2ζω₀ δ̇ + ω₀² δ = 0 until the contact force is 0. From then on the discs fly freely. For ζ < 1
+//! write ζ = cos φ, so that δ ∝ e^{−ζω₀t} sin(ω₀ sin φ t). The force is 0 when δ̈ = 0, that is at ω₀ sin φ t = 2φ, and
+//! the speed at this time is v e^{−ζω₀t}. So the restitution is
 //!
 //! > ρ = exp(−2ζ arccos ζ / √(1 − ζ²)),  for ζ > 1  ρ = exp(−2ζ arcosh ζ / √(ζ² − 1)),
 //!
-//! and e^{−2} at ζ = 1. It decreases with ζ, towards 1/(4ζ²), and reaches 0 at no finite damping: restitutions below
-//! [`LEAST_RESTITUTION`] are raised to it.
+//! and e^{−2} at ζ = 1. The restitution decreases with ζ, towards 1/(4ζ²), and no finite damping makes it 0. So
+//! restitutions below [`LEAST_RESTITUTION`] are raised to this value.
 //!
-//! **Contact time.** The time at which the force ends (T. Schwager & T. Pöschel, 2007) is
+//! **Contact time.** The time from the first touch until the contact force is 0 (T. Schwager & T. Pöschel, 2007) is
 //!
 //! > t_c = (2/ω₀) arccos ζ / √(1 − ζ²),  for ζ > 1  t_c = (2/ω₀) arcosh ζ / √(ζ² − 1),
 //!
 //! which is π/ω₀ without damping, and ρ = e^{−ζω₀t_c}. The discs are still separating at that time.
 //!
-//! **Work of fracture.** A bonded pair without load rests at the overlap C₀/k, at which N = 0. If it is pulled apart
-//! so slowly that the dashpot has no effect, it resists with C₀ − kδ, and with nothing from δ = 0 on:
+//! **Work of fracture.** A bonded pair with the cohesion force C₀ and without load rests at the overlap C₀/k, at which
+//! the normal force is 0. If the pair is pulled apart so slowly that the dashpot has no effect, it resists with the
+//! force C₀ − kδ until δ = 0, and then no longer. So the work of fracture is
 //!
 //! > W = ∫₀^{C₀/k} (C₀ − kδ) dδ = C₀²/(2k).
 //!
-//! A pair that is thrown apart may lose more. If γ v_n > kδ, spring and dashpot do not push, and the full C₀ pulls. A
-//! pair that separates at such a speed loses C₀·C₀/k = 2W, which is the largest possible loss.
+//! A pair that is thrown apart may lose more energy. If γ v_n > kδ, with the opening speed v_n, spring and dashpot do
+//! not push, and the full C₀ pulls. A pair that separates at such a speed loses C₀·C₀/k = 2W, which is the largest
+//! possible loss.
 //!
-//! **Critical time step.** Velocities are updated first, then positions, with the forces of the beginning of the
-//! substep. A mode of frequency ω and damping ratio ζ has z² − (2 − 2ζωh − ω²h²) z + 1 − 2ζωh = 0. Its first root
-//! leaves the unit circle at z = −1, when ω²h² + 4ζωh = 4:
+//! **Critical time step.** A substep of length h first updates the velocities, with the forces at its beginning, and
+//! then the positions. A mode of vibration with the frequency ω (rad/s) and the damping ratio ζ changes per substep by
+//! a factor z with z² − (2 − 2ζωh − ω²h²) z + 1 − 2ζωh = 0. The mode is unstable if |z| > 1. The first root z to leave
+//! the unit circle does so at z = −1, when ω²h² + 4ζωh = 4, at the critical time step
 //!
 //! > h = (2/ω) (√(1 + ζ²) − ζ).
 //!
-//! If each body of a contact has z contacts, and each contact has 1/z of their masses, no mode of the whole system is
-//! faster than the fastest mode of a single contact, with ω² = z k/m_ij and damping ratio ζ√z. With k_t = k m_t/m_n
-//! and γ_t = γ m_t/m_n the tangential mode is as fast as the normal one.
+//! Let each body of a contact have n contacts, and give 1/n of the body's mass to each of them. Then no mode of the
+//! whole system is faster than the fastest mode of a single contact, for which ω² = n k/m_ij and the damping ratio is
+//! ζ√n. The tangential stiffness is k_t = k m_t/m_n and the tangential damping γ_t = γ m_t/m_n, with the effective
+//! masses m_n and m_t along normal and tangent. So the tangential mode is as fast as the normal mode.
 
 use crate::error::{Error, Result};
 use crate::number::rounded_down;
@@ -39,31 +45,34 @@ use crate::sim::pull::acceleration_of_springs;
 use crate::sim::settings::fracture_work::effective_mass_of_mean;
 use crate::world::{MAX_SUBSTEPS, Parameters, Physics, World};
 
-/// Overlap caused by the weight of a whole pile, in d. If smaller, springs are stiffer and cost more, because h is
-/// proportional to its square root; if larger, grains are so soft that their overlap shows in the shape of the pile.
+/// Overlap that the weight of a whole pile causes if the stiffness is automatic, in mean diameters. A smaller value
+/// makes springs stiffer; they cost more, because the stable substep is proportional to the square root of this value.
+/// A larger value makes grains so soft that their overlap shows in the shape of the pile.
 const STATIC_OVERLAP: f64 = 1e-3;
-/// Restitutions below this are raised to it. If smaller, damping grows, and h decreases as the square root.
+/// Smallest restitution that the dashpots reproduce; smaller restitutions are raised to this value. A smaller value
+/// requires more damping, and shortens the stable substep in proportion to its square root.
 const LEAST_RESTITUTION: f64 = 0.02;
-/// Substep as a fraction of the critical time step, if the number of substeps is automatic. If larger, a collision
-/// has fewer substeps and its restitution is less exact; at 1 the simulation may become unstable.
+/// Length of a substep divided by the critical time step, if the number of substeps is automatic. With a larger value a
+/// collision has fewer substeps and its restitution is less exact; at 1 the simulation may become unstable.
 const SAFE_FRACTION: f64 = 0.5;
-/// Number of equal discs that fit around one, in the plane and on a line.
+/// Number of equal discs that fit around one disc, in the plane and on a line.
 const NEIGHBOURS: [f64; 2] = [6.0, 2.0];
-/// Number of bisections in the search for the damping ratio: down to rounding.
+/// Number of bisections in the search for the damping ratio: enough to reach the rounding of `f64`.
 const HALVINGS: u32 = 60;
 
-/// Spring and dashpot of the contacts of a world.
+/// Spring and dashpot that act at each contact of a world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringDashpot {
     /// Stiffness k, N/m.
     pub stiffness: f64,
-    /// Damping ratio ζ of a single contact.
+    /// Damping ratio ζ of a single contact, dimensionless.
     pub damping_ratio: f64,
 }
 
 impl SpringDashpot {
-    /// Takes stiffness and damping from the parameters. By default the springs are stiff enough for a pile of the
-    /// world's grains, and damped for restitution ρ.
+    /// Returns the stiffness and the damping ratio of the parameters. If the stiffness is 0, the springs are stiff
+    /// enough for a pile of the world's grains. If the damping ratio is 0, the dashpots give the restitution of the
+    /// parameters.
     pub fn of(world: &World, axes: u8, parameters: &Parameters) -> Self {
         Self {
             stiffness: match parameters.stiffness {
@@ -77,20 +86,22 @@ impl SpringDashpot {
         }
     }
 
-    /// Damping coefficient γ of a contact, N·s/m.
+    /// Returns the damping coefficient γ of a contact with this effective mass (kg), N·s/m.
     pub(crate) fn damping(&self, effective_mass: f64) -> f64 {
         2.0 * self.damping_ratio * (self.stiffness * effective_mass).sqrt()
     }
 
-    /// The critical time step, s, of contacts with this effective mass (kg) whose bodies have `neighbours` contacts
-    /// each: exact for 1, a lower bound for more.
+    /// Returns the critical time step, s: the longest stable substep of contacts with this effective mass (kg) whose
+    /// bodies have `neighbours` contacts each. The value is exact for one contact per body, and a lower bound for more
+    /// contacts.
     pub fn critical_time_step_secs(&self, effective_mass: f64, neighbours: f64) -> f64 {
         let frequency = (neighbours * self.stiffness / effective_mass).sqrt();
         let damping_ratio = self.damping_ratio * neighbours.sqrt();
         2.0 / frequency / (libm::hypot(damping_ratio, 1.0) + damping_ratio)
     }
 
-    /// Contact time t_c, s, of two colliding discs with this effective mass (kg) and no cohesion.
+    /// Returns the contact time t_c, s: the duration of a collision of two discs with this effective mass (kg) without
+    /// cohesion.
     pub fn contact_time_secs(&self, effective_mass: f64) -> f64 {
         let frequency = (self.stiffness / effective_mass).sqrt();
         match angle_and_root(self.damping_ratio) {
@@ -99,14 +110,14 @@ impl SpringDashpot {
         }
     }
 
-    /// Work of fracture C₀²/(2k), J, of a bond with cohesion C₀ (N).
+    /// Returns the work of fracture C₀²/(2k), J, of a bond with the cohesion force C₀ (`cohesion_force`, N).
     pub fn fracture_work(&self, cohesion_force: f64) -> f64 {
         0.5 * cohesion_force * cohesion_force / self.stiffness
     }
 }
 
-/// The stiffness, N/m, at which the weight of a column causes the static overlap. The column is as high as the number
-/// of grains along an axis, √n in the plane.
+/// Returns the stiffness, N/m, at which the weight of a column of grains causes the overlap [`STATIC_OVERLAP`]. Of n
+/// grains the column contains √n in the plane, and all n on a line.
 fn stiffness_for_weight(world: &World, axes: u8, parameters: &Parameters) -> f64 {
     let masses = &world.grains.masses;
     let count = masses.len() as f64;
@@ -116,10 +127,10 @@ fn stiffness_for_weight(world: &World, axes: u8, parameters: &Parameters) -> f64
     load / (STATIC_OVERLAP * world.mean_diameter)
 }
 
-/// The damping ratio ζ that gives a restitution.
+/// Returns the damping ratio ζ that gives a restitution.
 fn damping_ratio(restitution: f64) -> f64 {
     let wanted = restitution.max(LEAST_RESTITUTION);
-    // At ζ = 1/√ρ the restitution is below ρ for every ρ < 1.
+    // Upper end of the search, 1/√ρ: with this damping ratio the restitution is below the wanted ρ for every ρ < 1.
     let (mut low, mut high) = (0.0, 1.0 / wanted.sqrt());
     if wanted == 1.0 {
         return low;
@@ -142,17 +153,19 @@ fn restitution_of(damping_ratio: f64) -> f64 {
     }
 }
 
-/// arccos ζ and √(1 − ζ²), or arcosh ζ and √(ζ² − 1). `None` at ζ = 1, where their ratio is 1.
+/// Returns arccos ζ and √(1 − ζ²) for ζ < 1, or arcosh ζ and √(ζ² − 1) for ζ > 1. Returns `None` at ζ = 1, where the
+/// quotient of the two numbers tends to 1.
 fn angle_and_root(damping_ratio: f64) -> Option<(f64, f64)> {
-    // A product, because the difference of squares would lose digits near 1.
+    // Written as a product, because the difference 1 − ζ² would lose digits near ζ = 1.
     let root = ((1.0 - damping_ratio) * (1.0 + damping_ratio)).abs().sqrt();
-    // Computed from the root for the same reason.
+    // Computed from the root, because arccos ζ and arcosh ζ would lose digits near ζ = 1.
     let angle =
         if damping_ratio < 1.0 { libm::atan2(root, damping_ratio) } else { libm::asinh(root) };
     (root != 0.0).then_some((angle, root))
 }
 
-/// The longest stable substep, s, if the smallest grains have as many neighbours as fit.
+/// Returns the longest substep, s, that is stable even if the smallest grains have as many neighbours as fit around
+/// them.
 pub(super) fn critical_time_step_secs(
     world: &World,
     physics: Physics,
@@ -169,13 +182,14 @@ pub(super) fn critical_time_step_secs(
     springs.critical_time_step_secs(effective_mass, neighbours)
 }
 
-/// Contact time t_c, s, of two grains of the mean mass.
+/// Returns the duration t_c of a collision of two grains of the mean mass, s.
 pub(super) fn contact_time_secs(world: &World, physics: Physics, parameters: &Parameters) -> f64 {
     let springs = SpringDashpot::of(world, physics.axes, parameters);
     springs.contact_time_secs(effective_mass_of_mean(world))
 }
 
-/// The requested number of substeps, or by default the number that is stable ([`check_substeps`] refuses too many).
+/// Returns the number of substeps of a step: the requested number or, if that is 0, the number that is stable.
+/// [`check_substeps`] refuses parameters that need too many substeps.
 pub(super) fn substeps(world: &World, physics: Physics, parameters: &Parameters) -> u32 {
     match parameters.substeps {
         0 => (stable_substeps(world, physics, parameters) as u32).clamp(1, MAX_SUBSTEPS),
@@ -183,7 +197,8 @@ pub(super) fn substeps(world: &World, physics: Physics, parameters: &Parameters)
     }
 }
 
-/// Number of substeps that keeps h at the safe fraction of the critical step. Not limited.
+/// Returns the number of substeps per step at which a substep is at most [`SAFE_FRACTION`] of the critical time step.
+/// There is no upper limit.
 pub(in crate::sim) fn stable_substeps(
     world: &World,
     physics: Physics,
@@ -193,7 +208,8 @@ pub(in crate::sim) fn stable_substeps(
     (parameters.time_step_secs / longest_secs).ceil()
 }
 
-/// Refuses springs so stiff, or steps so long, that the allowed number of substeps is not stable.
+/// Checks that the allowed number of substeps is stable. The error names the stiffness if it is too large, or else the
+/// time step if it is too long.
 pub(super) fn check_substeps(
     world: &World,
     physics: Physics,
@@ -202,7 +218,7 @@ pub(super) fn check_substeps(
     let Parameters { stiffness, time_step_secs, substeps, .. } = *parameters;
     let most = f64::from(MAX_SUBSTEPS);
     let stable = stable_substeps(world, physics, parameters);
-    // `stable` is NaN without grains.
+    // Without grains, `stable` is NaN and there is nothing to check.
     if substeps > 0 || stable.is_nan() || stable <= most {
         return Ok(());
     }
@@ -212,7 +228,7 @@ pub(super) fn check_substeps(
     };
     let need = format!("would need more than {MAX_SUBSTEPS} substeps");
     if stiffness > 0.0 {
-        // The critical step decreases as the square root of the stiffness.
+        // Scales from stiffness 1 N/m, because the critical time step is proportional to 1/√stiffness.
         let root = most * SAFE_FRACTION * critical_with(1.0) / time_step_secs;
         let most_stiff = rounded_down(root * root);
         let allowed = format!(

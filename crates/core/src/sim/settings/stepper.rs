@@ -1,4 +1,5 @@
-//! The registry of steppers: a word of [`Stepper`] and a [`StepperInfo`] for each. `sim::steppers` contains the code.
+//! Registry of the steppers. Each stepper has a name in [`Stepper`] and a description [`StepperInfo`]; its code is in
+//! `sim::steppers`.
 
 use crate::error::{Error, Result, check};
 use crate::setting::words;
@@ -9,7 +10,7 @@ use crate::sim::settings::spring_dashpot::{
 use crate::world::{FrictionCone, Parameters, Physics, World};
 
 words! {
-    /// A method to take a step of Δt, with its contact law.
+    /// Stepper: the rule that advances the grains by one time step Δt, with its contact law.
     #[derive(Default)]
     pub enum Stepper {
         #[default]
@@ -23,38 +24,40 @@ words! {
     }
 }
 
-/// Description of a stepper, in addition to its name and its line of explanation.
+/// Description of a stepper: its source, its settings and its abilities.
 #[derive(Clone, Copy, Debug)]
 pub struct StepperInfo {
-    /// The problem that a step solves, in one line.
+    /// One line that names the problem that a step solves.
     pub solves: &'static str,
-    /// Source in the literature.
+    /// Publication that describes the stepper.
     pub source: &'static str,
-    /// The settings that it reads: names separated by spaces. If `solver` is among them, a solver solves the step's
-    /// problem.
+    /// Names of the settings that the stepper reads, separated by spaces. If `solver` is among them, a solver solves
+    /// the contact problem of each step.
     pub settings: &'static str,
-    /// Observables in addition to the common ones.
+    /// Names of the observables that the stepper has in addition to the observables of all steppers.
     pub observables: &'static [&'static str],
-    /// True if it can move walls driven by a force.
+    /// True if the stepper can move walls driven by a force.
     pub takes_drives: bool,
-    /// True if it supports pairs of materials with their own contact laws.
+    /// True if the stepper supports separate contact laws for pairs of materials.
     pub takes_pairs: bool,
-    /// Refuses parameters that the stepper does not support.
+    /// Checks the parameters; the error names a parameter that the stepper does not support.
     pub check: fn(&Parameters) -> Result<()>,
-    /// Refuses parameters that the stepper does not support in a world.
+    /// Checks the parameters for a world; the error names a parameter that the stepper does not support in that world.
     pub check_in: fn(&World, Physics, &Parameters) -> Result<()>,
-    /// Substeps per step; 1 if its problem is solved as a whole.
+    /// Returns the number of substeps per step; 1 if the stepper solves a step as a whole.
     pub substeps: fn(&World, Physics, &Parameters) -> u32,
-    /// The longest substep, s, that is always stable; `None` if stability is not an issue.
+    /// Returns the longest substep, s, that is always stable; `None` if the stepper has no such limit.
     pub critical_time_step_secs: fn(&World, Physics, &Parameters) -> Option<f64>,
-    /// Duration of a collision of two grains of the mean mass, s; `None` if it is not defined.
+    /// Returns the duration of a collision of two grains of the mean mass, s; `None` if the contact law does not define
+    /// it.
     pub contact_time_secs: fn(&World, Physics, &Parameters) -> Option<f64>,
-    /// Work that slowly breaks a bond; `None` if the law does not define it, or without cohesion.
+    /// Returns the work needed to pull a bonded pair apart slowly; `None` if the contact law does not define it, or
+    /// without cohesion.
     pub fracture_work: fn(&World, Physics, &Parameters) -> Option<FractureWork>,
 }
 
 impl StepperInfo {
-    /// A stepper that solves the problem of the step as a whole.
+    /// Defaults for a stepper that solves the contact problem of a step as a whole.
     const WHOLE: Self = Self {
         solves: "",
         source: "",
@@ -72,7 +75,7 @@ impl StepperInfo {
 }
 
 impl Stepper {
-    /// Its description.
+    /// Returns the description of this stepper.
     pub const fn info(self) -> &'static StepperInfo {
         match self {
             Self::Moreau => &MOREAU,
@@ -83,23 +86,23 @@ impl Stepper {
         }
     }
 
-    /// True if it reads the setting with this name.
+    /// True if this stepper reads the setting `name`.
     pub fn reads(self, name: &str) -> bool {
         self.info().settings.split(' ').any(|setting| setting == name)
     }
 
-    /// True if it solves the step's problem with a solver.
+    /// True if this stepper uses a solver for the contact problem of a step.
     pub fn uses_method(self) -> bool {
         self.reads("solver")
     }
 
-    /// True if it has observables of bonds.
+    /// True if this stepper has observables of bonds.
     pub(in crate::sim) fn has_bonds(self) -> bool {
         self.info().observables.contains(&"bond_energy")
     }
 }
 
-/// Refuses rolling friction, for steppers that do not compute it.
+/// Checks that there is no rolling friction, for steppers that do not compute it.
 fn without_rolling(parameters: &Parameters) -> Result<()> {
     let found = parameters.rolling_friction;
     check(found == 0.0, "rolling-friction", found, "0 where stepper is not moreau")
@@ -121,7 +124,8 @@ const RANGE: StepperInfo = StepperInfo {
     settings: "bond bond-acceleration dt tilt rho mu cone restitution-threshold debonding-distance solver \
         ordering stop tolerance max-sweeps warm-start friction-model model-solves",
     observables: &["bond_work", "bond_energy", "broken_bond_energy"],
-    // In the compressive cone the sweep needs the capture speed, which differs between contacts.
+    // The compressive cone is refused: the sweep would need one capture speed (C₀·Δt/m_ij, m/s), but here contacts have
+    // different capture speeds.
     check: |parameters| match parameters.cone {
         FrictionCone::Shifted => without_rolling(parameters),
         cone => Err(Error::value("cone", cone, "shifted where stepper is range")),
@@ -140,7 +144,7 @@ const TGS_SOFT: StepperInfo = StepperInfo {
     settings: "bond bond-acceleration dt tilt rho mu cone restitution-threshold warm-start substeps",
     takes_drives: true,
     check: without_rolling,
-    // More substeps give stiffer and more accurate contacts, and cost more.
+    // More than these 4 substeps give stiffer and more accurate contacts, and cost more.
     substeps: |_, _, parameters| match parameters.substeps {
         0 => 4,
         asked => asked,
@@ -157,7 +161,8 @@ const AVBD: StepperInfo = StepperInfo {
     ..StepperInfo::WHOLE
 };
 
-/// `warm-start` is not among its settings, because springs always keep their stretch.
+/// Description of the stepper `dem`. `warm-start` is not among its settings, because its springs always keep their
+/// stretch from one step to the next.
 const DEM: StepperInfo = StepperInfo {
     solves: "nothing exactly: contacts are damped springs",
     source: "P. A. Cundall, O. D. L. Strack (1979); S. Luding, Cohesive, frictional powders (2008)",

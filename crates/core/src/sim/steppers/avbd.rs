@@ -1,26 +1,29 @@
-//! Augmented vertex block descent (C. Giles, E. Diaz and C. Yuksel, *Augmented Vertex Block Descent*, ACM
-//! Transactions on Graphics 44, 2025): penalties that become stiffer while a contact is violated are minimised body
-//! by body, and multipliers take over the penalty forces.
+//! Stepper `avbd`: augmented vertex block descent (C. Giles, E. Diaz and C. Yuksel, *Augmented Vertex Block Descent*,
+//! ACM Transactions on Graphics 44, 2025). It minimises, body by body, penalties that become stiffer while a contact is
+//! violated. Multipliers gradually replace the penalty forces.
 //!
-//! The unknowns are the bodies' velocities V at the end of a substep h (their places are x + hV, normals stay). The
-//! relative velocity minus that of the wall is c = v − w + b, and b = gap/h keeps a gap from closing by more than
-//! itself. A contact pushes with the reduced impulse
+//! The unknowns are the velocities V of the bodies at the end of a substep of length h. Positions are x + hV, and
+//! normals stay as they were. The relative velocity of a contact minus the velocity w of its wall is c = v − w + b. The
+//! term b = gap/h keeps a gap from closing by more than its size. With the multipliers λ⁰, the stiffness k of the
+//! penalty, the friction coefficient μ, and σ = λ_n + Bond·a·h, a contact pushes with the impulses (divided by the
+//! effective mass m_ij)
 //!
 //! > λ_n = max(λ_n⁰ − κ_n c_n, −Bond·a·h),  λ_t = λ_t⁰ − κ_t c_t projected onto |λ_t| ≤ μσ,  κ = k h²/m_ij.
 //!
-//! One iteration has two parts. **For each body** in turn it takes a Newton step on the body's own energy with all
-//! others fixed,
+//! One iteration has two parts. **For each body** in turn it takes a Newton step on the body's own energy, with all
+//! other bodies fixed,
 //!
 //! > (D + Σ s κ ∇c ∇cᵀ) ΔV = D (V_free − V) + Σ s λ ∇c,  s = m_ij/m_i,
 //!
-//! with D the inertia divided by the mass. Then **for each contact** λ⁰ ← λ, and κ grows by |c| unless the bound cut
-//! λ. The left side contains all contacts, including those cut by their bounds: without these, which hold a body
-//! back, collapsing piles explode. Bodies in contact start from their previous velocities, so sliding bodies lag by
-//! 2⁻¹⁰ of the change in a step. Stiffnesses are kept from step to step, slightly reduced each time. A last pass over
-//! the bodies, with b from the overlap beyond a margin, moves the grains but does not change their velocities.
+//! with the inertia D divided by the mass m_i. Then, **for each contact**, it sets λ⁰ ← λ, and increases κ in
+//! proportion to |c| unless the bound has cut λ. The matrix on the left side includes all contacts, also those cut by
+//! their bounds, because these hold a body back; without them, collapsing piles explode. Bodies in contact start from
+//! their velocities before the substep, so the velocities of sliding bodies lag by 2⁻¹⁰ of their change in a step.
+//! Stiffnesses are kept from step to step, and reduced slightly in each substep. A last pass over the bodies, with b
+//! computed from the overlap beyond a margin, changes positions but not velocities.
 //!
-//! **Momentum** is not conserved: bodies see λ before their partners have responded, so action and reaction differ by
-//! the iteration error, and so do work and energy. There is no restitution.
+//! **Momentum** is not conserved: each body uses λ before its partners have responded, so action and reaction differ by
+//! the error of the iteration. Work and energy have errors of the same size. There is no restitution.
 
 use glam::{DMat3, DVec3};
 
@@ -33,7 +36,7 @@ use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{Model, Row, StepProblem};
 use crate::world::Parameters;
 
-/// Iterations per substep, as in the authors' examples.
+/// Number of iterations per substep, as in the authors' examples.
 const ITERATIONS: u32 = 10;
 
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
@@ -77,7 +80,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         problem.bodies.now = reached;
         substepping.add_gravity_work(&problem.bodies.now, &stage.state.world.grains.masses);
         substeps::end_substep(problem, &mut contacts, substepping);
-        // The spring that pulls a grain uses the grain's velocity.
+        // The user's spring reads the velocity of the grain from the world.
         substepping.store(stage);
     });
     substeps::remember(stage, &contacts, substep_secs);
@@ -87,40 +90,44 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     substepping.end_step_of(stage, &contacts, substeps * (ITERATIONS + 1))
 }
 
-/// Smallest κ, also that of a new contact. If smaller, new contacts sink in; if larger, blocks cannot transmit a
-/// force.
+/// Smallest dimensionless stiffness κ = k h²/m_ij of a contact (stiffness k, substep h, effective mass m_ij), also of a
+/// new contact. With a smaller value new contacts sink in; with a larger value the descent body by body cannot transmit
+/// a force.
 const SOFTEST: f64 = 1.0;
-/// Largest κ. Beyond it a contact dominates all other forces on its partners.
+/// Largest dimensionless stiffness κ = k h²/m_ij of a contact (stiffness k, substep h, effective mass m_ij). A stiffer
+/// contact would dominate all other forces on its two bodies.
 const STIFFEST: f64 = 1e6;
-/// Growth of κ if a contact is violated by g·h. If larger, columns are more stable, but impacts make contacts so
-/// stiff that blocks cannot transmit forces, and collapsing piles explode.
+/// Increase of a contact's dimensionless stiffness κ per iteration, if the contact is violated by the speed that
+/// gravity adds in a substep. With a larger value columns are more stable, but impacts make contacts so stiff that the
+/// descent body by body cannot transmit forces, and collapsing piles explode.
 const GROWTH: f64 = 0.1;
-/// Fraction of κ kept from one step to the next. If smaller, contacts of resting grains soften.
+/// Factor that multiplies the stiffness κ of all contacts at the beginning of each substep. With a smaller value,
+/// contacts of resting grains soften.
 const KEPT: f64 = 0.99;
-/// Remaining overlap, in d: cohesive contacts need it.
+/// Overlap that the last pass of a substep leaves, in mean diameters. Cohesive contacts need some overlap to pull.
 const MARGIN: f64 = 5e-4;
 
-/// A contact from the point of view of one body.
+/// One side of a contact: its effect on one of its two bodies.
 #[derive(Clone, Copy)]
 struct Side {
     row: u32,
-    /// 0 if the body is the row's i, 1 if it is its j.
+    /// Body to which this side belongs: 0 for body i of the contact, 1 for body j.
     end: u8,
 }
 
-/// Data of a step's iterations, in addition to the problem and the contacts.
+/// Data of the iterations in a step, in addition to the contact problem and the contacts.
 struct BlockDescent {
     substep_secs: f64,
     law: ContactLaw,
-    /// g·h, m/s.
+    /// Speed that gravity adds in a substep, g·h, m/s. Violations of contacts are divided by this speed.
     speed_scale: f64,
-    /// Remaining overlap, m.
+    /// Overlap that the last pass of a substep leaves, m.
     margin: f64,
-    /// (κ_n, κ_t) of each row.
+    /// Dimensionless stiffnesses (κ_n, κ_t) of each contact along normal and tangent.
     stiffness: Vec<[f64; 2]>,
-    /// The contacts of all bodies, body by body.
+    /// The sides of all contacts, sorted by the body on which they act.
     sides: Vec<Side>,
-    /// End of each body's range in `sides`.
+    /// For each body: the end of the body's range in `sides`.
     side_ends: Vec<usize>,
 }
 
@@ -151,7 +158,7 @@ impl BlockDescent {
         }
     }
 
-    /// Starts with the stiffnesses of the step before.
+    /// Takes the stiffnesses that contacts have stored in the previous step.
     fn stiffen<M: Model>(&mut self, stage: &Stage<'_, M>) {
         let memories = stage.state.contacts.memories();
         let rows = stage.problem.rows().zip(&stage.problem.rows.contacts);
@@ -162,7 +169,7 @@ impl BlockDescent {
         }
     }
 
-    /// Stores the stiffnesses for the next step.
+    /// Stores the stiffnesses in the contacts, for the next step.
     fn remember<M: Model>(&self, stage: &mut Stage<'_, M>) {
         let memories = stage.state.contacts.parts_mut().memories;
         let rows = stage.problem.rows().zip(&stage.problem.rows.contacts);
@@ -172,8 +179,8 @@ impl BlockDescent {
         }
     }
 
-    /// Begins a substep. Bodies in contact start from their previous velocities, because the contacts that carried
-    /// them before will carry them again.
+    /// Begins a substep: reduces the stiffnesses slightly. Bodies in contact start from their velocities at the
+    /// beginning of the substep, without gravity, because the contacts that carried them before will carry them again.
     fn begin<M: Model>(&mut self, problem: &mut StepProblem<M>, start: &[M::Body<f64>]) {
         for stiffness in self.stiffness.as_flattened_mut() {
             *stiffness = (KEPT * *stiffness).clamp(SOFTEST, STIFFEST);
@@ -187,8 +194,8 @@ impl BlockDescent {
         }
     }
 
-    /// Sets each body's velocity to the minimum of its own energy, with the others fixed. `bias` computes b from a
-    /// gap.
+    /// Sets the velocity of each body to the minimum of the body's own energy, with all other bodies fixed. The closure
+    /// `bias` returns the velocity term b (m/s) for a gap (m).
     fn minimise<M: Model>(
         &self,
         problem: &mut StepProblem<M>,
@@ -197,7 +204,8 @@ impl BlockDescent {
         bias: impl Fn(f64) -> f64,
     ) {
         let inertia = DVec3::from_array(M::INERTIA_OVER_MASS);
-        // Coordinates that are not degrees of freedom get a nonsingular system and do not change.
+        // A coordinate that is not a degree of freedom gets the diagonal element 1, so that the matrix is regular and
+        // the coordinate does not change.
         let diagonal = DVec3::select(inertia.cmpgt(DVec3::ZERO), inertia, DVec3::ONE);
         let mut first = 0;
         for (body, &end) in self.side_ends.iter().enumerate() {
@@ -231,7 +239,7 @@ impl BlockDescent {
         }
     }
 
-    /// Updates the multipliers with the penalty forces, and stiffens violated contacts.
+    /// Sets the multipliers to the penalty forces, and makes violated contacts stiffer.
     fn multiply<M: Model>(
         &mut self,
         problem: &StepProblem<M>,
@@ -251,7 +259,7 @@ impl BlockDescent {
         }
     }
 
-    /// Push of a contact at the bodies' present velocities.
+    /// Returns the impulses of a contact (m/s) at the present velocities of its bodies.
     #[inline(always)]
     fn push<M: Model>(
         &self,
@@ -289,15 +297,16 @@ impl BlockDescent {
     }
 }
 
-/// Push of a contact: (λ_n, λ_t), m/s, the relative velocities (c_n, c_t) that cause it, m/s, and flags for a cut by
-/// the bounds.
+/// Impulses (λ_n, λ_t) of a contact, m/s, the velocities (c_n, c_t) that cause them, m/s, and for each impulse a flag
+/// that is true if the bound cut it.
 struct ContactPush {
     impulse: [f64; 2],
     violation: [f64; 2],
     is_cut: [bool; 2],
 }
 
-/// ∇c of a row along its normal (0) or tangent (1), for the body at its end.
+/// Returns the gradient ∇c of a contact's normal (`direction` 0) or tangential (1) velocity with respect to the
+/// velocity of its body i (`end` 0) or j (1).
 #[inline(always)]
 fn gradient<M: Model>(row: &Row<M>, end: usize, direction: usize) -> DVec3 {
     let mut gradient = M::gradients(row.normal)[end][direction];

@@ -1,11 +1,12 @@
-//! Smooth discrete elements (P. A. Cundall & O. D. L. Strack, 1979), with the linear cohesive law that S. Luding
-//! (2008) starts from: a contact is a spring and a dashpot, and pulls by C₀ while the discs overlap. With the overlap
-//! δ = −gap,
+//! Stepper `dem`: smooth discrete elements (P. A. Cundall & O. D. L. Strack, 1979), with the linear cohesive law from
+//! which S. Luding (2008) starts. A contact is a spring (stiffness k) and a dashpot (damping γ), and pulls with the
+//! cohesion force C₀ while the discs overlap. With the overlap δ = −gap, the tangential stretch ξ and the velocities
+//! v_n and v_t, the normal force N and the tangential force T are
 //!
 //! > N = max(k δ − γ v_n, 0) − C₀,  T = −k_t ξ − γ_t v_t with ξ̇ = v_t,  |T| ≤ bound(N + C₀).
 //!
-//! Spring and dashpot together never pull: N ≥ −C₀, as in all laws here, and the cone is that of the contact laws. In
-//! sliding contacts ξ is shortened so that T is at the bound.
+//! Spring and dashpot together never pull: N ≥ −C₀, as in all contact laws of this program. The bound of friction is
+//! also the bound of these laws. If a contact slides, ξ is shortened so that T is at the bound.
 
 use crate::contact::{Contact, ContactLaw, ContactMemory, ContactParts, Impulse, Transmitted, law};
 use crate::number::Parts;
@@ -16,8 +17,8 @@ use crate::sim::steppers::substeps::{Substepping, add_work, set_drive_speeds};
 use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{DrivenWall, Model, cone_of};
 
-/// Takes one step. Contacts are detected in each substep. The problem's rows, which are those of the beginning of the
-/// step, receive the total impulses of their pairs.
+/// Takes one step, and detects the contacts in each substep. At the end, the rows of the step's contact problem, which
+/// are the contacts at the beginning of the step, receive the total impulses of their pairs.
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
     let (world, physics) = (&stage.state.world, stage.state.physics);
     let parameters = &settings.parameters;
@@ -62,7 +63,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     substepping.end_step(stage, substeps)
 }
 
-/// (v_n, v_t) of a contact, m/s.
+/// Returns the normal and tangential relative velocities (v_n, v_t) of a contact, m/s.
 #[inline(always)]
 fn velocity<M: Model>(
     normal: M::Normal<f64>,
@@ -76,18 +77,19 @@ fn velocity<M: Model>(
     }
 }
 
-/// The contact law of a substep.
+/// Contact law of a substep: springs, dashpots, cohesion and friction.
 struct Elements {
     springs: SpringDashpot,
-    /// C₀/m_ij = Bond·a, m/s².
+    /// Cohesion force divided by the effective mass, m/s²: C₀/m_ij = Bond·a, with the acceleration a that defines the
+    /// cohesion.
     cohesive_acceleration: f64,
     law: ContactLaw,
     substep_secs: f64,
 }
 
 impl Elements {
-    /// Computes the forces of a contact of effective mass `mass` from its gap and relative velocities, and stores
-    /// them in its memory.
+    /// Computes the forces of a contact with the effective mass `mass` (kg) from its gap (m) and its relative
+    /// velocities (m/s), and stores them in `memory`, the data that the contact keeps.
     #[inline(always)]
     fn force<M: Model>(
         &self,
@@ -113,8 +115,9 @@ impl Elements {
         }
     }
 
-    /// Pushes the bodies by the forces of the present overlaps and the velocities `start`. Fills `pushes` with m_ij,
-    /// the impulses λ and the velocity of the wall (m/s) of each contact.
+    /// Changes the velocities of the grains by the forces of a substep, computed from the present overlaps and the
+    /// velocities `start`. Fills `pushes` with three values for each contact: the effective mass (kg), the impulses
+    /// divided by this mass (m/s), and the velocity of the wall (m/s).
     fn push<M: Model>(
         &self,
         stage: &mut Stage<'_, M>,
@@ -159,11 +162,13 @@ impl Elements {
     }
 }
 
-/// Ends a substep of walls driven by a force: like grains, they move with the forces of its beginning. `pushes` are
-/// m_ij, the impulses λ and the velocity of the wall (m/s) of each contact.
+/// Ends a substep of walls driven by a force. Like grains, these walls move with the forces at the beginning of the
+/// substep. `pushes` contains for each contact the effective mass (kg), the impulses divided by this mass (m/s), and
+/// the velocity of the wall (m/s).
 ///
-/// This is stable if h < 2 √(M/nk) for a wall of mass M with n contacts of stiffness k. That is guaranteed if M is at
-/// least the mass of n of the lightest grains, because substeps are short enough for these grains.
+/// The motion of a wall of mass M with n contacts of stiffness k is stable if the substep h is below 2 √(M/nk). This is
+/// guaranteed if M is at least the mass of n of the lightest grains, because substeps are short enough for these
+/// grains.
 fn drive_walls<M: Model>(
     stage: &mut Stage<'_, M>,
     substep_secs: f64,

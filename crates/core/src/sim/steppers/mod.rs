@@ -1,5 +1,6 @@
-//! The steppers, each with its own contact law. A stepper is a file or a folder here with its `advance`, an arm of
-//! [`StepperMemory::advance`], and a row in the registry `sim::settings::stepper`.
+//! Steppers: the rules that advance the grains by one time step, each with its own contact law. Each stepper has a file
+//! or a folder here with a function `advance`, an arm of [`StepperMemory::advance`], and a row in the registry
+//! `sim::settings::stepper`.
 
 #![deny(dead_code, reason = "a stepper that no arm calls would not be missed")]
 
@@ -37,7 +38,7 @@ impl Advance for StepperMemory {
 }
 
 impl StepperMemory {
-    /// Detects the contacts of the next step and sets up its problem, without any solution.
+    /// Detects the contacts of the next step and sets up its contact problem, without solving anything.
     pub(super) fn prepare<M: Model>(&self, stage: &mut Stage<'_, M>, settings: &Settings) {
         match settings.stepper {
             Stepper::Range => range::prepare(stage, settings),
@@ -45,8 +46,8 @@ impl StepperMemory {
         }
     }
 
-    /// Sets up the first problem that the solver receives in the next step. For steppers without a solver, the
-    /// problem by which the step is judged.
+    /// Sets up the first problem that the solver receives in the next step. For steppers without a solver, sets up the
+    /// problem from which the residual of the step is computed.
     #[inline(never)]
     pub(super) fn set_up<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) {
         match settings.stepper {

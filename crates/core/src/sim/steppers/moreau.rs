@@ -1,4 +1,5 @@
-//! One step of Contact Dynamics: detect, solve, integrate (paper §2.1, scheme of Moreau), modified by remedies.
+//! Stepper `moreau`: one step of Contact Dynamics (detect, solve, integrate; paper §2.1, scheme of Moreau), with
+//! remedies.
 
 use crate::contact::range::TOUCH_IN_DIAMETERS;
 use crate::sim::remedies;
@@ -20,7 +21,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     result
 }
 
-/// Detects the contacts and sets up the problem of the next step.
+/// Detects the contacts and sets up the contact problem of the next step.
 pub(super) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     let parameters = settings.parameters;
     let world = stage.world();
@@ -30,14 +31,15 @@ pub(super) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     let touching = touching_within(stage.state, tolerance);
     let rebound = |Approach { velocity, gap, in_touch, restitution }| {
         if !in_touch {
-            // It ends the step in touch, so that the next step knows the contact.
+            // A pair that is not in touch yet may close its gap and a little more. So it touches at the end of the
+            // step, and the next step finds the contact.
             return (gap + touch) / parameters.time_step_secs;
         }
         let restitution = restitution.unwrap_or(parameters.restitution);
         let rebound = Parameters { restitution, ..parameters }
             .restitution_velocity(velocity, gravity_magnitude);
         if tolerance > 0.0 && gap > touching {
-            // A pair that reaches contact within the step bounces as a touching pair does.
+            // A pair within the tolerance that reaches contact within the step bounces as a touching pair does.
             let meets = rebound < 0.0 && gap + parameters.time_step_secs * velocity < 0.0;
             return if meets { rebound } else { gap / parameters.time_step_secs };
         }
@@ -56,7 +58,7 @@ pub(super) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     }
 }
 
-/// The gap up to which the law treats grains as touching, m, if contacts pull up to a tolerance.
+/// Returns the gap up to which the law treats grains as touching, m, if contacts pull up to the gap `tolerance` (m).
 fn touching_within(state: &State, tolerance: f64) -> f64 {
     let rounding = (0.5 * tolerance).min(TOUCH_IN_DIAMETERS * state.world.mean_diameter);
     rounding.max(state.candidates.gap_tolerance())

@@ -1,9 +1,9 @@
-//! Common parts of steppers without a problem of the whole step: they divide Δt into substeps h and move the grains
-//! in each.
+//! Code shared by the steppers `tgs-soft`, `avbd` and `dem`. They do not solve the contact problem of a step as a
+//! whole, but divide Δt into substeps of length h and move the grains in each substep.
 //!
-//! The step's Contact Dynamics problem is still set up. It is judged at the end with the impulses summed over the
-//! step and the final velocities: its residual is the measure common to all steppers. These steppers do not iterate
-//! to a tolerance, so stopping test, tolerance and sweep limit have no effect.
+//! The contact problem of the whole step is still set up. At the end of the step its residual is computed from the
+//! impulses summed over the step and the velocities at its end, so that all steppers are compared by the same measure.
+//! These steppers do not iterate to a tolerance, so stop criterion, tolerance and sweep limit have no effect.
 
 use crate::contact::ContactMemory;
 use crate::sim::settings::Settings;
@@ -13,24 +13,24 @@ use crate::sim::stepping::{Stage, StepResult};
 use crate::sim::turned_bonds::{is_open_against, is_within_bounds};
 use crate::solver::{DrivenRow, Measures, Model, Row, SolveReport, StepProblem, measure};
 
-/// State of a step during its substeps. It lives for one step: persistent data is in the world and in the contacts'
-/// memories.
+/// Data of a step during its substeps. They are dropped at the end of the step: the world and the contacts store the
+/// data that later steps need.
 pub(super) struct Substepping<M: Model> {
     /// Number of substeps of the step.
     pub count: u32,
-    /// h, s.
+    /// Length h of a substep, s.
     pub substep_secs: f64,
-    /// Bodies at the beginning of the substep.
+    /// Velocities of the grains at the beginning of the substep.
     pub start: Vec<M::Body<f64>>,
-    /// Bodies at the end of the substep if no contact acted.
+    /// Velocities that the grains would have at the end of the substep if no contact acted.
     pub free: Vec<M::Body<f64>>,
-    /// Works since the beginning of the step.
+    /// Sums of works since the beginning of the step.
     pub works: StepResult,
 }
 
 impl<M: Model> Substepping<M> {
-    /// Begins a step: sets up its problem with the bodies at their previous velocities. The stepper determines the
-    /// number of substeps.
+    /// Begins a step: sets up its contact problem, with the grains at their velocities before the step, and divides the
+    /// step into as many substeps as the stepper requires.
     pub(super) fn begin_step(stage: &mut Stage<'_, M>, settings: &Settings) -> Self {
         let count = stage.state.substeps(settings);
         set_up(stage, settings);
@@ -44,8 +44,8 @@ impl<M: Model> Substepping<M> {
         }
     }
 
-    /// Ends the step of a stepper whose bonds exist while their gaps are below the touch tolerance, after `sweeps`
-    /// passes over the contacts. The contacts are in the state of the last substep.
+    /// Ends the step of a stepper whose bonds exist while their gaps are below the touch tolerance. `contacts` are in
+    /// their state after the last substep, and `sweeps` is the number of passes over them in the step.
     pub(super) fn end_step_of(
         &self,
         stage: &Stage<'_, M>,
@@ -64,7 +64,8 @@ impl<M: Model> Substepping<M> {
         StepResult { turned_bonds, ..self.end_step(stage, sweeps) }
     }
 
-    /// Ends the step, after `sweeps` passes over its contacts.
+    /// Ends the step: returns its works and its residual. `sweeps` is the number of passes over the contacts in the
+    /// step.
     pub(super) fn end_step(&self, stage: &Stage<'_, M>, sweeps: u32) -> StepResult {
         let Measures { normal_work, tangential_work, wall_work, border_work, .. } =
             self.works.measures;
@@ -79,7 +80,7 @@ impl<M: Model> Substepping<M> {
         StepResult { report, measures, ..self.works }
     }
 
-    /// Begins a substep: gravity, body forces and a spring that pulls act on the bodies.
+    /// Begins a substep: changes the velocities of the grains by gravity, body forces and the user's spring on a grain.
     pub(super) fn begin(&mut self, stage: &mut Stage<'_, M>) {
         let pushes = stage.state.pushes(M::AXES, self.substep_secs);
         let (world, bodies) = (&stage.state.world, &mut stage.problem.bodies.now);
@@ -95,20 +96,21 @@ impl<M: Model> Substepping<M> {
         self.free.clone_from(bodies);
     }
 
-    /// Moves the grains for h with the bodies' velocities.
+    /// Moves the grains for one substep with their present velocities.
     pub(super) fn place(&self, stage: &mut Stage<'_, M>) {
         self.store(stage);
         stage.state.integrate::<M>(self.substep_secs);
     }
 
-    /// Writes the bodies' velocities to the world.
+    /// Copies the velocities from the contact problem to the world.
     pub(super) fn store(&self, stage: &mut Stage<'_, M>) {
         for (index, body) in stage.problem.bodies.now.iter().enumerate() {
             M::store(body, &mut stage.state.world, index);
         }
     }
 
-    /// Adds the work of gravity, body forces and the spring in the substep that ends with `bodies`.
+    /// Adds the work of gravity, body forces and the user's spring in the substep at whose end the grains have the
+    /// velocities `bodies`.
     pub(super) fn add_gravity_work(&mut self, bodies: &[M::Body<f64>], masses: &[f64]) {
         for (index, body) in bodies.iter().enumerate() {
             let (start, free) = (&self.start[index], &self.free[index]);
@@ -117,8 +119,9 @@ impl<M: Model> Substepping<M> {
     }
 }
 
-/// Adds the work of one contact's impulses λ (m/s): in each substep, as in a step (`solver::measure`), impulse times
-/// the mean of the velocities at its beginning and its end. `wall` is (V_n, V_t) of its wall, m/s.
+/// Adds the work of one contact's impulses λ (reduced impulses, m/s) in a substep. As for a whole step
+/// (`solver::measure`), it is the impulse times the mean of the velocities at the beginning and the end. `wall`
+/// contains the normal and tangential velocity of the contact's wall, m/s.
 #[inline(always)]
 pub(super) fn add_work<M: Model>(
     works: &mut StepResult,
@@ -138,43 +141,45 @@ pub(super) fn add_work<M: Model>(
     }
 }
 
-/// Sets the final speeds of driven walls in the problem by which a step is judged.
+/// Sets the final speeds of driven walls in the contact problem from which the residual of the step is computed.
 pub(super) fn set_drive_speeds<M: Model>(stage: &mut Stage<'_, M>) {
     let drives = stage.state.world.motions.iter().filter_map(|motion| motion.drive.as_ref());
     stage.problem.set_wall_velocities(drives.map(|drive| drive.speed));
 }
 
-/// State of a contact during a step.
+/// State of a contact during a step that is divided into substeps.
 pub(super) struct Touching {
-    /// Gap, m.
+    /// Present gap, m.
     pub gap: f64,
-    /// Normal velocity of its wall, m/s.
+    /// Velocity of the contact's wall along the normal, m/s.
     pub wall_speed: f64,
-    /// Tangential velocity of its wall's surface, m/s.
+    /// Velocity of the wall's surface along the tangent, m/s.
     pub surface_speed: f64,
-    /// Data of its driven wall, if it has one.
+    /// Data on the driven wall of the contact; `None` if the contact has no wall driven by a force.
     pub driven: Option<DrivenRow>,
-    /// Response of v_n and v_t to an impulse, relative to a wall that does not yield: 1 unless the wall is driven.
+    /// Change of the normal and of the tangential velocity per unit impulse, divided by the same change at a wall that
+    /// does not yield: 1 unless the wall is driven by a force.
     pub answers: [f64; 2],
-    /// Separation speed required by the law, relative to its wall, m/s; below 0 if the contact was closing.
+    /// Term that the contact law adds to the normal velocity because of restitution, relative to the wall, m/s: minus
+    /// the separation speed, so below 0 if the contact was closing.
     pub rebound: f64,
-    /// Bond·a·h if it is cohesive in this substep, otherwise 0, m/s.
+    /// Capture speed: the opening speed that cohesion can stop in this substep, m/s; 0 without cohesion.
     pub capture_speed: f64,
-    /// (λ_n, λ_t) of this substep, m/s.
+    /// Normal and tangential impulses (λ_n, λ_t) of this substep divided by the effective mass, m/s.
     pub impulse: [f64; 2],
-    /// (λ_n, λ_t) of the step so far, m/s.
+    /// Normal and tangential impulses (λ_n, λ_t) since the beginning of the step divided by the effective mass, m/s.
     pub total: [f64; 2],
 }
 
 impl Touching {
-    /// (V_n, V_t) of its wall, m/s.
+    /// Returns the normal and the tangential velocity of the contact's wall, m/s.
     pub(super) fn wall_velocity(&self) -> [f64; 2] {
         [self.wall_speed, self.surface_speed]
     }
 }
 
-/// The contacts in the order of the rows, with impulses from the forces of the step before, acting for `warm_secs`
-/// (s).
+/// Returns the contacts in the order of the problem's rows. Their impulses are the forces of the previous step times
+/// `warm_secs` (s); 0 s gives a cold start.
 pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<Touching> {
     let (contacts, problem) = (&stage.state.contacts, &stage.problem);
     let contact = |((number, row), &index): ((usize, &Row<M>), &u32)| {
@@ -196,7 +201,7 @@ pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<To
     problem.rows().zip(&problem.rows.contacts).map(contact).collect()
 }
 
-/// Updates the gaps by the bodies' velocities for h.
+/// Changes the gaps by the velocities of the grains during one substep.
 pub(super) fn follow_gaps<M: Model>(
     problem: &StepProblem<M>,
     contacts: &mut [Touching],
@@ -208,7 +213,7 @@ pub(super) fn follow_gaps<M: Model>(
     }
 }
 
-/// Adds impulses and works of a substep.
+/// Adds the impulses and works of a substep to the sums of the step.
 pub(super) fn end_substep<M: Model>(
     problem: &StepProblem<M>,
     contacts: &mut [Touching],
@@ -227,7 +232,7 @@ pub(super) fn end_substep<M: Model>(
     }
 }
 
-/// Stores the forces of the last substep in the contacts' memories.
+/// Stores the forces of the last substep in the contacts, for the warm start of the next step.
 pub(super) fn remember<M: Model>(
     stage: &mut Stage<'_, M>,
     contacts: &[Touching],
@@ -246,7 +251,7 @@ pub(super) fn remember<M: Model>(
     }
 }
 
-/// Gives the step's problem the summed impulses.
+/// Writes the impulses summed over the step into its contact problem.
 pub(super) fn hand_over<M: Model>(problem: &mut StepProblem<M>, contacts: &[Touching]) {
     let capture_speed = problem.law.capture_speed();
     for (row, contact) in problem.rows.iter_mut().zip(contacts) {
@@ -255,7 +260,8 @@ pub(super) fn hand_over<M: Model>(problem: &mut StepProblem<M>, contacts: &[Touc
     }
 }
 
-/// The relative velocities of all rows with the given bodies, m/s.
+/// Returns the normal and tangential relative velocities of all contacts if the grains have the velocities `bodies`,
+/// m/s.
 pub(super) fn velocities<'a, M: Model>(
     problem: &'a StepProblem<M>,
     bodies: &'a [M::Body<f64>],

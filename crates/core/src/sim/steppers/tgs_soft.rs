@@ -1,22 +1,24 @@
-//! Substeps with soft contacts and a relaxing sweep, as in game engines (E. Catto, *Soft Constraints*, 2011, and
-//! *Solver2D*, 2024).
+//! Stepper `tgs-soft`: substeps with soft contacts and a relaxing sweep, as in game engines (E. Catto, *Soft
+//! Constraints*, 2011, and *Solver2D*, 2024).
 //!
-//! Contacts are those of the beginning of the step; there are no speculative contacts. In each substep h, with
-//! σ = λ_n + Bond·a·h the shifted reduced impulse of the contact laws:
+//! All substeps use the contacts found at the beginning of the step; no contacts are added for pairs that may meet
+//! later. Impulses λ are divided by the effective mass, and σ = λ_n + Bond·a·h is the normal impulse shifted by the
+//! cohesion of a substep of length h. Each substep has five parts:
 //!
-//! 1. gravity accelerates the bodies;
-//! 2. the impulses of the substep before are applied (warm start);
-//! 3. one sweep over **soft** contacts: v_n + b = −c σ, each an overdamped spring at the gap;
-//! 4. the grains move for h, and each gap changes by h v_n;
-//! 5. one sweep over **rigid** contacts, v_n = 0: it removes the push-out speed again, so that it
-//!    only affects positions and adds no energy.
+//! 1. Gravity accelerates the grains.
+//! 2. The impulses of the previous substep are applied (warm start).
+//! 3. One sweep visits all contacts as **soft** contacts, v_n + b = −c σ: each is an overdamped spring that acts on the
+//!    gap.
+//! 4. The grains move for the time h, and each gap changes by h v_n.
+//! 5. One sweep visits all contacts as **rigid** contacts, v_n = 0. It removes the speed with which overlaps were
+//!    pushed out, so that pushing out changes only positions and adds no energy.
 //!
-//! At the end of the step, contacts that pushed get the speed required by restitution. Its threshold is that of the
-//! step's problem: contacts that met at less than `restitution_threshold` g·Δt, or were opening, do not bounce.
+//! At the end of the step, contacts that pushed get the separation speed of restitution. As in the contact problem of
+//! the step, contacts do not bounce if they met at less than `restitution_threshold` g·Δt, or if they were opening.
 //!
-//! **Cohesion** is the bound λ_n ≥ −Bond·a·h of a contact whose gap is negative when the substep begins, and so a
-//! force that depends on neither Δt nor h. With a gap the bound is 0, and the contact only keeps the gap from closing
-//! by more than itself.
+//! **Cohesion** is the bound λ_n ≥ −Bond·a·h of a contact whose gap is negative when the substep begins. So it is a
+//! force that depends on neither Δt nor h. For a contact with a positive gap the bound is 0, and the contact only
+//! prevents the gap from closing by more than its size.
 
 use crate::contact::{ContactLaw, law};
 use crate::number::Parts;
@@ -59,7 +61,8 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         substepping.add_gravity_work(&problem.bodies.now, &stage.state.world.grains.masses);
         substepping.works.drive_work += take_walls(stage, &mut contacts, walls);
         substeps::end_substep(stage.problem, &mut contacts, substepping);
-        // The contacts counted the work of walls with the final speed in the substep instead of the mean speed.
+        // The contacts have computed the work of walls with the wall's final speed in the substep. Correct it to the
+        // mean speed.
         for (row, contact) in stage.problem.rows.fixed.iter().zip(&contacts) {
             if let Some(DrivenRow { by, .. }) = contact.driven {
                 let (wall, along) = (&walls[by.wall as usize], by.part_along(contact.impulse));
@@ -67,7 +70,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
                 substepping.works.measures.wall_work += surplus;
             }
         }
-        // The spring that pulls a grain uses the grain's velocity.
+        // The user's spring reads the velocity of the grain from the world.
         substepping.store(stage);
     });
     substeps::remember(stage, &contacts, substep_secs);
@@ -81,7 +84,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     substepping.end_step_of(stage, &contacts, 2 * substeps + 1)
 }
 
-/// Gives contacts that met and pushed their separation speed.
+/// Gives contacts that met and pushed in the step the separation speed of restitution.
 fn restitute<M: Model>(
     problem: &mut StepProblem<M>,
     walls: &mut [DrivenWall],
@@ -98,15 +101,15 @@ fn restitute<M: Model>(
         contact.total[0] += missing;
         let (velocities, wall) = ([[before, 0.0], [after, 0.0]], contact.wall_velocity());
         add_work::<M>(works, row.effective_mass, row.normal, push, velocities, wall);
-        // The wall yielded, which reduces its mean speed.
+        // The wall yielded, which reduces its mean speed and so its work.
         let given_way = (contact.answers[0] - 1.0) * missing;
         works.measures.wall_work += -0.5 * row.effective_mass * missing * given_way;
         push
     });
 }
 
-/// Calls `change` for every row with its contact and relative velocities, and pushes the bodies by the returned
-/// impulses λ.
+/// Calls `change` for every contact with its relative velocities (m/s). `change` returns impulses divided by the
+/// effective mass (m/s), which then change the velocities of the two bodies.
 #[inline(always)]
 fn update<M: Model>(
     problem: &mut StepProblem<M>,
@@ -132,33 +135,38 @@ fn update<M: Model>(
     }
 }
 
-/// Frequency ω/2π of the springs, in units of √(g/d): 30 Hz for discs of 1 m, as in game engines. If larger, overlap
-/// is smaller; [`FREQUENCY_PER_SUBSTEP`] times the substeps' rate is the limit.
+/// Frequency ω/2π of the contact springs, in units of √(g/d): 30 Hz for discs of 1 m, as in game engines. A higher
+/// frequency makes overlaps smaller; it is limited to [`FREQUENCY_PER_SUBSTEP`] times the number of substeps per
+/// second.
 const FREQUENCY: f64 = 10.0;
-/// Largest h ω/2π. If larger, the contact is nearly rigid, and one sweep no longer transmits forces through a pile.
+/// Largest frequency ω/2π of the contact springs times the substep h. With a larger value contacts are nearly rigid,
+/// and one sweep no longer transmits forces through a pile.
 const FREQUENCY_PER_SUBSTEP: f64 = 0.25;
-/// Damping ratio ζ of the springs. If smaller, overlap is removed too fast, and piles jitter.
+/// Damping ratio ζ of the contact springs. With a smaller value overlap is removed too fast, and piles jitter.
 const DAMPING_RATIO: f64 = 10.0;
-/// Fastest push out of an overlap, in units of √(g·d). If larger, deep overlaps explode; if smaller, they stay.
+/// Largest speed with which an overlap is pushed out, in units of √(g·d). With a larger value deep overlaps explode;
+/// with a smaller value they persist.
 const PUSH_OUT_SPEED: f64 = 1.0;
 
-/// Soft contact constants, common to all contacts of a step.
+/// Constants of soft contacts that are the same for all contacts of a step.
 ///
-/// **Softness.** The spring's force is −k s − γ ṡ at gap s, with ω² = k/m_ij and ζ = γ/(2 m_ij ω). Evaluated at the
-/// end of the substep, with s + h v and v, its impulse is σ = −h(ω²(s + h v) + 2ζω v), which with a = 2ζ + hω is
-/// σ = −hωa (v + s ω/a). A Gauss–Seidel update requires this for the new velocity v + Δσ:
+/// **Softness.** At the gap s the spring's force is −k s − γ ṡ (stiffness k, damping γ), with ω² = k/m_ij and ζ = γ/(2
+/// m_ij ω). The force is evaluated at the end of a substep of length h, with s + h v and the normal velocity v. Then
+/// its impulse divided by m_ij is σ = −h(ω²(s + h v) + 2ζω v). With a = 2ζ + hω this is σ = −hωa (v + s ω/a). A
+/// Gauss–Seidel update requires the same for the new velocity v + Δσ:
 ///
 /// > Δσ = −(1 − c)(v + s ω/a) − c σ,  c = 1/(1 + hωa).
 ///
-/// The spring force corresponds to σ, not to λ_n: N + C₀ = −k s at rest, as for the smooth discrete elements. If it
-/// corresponded to λ_n, a pulling contact would rest at a positive gap, at which it has no cohesion, and break.
+/// The spring's force corresponds to σ, not to λ_n: at rest N + C₀ = −k s, as for smooth discrete elements (`dem`). If
+/// it corresponded to λ_n, a pulling contact would rest at a positive gap, at which it has no cohesion, and would
+/// break.
 struct Softness {
     substep_secs: f64,
-    /// ω/a, 1/s.
+    /// Rate at which a spring closes an overlap, 1/s: closing speed divided by overlap (ω/a above).
     rate: f64,
-    /// c.
+    /// Softness c of a contact (formula above), dimensionless: 0 for a rigid contact, near 1 for a soft contact.
     compliance: f64,
-    /// Push-out speed, m/s.
+    /// Largest speed with which an overlap is pushed out, m/s.
     push_out_speed: f64,
     law: ContactLaw,
 }
@@ -179,7 +187,7 @@ impl Softness {
         }
     }
 
-    /// Projects the impulses of the substep before onto the range that the contact allows now.
+    /// Projects the impulses of the previous substep onto the range that the contact law allows now, and returns them.
     #[inline(always)]
     fn warm_start<M: Model>(&self, contact: &mut Touching) -> [f64; 2] {
         let shifted = law::signorini(contact.impulse[0] + contact.capture_speed);
@@ -189,7 +197,8 @@ impl Softness {
         contact.impulse
     }
 
-    /// Updates one contact in a sweep, given its relative velocities. Returns the change of its impulses.
+    /// Updates the impulses of one contact in a sweep, given its relative velocities (m/s). Returns the change of the
+    /// impulses divided by the effective mass, m/s.
     #[inline(always)]
     fn solve<M: Model, const SOFT: bool>(
         &self,
@@ -228,14 +237,16 @@ impl Softness {
     }
 }
 
-/// Walls driven by a force, among soft contacts: bodies with one speed V each (`solver::problem::walls`).
+/// Soft contacts with walls driven by a force. Such a wall is a body with a single speed V (`solver::problem::walls`).
 ///
-/// In a substep such a wall moves with V_free = r (M V⁻ + hF), r = 1/(M + ch), and an impulse λ of one of its
-/// contacts changes V by −r m_i (b_n λ_n + b_t λ_t) at once, so that the next contact of the sweep uses the new
-/// speed. With κ = r m_i an impulse changes v_n by d_n λ_n, d_n = 1 + κb_n², and v_t by 3 d_t λ_t, d_t = 1 + κb_t²/3.
-/// So a contact's update is divided by these, and its spring is that of its own mass, m_i/d_n.
+/// In a substep a wall with the mass M, the driving force F and the damping c moves with V_free = r (M V⁻ + hF), r =
+/// 1/(M + ch), as long as no contact pushes it. The impulses λ of a contact with a grain of mass m_i change V at once
+/// by −r m_i (b_n λ_n + b_t λ_t), with the components b_n and b_t of the wall's direction of motion along normal and
+/// tangent. So the next contact of the sweep uses the new speed. With κ = r m_i an impulse changes v_n by d_n λ_n with
+/// d_n = 1 + κb_n², and v_t by 3 d_t λ_t with d_t = 1 + κb_t²/3. So the update of a contact is divided by d_n or d_t,
+/// and its spring belongs to the effective mass m_i/d_n.
 impl Touching {
-    /// Reads the present velocity of its wall, if the wall is driven.
+    /// Copies the present velocity of the contact's wall into the contact, if a force drives the wall.
     #[inline(always)]
     fn see(&mut self, walls: &[DrivenWall]) {
         if let Some(DrivenRow { by, still, speed, .. }) = self.driven {
@@ -245,7 +256,8 @@ impl Touching {
         }
     }
 
-    /// Applies the reaction of the impulses λ (m/s) on a grain of mass `mass` to its wall, if the wall is driven.
+    /// Applies the reaction to impulses on the grain to the contact's wall, if a force drives the wall. `impulse` is
+    /// divided by the mass `mass` of the grain (kg), m/s.
     #[inline(always)]
     fn push_back(&self, walls: &mut [DrivenWall], mass: f64, impulse: [f64; 2]) {
         if let Some(DrivenRow { by, .. }) = self.driven {
@@ -255,7 +267,8 @@ impl Touching {
     }
 }
 
-/// Begins a substep of driven walls, and sets the responses of their contacts. A substep of length 0 is an impact.
+/// Returns the driven walls at the beginning of a substep, and sets `answers`, the changes of velocity per unit
+/// impulse, of their contacts. A substep of length 0 is an impact.
 fn begin_walls<M: Model>(
     stage: &Stage<'_, M>,
     contacts: &mut [Touching],
@@ -274,7 +287,7 @@ fn begin_walls<M: Model>(
     driven
 }
 
-/// Stores the speeds of the walls after a sweep, and returns the work of the driving forces since the substep began,
+/// Stores the speeds of the driven walls after a sweep. Returns the work of the driving forces since the substep began,
 /// J.
 fn take_walls<M: Model>(
     stage: &mut Stage<'_, M>,

@@ -1,38 +1,42 @@
-//! Exact solution of one contact of a problem in W alone.
+//! Exact solution of one contact of a problem that is given by the Delassus operator W, without bodies.
 //!
-//! A grain that is not a disc couples its normal and tangential directions (W_nt ≠ 0), so the two projections of a
-//! disc's contact become an enumeration of cases. With p = P_n + c₀ and b the velocity that the other contacts make,
-//! both in the shifted cone,
+//! A grain that is not a disc couples its normal and tangential directions (W_nt ≠ 0), so the two projections that
+//! solve a disc's contact become an enumeration of cases. Let p = P_n + c₀ be the normal impulse shifted by the
+//! cohesion impulse c₀, P_t the tangential impulse (all in N·s), μ the friction coefficient, W_kk the contact's own 2×2
+//! block of W (1/kg), u its velocity, and b its velocity at p = P_t = 0 (m/s). The law in the shifted cone is
 //!
 //! > u = W_kk (p, P_t) + b,  0 ≤ p ⟂ u_n ≥ 0,  |P_t| ≤ μp, sliding opposes u_t,
+//!
+//! and the cases are
 //!
 //! > open: p = P_t = 0 if b_n ≥ 0;
 //! > stick: (p, P_t) = −W_kk⁻¹ b if that is in the cone;
 //! > slip: P_t = sμp with s = ±1, so that p = −b_n / (W_nn + sμW_nt), if s·u_t ≤ 0.
 //!
-//! If μ|W_nt| < W_nn there is exactly one solution; otherwise the first case that fits is taken. In the compressive
-//! cone a contact with p ≤ c₀ has no friction. A contact with p > c₀ is a contact in a shifted cone with p − c₀ instead
-//! of p and b + c₀(W_nn, W_nt) instead of b.
+//! If μ|W_nt| < W_nn, there is exactly one solution; otherwise the first case that satisfies its condition is taken. In
+//! the compressive cone a contact with p ≤ c₀ has no friction. A contact with p > c₀ is solved in a shifted cone with
+//! p − c₀ instead of p and b + c₀(W_nn, W_nt) instead of b.
 
-/// Numbers that the solution of one contact needs, computed once.
+/// Numbers that the solution of one contact needs, computed once before the sweeps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LocalBlock {
-    /// W_nn, W_nt, W_tt, 1/kg.
+    /// Entry W_nn of the contact's own block of W, 1/kg; `mixed` is W_nt, and `tangential` is W_tt.
     pub normal: f64,
     pub mixed: f64,
     pub tangential: f64,
-    /// W_kk⁻¹ in the same order, kg.
+    /// Entries nn, nt and tt of W_kk⁻¹, the inverse of the contact's own block of W, kg.
     inverse: [f64; 3],
-    /// 1/(W_nn + sμW_nt) for s = −1, +1, kg; not positive if slip in that direction cannot carry a load.
+    /// Effective masses of slip in the direction s = −1 and s = +1, 1/(W_nn + sμW_nt), kg. If a mass is not positive,
+    /// slip in that direction cannot carry a load.
     slip_masses: [f64; 2],
-    /// μ.
+    /// Friction coefficient μ.
     pub friction: f64,
-    /// c₀, N·s.
+    /// Cohesion impulse c₀ = C₀Δt, the cohesion force times the time step, N·s.
     pub cohesion_impulse: f64,
 }
 
 impl LocalBlock {
-    /// Creates the block from W_kk (`block`), which must be positive definite.
+    /// Computes the numbers of a contact from its own block W_kk of W (`block`, 1/kg), which must be positive definite.
     pub(super) fn new(block: [[f64; 2]; 2], friction: f64, cohesion_impulse: f64) -> Self {
         let [[normal, mixed], [_, tangential]] = block;
         let determinant = normal * tangential - mixed * mixed;
@@ -47,7 +51,8 @@ impl LocalBlock {
         }
     }
 
-    /// (p, P_t), N·s, that solves the contact if its velocity without its own impulse is (`normal`, `tangential`), m/s.
+    /// Returns the shifted normal impulse p = P_n + c₀ and the tangential impulse P_t (N·s) that satisfy the contact's
+    /// law. The arguments (`normal`, `tangential`) are the contact's velocity at p = P_t = 0, m/s.
     #[inline(always)]
     pub(super) fn solve(&self, [normal, tangential]: [f64; 2], compressive_cone: bool) -> [f64; 2] {
         if normal >= 0.0 {
@@ -65,7 +70,8 @@ impl LocalBlock {
         [pressure + cohesion, rubbing]
     }
 
-    /// Stick or slip of a contact that would close without an impulse.
+    /// Returns (p, P_t), N·s, of a contact that would close without an impulse: the impulses of stick if the cone
+    /// allows them, otherwise the impulses of slip.
     #[inline(always)]
     fn pressed(&self, free @ [normal, tangential]: [f64; 2]) -> [f64; 2] {
         let [inverse_normal, inverse_mixed, inverse_tangential] = self.inverse;
@@ -81,11 +87,13 @@ impl LocalBlock {
             return impulse;
         }
         let (other, pushed_along_other) = self.slip(free, stuck[1] <= 0.0);
-        // Because of rounding it is possible that no case fits.
+        // Because of rounding it is possible that no case satisfies the law. Then the slip with the smaller
+        // violation is taken.
         if pushed_along_other < pushed_along { other } else { impulse }
     }
 
-    /// The impulses of slip with P_t = ±μp, and s·u_t, which is not positive if this case fits.
+    /// Returns the impulses (p, P_t), N·s, of slip with P_t = sμp, and s·u_t, m/s. The sign s is +1 if `positive`,
+    /// otherwise −1. The case satisfies the law if s·u_t ≤ 0.
     #[inline(always)]
     fn slip(&self, [normal, tangential]: [f64; 2], positive: bool) -> ([f64; 2], f64) {
         let side = if positive { 1.0 } else { -1.0 };
@@ -101,7 +109,8 @@ mod tests {
     use super::*;
     use crate::number::Parts;
 
-    /// Violation of the contact's law by (p, P_t), relative to the size of the velocities that are compared.
+    /// Returns the violation of the contact's law by the computed (p, P_t), relative to the velocities that the law
+    /// compares.
     fn fault(block: &LocalBlock, compressive: bool, free: [f64; 2]) -> f64 {
         let [p, t] = block.solve(free, compressive);
         let u = [
@@ -145,7 +154,8 @@ mod tests {
         assert!(kinds.iter().all(|&count| count > 50), "each kind arose: {kinds:?}");
     }
 
-    /// The two cones differ if cohesion alone holds a sliding contact.
+    /// If only cohesion holds a sliding contact closed, the contact has friction in the shifted cone and none in the
+    /// compressive cone.
     #[test]
     fn a_pulling_contact_rubs_in_the_shifted_cone_alone() {
         let block = LocalBlock::new([[2.0, 0.0], [0.0, 6.0]], 0.5, 1.0);

@@ -1,15 +1,18 @@
-//! Assembles W and q of a step's problem; checks W given by its entries, and sorts it into 2×2 blocks.
+//! Assembles the Delassus operator W and the free velocities q of a step's problem. Checks a W that is given by its
+//! entries, and sorts the entries into 2×2 blocks.
 //!
-//! With G the gradients of a contact's (v_n, v_t) in the bodies' coordinates and M the inertias in these coordinates,
-//! W = G M⁻¹ Gᵀ and q = G v^free, plus the restitution term in the normal rows. A contact is coupled only to contacts
-//! that share one of its grains: n contacts of one grain give n² blocks.
+//! W (1/kg) maps impulses to changes of the contacts' velocities; q (m/s) are the contacts' velocities without contact
+//! impulses. With G the gradients of a contact's (v_n, v_t) in the bodies' coordinates, M the inertias in these
+//! coordinates and v^free the bodies' velocities without contact impulses, W = G M⁻¹ Gᵀ and q = G v^free, plus the
+//! restitution term in the normal rows. A contact is coupled only to contacts that share one of its grains: the n
+//! contacts of one grain give n² blocks.
 
 use crate::error::{self, Error, Result};
 use crate::solver::kinematics::Model;
 use crate::solver::problem::{Row, StepProblem};
 
-/// Two opposite entries of W may differ by this fraction of √(W_ii W_jj), which is the rounding of a file with six
-/// digits.
+/// Largest allowed difference between the entries W_ij and W_ji, as a fraction of √(W_ii W_jj). It is the rounding
+/// error of a file with six digits.
 const ASYMMETRY: f64 = 1e-5;
 
 /// Entries of a sparse matrix; entries at the same position are added. This is plain data, which is checked when a
@@ -17,16 +20,16 @@ const ASYMMETRY: f64 = 1e-5;
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Triplets {
-    /// Row of each entry.
+    /// Row index of each entry.
     pub row: Vec<u32>,
-    /// Column of each entry.
+    /// Column index of each entry.
     pub col: Vec<u32>,
-    /// Each entry, 1/kg.
+    /// Value of each entry, 1/kg.
     pub val: Vec<f64>,
 }
 
 impl Triplets {
-    /// (row, column, entry), in stored order.
+    /// Iterates over the entries as (row, column, value), in the order in which they are stored.
     pub fn entries(&self) -> impl Iterator<Item = (u32, u32, f64)> {
         let places = self.row.iter().zip(&self.col);
         places.zip(&self.val).map(|((&row, &column), &value)| (row, column, value))
@@ -53,10 +56,10 @@ pub(super) fn check_each(
     }
 }
 
-/// [row contact, column contact], and the block at this position.
+/// A 2×2 block of W: the indices [row contact, column contact], and the four entries, 1/kg.
 pub(super) type EntryBlock = ([u32; 2], [[f64; 2]; 2]);
 
-/// Checks the entries of W, and sorts them into blocks by row and column.
+/// Checks the entries of W, and sorts them into 2×2 blocks by row contact and column contact.
 pub(super) fn blocks(matrix: &Triplets, contacts: usize) -> Result<Vec<EntryBlock>> {
     let Triplets { row, col, val } = matrix;
     error::check(!val.is_empty(), "W", "empty", "a matrix with an entry on each diagonal place")?;
@@ -77,7 +80,7 @@ pub(super) fn blocks(matrix: &Triplets, contacts: usize) -> Result<Vec<EntryBloc
         if blocks.last().is_none_or(|(last, _)| *last != place) {
             blocks.push((place, [[0.0; 2]; 2]));
         }
-        // A block has just been pushed if there was none.
+        // The list is not empty: if it was empty, a block has just been added.
         let (_, block) = blocks.last_mut().expect("a block");
         block[row[entry] as usize % 2][col[entry] as usize % 2] += val[entry];
     }
@@ -125,24 +128,27 @@ pub(super) fn check_symmetry(blocks: &[EntryBlock], own: &[[[f64; 2]; 2]]) -> Re
     Ok(())
 }
 
-/// Maximum number of entries of W. A problem file of this size has about 500 MB. Piles of 300,000 discs have fewer.
+/// Maximum number of entries of W. A problem file with this number of entries has about 500 MB. Piles of 300,000 discs
+/// have fewer entries.
 const MOST_ENTRIES: u64 = 20_000_000;
 
-/// W and q of a step's problem, with contacts in the order of its rows.
+/// The Delassus operator W and the free velocities q of a step's problem, with the contacts in the order of the
+/// problem's rows.
 pub struct Assembled {
-    /// W, 1/kg, exactly symmetric, sorted by row and column, without zeros.
+    /// The Delassus operator W, 1/kg: exactly symmetric, sorted by row and column, without entries of 0.
     pub matrix: Triplets,
-    /// q, m/s.
+    /// The free velocities q, m/s: for each contact the normal and the tangential velocity without contact impulses,
+    /// restitution term included.
     pub free_velocities: Vec<f64>,
 }
 
 impl Assembled {
-    /// Computes W and q. On a line, which has no tangent, a tangential row has W_tt = W_nn and no coupling to other
-    /// rows.
+    /// Computes W and q of a problem. On a line, which has no tangent, the tangential rows of W have W_tt = W_nn on the
+    /// diagonal and no other entries.
     ///
     /// # Errors
-    /// Names the body with the most contacts, if W would have too many entries.
-    // Compiled once, in this crate.
+    /// An error names the body with the most contacts, if W would have too many entries.
+    // Without inlining, the function is compiled once per model, in this crate.
     #[inline(never)]
     pub fn of<M: Model>(problem: &StepProblem<M>) -> Result<Self> {
         let mut contacts_of_body = vec![Vec::new(); problem.bodies.masses.len()];
@@ -182,7 +188,8 @@ impl Assembled {
     }
 }
 
-/// Checks the number of entries of W from the contacts of each body: each contact is coupled to all others of the body.
+/// Checks that W has at most [`MOST_ENTRIES`] entries. The argument lists the contacts of each body: any two contacts
+/// of a body, and each contact with itself, make a block of four entries.
 fn check_entries(contacts_of_body: &[Vec<usize>]) -> Result<()> {
     let of_body = |contacts: &Vec<usize>| 4 * (contacts.len() as u64).pow(2);
     let entries: u64 = contacts_of_body.iter().map(of_body).sum();
@@ -199,7 +206,8 @@ fn check_entries(contacts_of_body: &[Vec<usize>]) -> Result<()> {
     }
 }
 
-/// The entry of W for two rows, each given by its number and axis: 0 normal, 1 tangential.
+/// Returns the entry of W, 1/kg, for two of its rows, each given by the number of a contact and an axis (0 normal, 1
+/// tangential).
 fn entry<M: Model>(
     problem: &StepProblem<M>,
     [number, axis]: [usize; 2],

@@ -1,19 +1,21 @@
-//! A contact problem given by the Delassus operator alone: u = W r + q, without any bodies.
+//! A contact problem that is given by the Delassus operator W: u = W r + q, without any bodies.
 //!
-//! W (1/kg) is the change of the velocity of one contact per impulse of another; q (m/s) is the relative velocity
-//! without contact impulses, restitution term included. Rows and columns are ordered as N0, T0, N1, T1, …, and
-//! r = (P_n, P_t) in N·s. The law is that of `contact::law`; each contact has its own cohesion impulse c₀ = C₀Δt and
-//! friction μ:
+//! W (1/kg) is the change of the velocity of one contact per impulse of another. r = (P_n, P_t) are the normal and
+//! tangential impulses in N·s, u the relative velocities at the end of the step, and q the relative velocities without
+//! contact impulses, restitution term included, in m/s. Rows and columns are ordered as N0, T0, N1, T1, …. The contact
+//! law is the law of `contact::law`; each contact has its own cohesion impulse c₀ = C₀Δt (cohesion force times time
+//! step) and its own friction coefficient μ:
 //!
 //! > 0 ≤ p ⟂ u_n ≥ 0,  |P_t| ≤ μp (shifted cone) or ≤ μ max(p − c₀, 0) (compressive), p = P_n + c₀.
 //!
-//! W is stored as 2×2 blocks in compressed sparse rows, each contact's own block separately. The state is (p, P_t).
-//! Cohesion is then part of the free velocity and costs nothing: u = W (p, P_t) + q', q' = q − W (c₀, 0).
+//! W is stored as 2×2 blocks in compressed sparse rows; each contact's own block is stored separately. A problem stores
+//! the shifted impulses (p, P_t) instead of (P_n, P_t). Cohesion is then part of the free velocity and costs nothing:
+//! u = W (p, P_t) + q', q' = q − W (c₀, 0).
 //!
 //! Gauss–Seidel on W (M. Jean, 1999) solves one contact after the other, each exactly for the present impulses of the
-//! others. Methods that treat all impulses as one vector use s = P/√m_n with m_n = 1/W_nn, so that A is W multiplied by
-//! √m_n from both sides. If W_nt ≠ 0, a contact's own block of A has off-diagonal entries; no method on `ContactSystem`
-//! needs them to be zero.
+//! others. Methods that treat all impulses as one vector use scaled impulses s = P/√m_n with m_n = 1/W_nn, and the
+//! matrix A: W multiplied by √m_n from both sides. If W_nt ≠ 0, a contact's own block of A has off-diagonal entries; no
+//! method on `ContactSystem` needs them to be zero.
 
 mod local;
 mod matrix;
@@ -30,49 +32,51 @@ use crate::error::{self, Error, Result};
 use crate::number::Parts;
 use crate::world::FrictionCone;
 
-/// The residual, which costs as much as a sweep, is computed if ‖ΔP‖₂ of a sweep is at most this many times the allowed
-/// error, because the change in a sweep is about the error before it. A smaller number risks an unnecessary sweep, a
-/// larger one an unnecessary residual.
+/// Ratio of a sweep's impulse change ‖ΔP‖₂ to the allowed error (both N·s) at or below which the residual is computed.
+/// The residual costs as much as a sweep, and the change in a sweep is about the error before that sweep. A smaller
+/// ratio risks an unnecessary sweep, a larger ratio an unnecessary computation of the residual.
 const NEAR: f64 = 2.0;
-/// The residual is also computed whenever this many sweeps have passed.
+/// Number of sweeps after which the residual is computed in any case.
 const TEST_INTERVAL: u32 = 16;
 
-/// The effect of one contact's impulse on another contact's velocity.
+/// A 2×2 block of W outside the diagonal, 1/kg: the change of one contact's velocity per impulse of another, `contact`.
 #[derive(Clone, Copy, Debug)]
 struct DelassusBlock {
     block: [[f64; 2]; 2],
     contact: u32,
 }
 
-/// A contact in the form that its update reads.
+/// Data of one contact, in the form that the Gauss–Seidel update reads.
 #[derive(Clone, Copy, Debug)]
 struct DelassusRow {
     local: LocalBlock,
-    /// q', m/s.
+    /// Velocity q' at the shifted impulses p = P_t = 0, which contains cohesion, m/s.
     free: [f64; 2],
-    /// Index of its first neighbour; its neighbours end where those of the next contact begin.
+    /// Index of the contact's first block in `DelassusProblem::neighbours`. Its blocks end where the blocks of the next
+    /// contact begin.
     start: u32,
 }
 
-/// A contact problem in W alone, with the impulses of its contacts.
+/// A contact problem that is given by the Delassus operator W, with the impulses of its contacts.
 #[derive(Clone, Debug)]
 pub struct DelassusProblem {
     rows: Vec<DelassusRow>,
     neighbours: Vec<DelassusBlock>,
-    /// (p, P_t), N·s.
+    /// Shifted normal impulse p = P_n + c₀ and tangential impulse P_t of each contact, N·s.
     impulses: Vec<[f64; 2]>,
     compressive_cone: bool,
-    /// ‖(m_n q_n, m_t q_t)‖₂, N·s.
+    /// Denominator of the residual, ‖(m_n q_n, m_t q_t)‖₂, N·s.
     scale: f64,
 }
 
 impl DelassusProblem {
-    /// A problem of `friction.len()` contacts with zero impulses. `free_velocities` is q (two entries per contact,
-    /// m/s); `friction` and `cohesion_impulses` (N·s) have one entry per contact.
+    /// Creates a problem of `friction.len()` contacts with zero impulses from W (`matrix`, 1/kg). `free_velocities` is
+    /// q, the velocities without contact impulses (m/s), two entries per contact. `friction` has the friction
+    /// coefficient and `cohesion_impulses` the cohesion impulse C₀Δt (N·s) of each contact.
     ///
     /// # Errors
-    /// Names a value that is not finite, out of range or not symmetric, or an array of the wrong length. Each contact's
-    /// own 2×2 block has to be positive definite.
+    /// An error names a value that is not finite, out of range or not symmetric, or an array of the wrong length. Each
+    /// contact's own 2×2 block of W must be positive definite.
     pub fn new(
         matrix: &Triplets,
         free_velocities: &[f64],
@@ -128,12 +132,12 @@ impl DelassusProblem {
         self.rows.len()
     }
 
-    /// Returns true if there are no contacts, which never happens.
+    /// Returns true if there are no contacts, which never happens because [`Self::new`] refuses such a problem.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
 
-    /// (P_n, P_t) of each contact, N·s.
+    /// Returns the normal and tangential impulses (P_n, P_t) of each contact, N·s.
     pub fn impulses(&self) -> impl ExactSizeIterator<Item = [f64; 2]> {
         self.impulses
             .iter()
@@ -141,7 +145,8 @@ impl DelassusProblem {
             .map(|(impulse, row)| [impulse[0] - row.local.cohesion_impulse, impulse[1]])
     }
 
-    /// Sets (P_n, P_t) of each contact, N·s, without projecting them on the law.
+    /// Sets the normal and tangential impulses (P_n, P_t) of each contact, N·s, without projecting them on the contact
+    /// law.
     pub fn set_impulses(&mut self, impulses: impl IntoIterator<Item = [f64; 2]>) {
         let places = self.impulses.iter_mut().zip(&self.rows);
         for ((place, row), [normal, tangential]) in places.zip(impulses) {
@@ -149,14 +154,15 @@ impl DelassusProblem {
         }
     }
 
-    /// u of each contact at the present impulses, m/s.
+    /// Returns the velocity (u_n, u_t) of each contact at the present impulses, m/s.
     pub fn velocities(&self) -> impl ExactSizeIterator<Item = [f64; 2]> {
         (0..self.len()).map(|contact| self.velocity(contact))
     }
 
-    /// The residual of the natural map, as [`residual`](crate::solver::residual) for bodies, with m_n = 1/W_nn,
-    /// m_t = 1/W_tt, and u and v^free from W and q. W_nt ≠ 0 is no restriction: the map is zero exactly if the law is
-    /// satisfied, for any positive m_n and m_t. If μ = 0, the tangential part of a contact does not enter the scale.
+    /// Returns the residual of the natural map, dimensionless, defined as in [`residual`](crate::solver::residual) for
+    /// problems with bodies. The effective masses are m_n = 1/W_nn and m_t = 1/W_tt, and the velocities u and v^free
+    /// come from W and q. W_nt ≠ 0 is allowed: for any positive m_n and m_t the map is zero exactly if the law is
+    /// satisfied. If μ = 0, the tangential part of a contact does not enter the denominator.
     pub fn residual(&self) -> f64 {
         let errors = self.rows.iter().enumerate().map(|(contact, row)| {
             row.squared_error(self.impulses[contact], self.velocity(contact), self.compressive_cone)
@@ -183,7 +189,7 @@ impl DelassusProblem {
         &self.neighbours[start..end]
     }
 
-    /// The velocity that a contact would have without its own impulse, m/s.
+    /// Returns the velocity that a contact would have if its own shifted impulses were p = P_t = 0, m/s.
     #[inline(always)]
     fn velocity_of_others(&self, contact: usize) -> [f64; 2] {
         let mut velocity = self.rows[contact].free;
@@ -197,7 +203,8 @@ impl DelassusProblem {
 }
 
 impl DelassusRow {
-    /// e_n² + e_t², (N·s)².
+    /// Returns the contact's squared error e_n² + e_t² in the natural map, (N·s)², at the impulses (p, `rubbing`) and
+    /// the velocity `u`.
     fn squared_error(&self, [p, rubbing]: [f64; 2], u: [f64; 2], compressive: bool) -> f64 {
         let LocalBlock { normal, tangential, friction, cohesion_impulse, .. } = self.local;
         let rubs =
@@ -212,24 +219,26 @@ impl DelassusRow {
         normal_error * normal_error + tangential_error * tangential_error
     }
 
-    /// (m_n q_n)² + (m_t q_t)², (N·s)².
+    /// Returns the contact's contribution (m_n q_n)² + (m_t q_t)² to the squared denominator of the residual, (N·s)².
     fn squared_scale(&self, q: [f64; 2]) -> f64 {
         let normal = q[0] / self.local.normal;
         let tangential = if self.local.friction > 0.0 { q[1] / self.local.tangential } else { 0.0 };
         normal * normal + tangential * tangential
     }
 
-    /// √W_nn: s = √W_nn P, w = u/√W_nn.
+    /// Returns √W_nn, kg^−½, the factor of the scaled variables: impulses s = √W_nn P and velocities w = u/√W_nn.
     #[inline(always)]
     fn root(&self) -> f64 {
         self.local.normal.sqrt()
     }
 }
 
-/// Solves a problem from its present impulses with the method of the settings, to a residual of their tolerance.
+/// Solves a problem with the method of the settings, from the problem's present impulses, until the residual is at most
+/// the tolerance of the settings.
 ///
 /// # Errors
-/// If the settings are not valid, ask for another stopping test, or name a method that needs bodies.
+/// Returns an error if the settings are not valid, have another stopping test than the residual, or name a method that
+/// needs bodies.
 pub fn solve_delassus(
     problem: &mut DelassusProblem,
     settings: &SolverSettings,
@@ -261,7 +270,7 @@ fn sweeps(problem: &mut DelassusProblem, settings: &SolverSettings) -> SolveRepo
 }
 
 impl DelassusProblem {
-    /// One pass over all contacts. Returns Σ‖ΔP‖², (N·s)².
+    /// Performs one Gauss–Seidel sweep over all contacts. Returns Σ‖ΔP‖², the squared change of the impulses, (N·s)².
     fn pass(&mut self) -> f64 {
         let mut squared_change = 0.0;
         for contact in 0..self.len() {
@@ -324,8 +333,9 @@ impl ContactSystem for DelassusProblem {
         row.local.friction * (normal - shift).positive_part()
     }
 
-    /// With E the diagonal of A, a row of E^−½ A E^−½ has absolute entries whose sum dominates its diagonal
-    /// (Gershgorin). So A ⪯ E/d, where 1/d is the larger of a contact's two row sums.
+    /// Computes the weight d of each contact in the bound A ⪯ E/d, where E is the diagonal of A. A row of E^−½ A E^−½
+    /// has absolute entries whose sum dominates its diagonal (Gershgorin), so 1/d is the larger of a contact's two row
+    /// sums.
     fn splitting(&self, weights: &mut Vec<f64>) {
         weights.clear();
         let diagonal = |contact: usize| {
@@ -361,7 +371,7 @@ impl ContactSystem for DelassusProblem {
         Self::residual(self)
     }
 
-    /// Without bodies the stopping test is always the residual.
+    /// Compares the residual with the tolerance: without bodies the stopping test is always the residual.
     fn is_settled(&self, _before: &[[f64; 2]], settings: &SolverSettings) -> bool {
         debug_assert_eq!(settings.stop, StopTest::Residual);
         self.residual() <= settings.tolerance
@@ -372,8 +382,8 @@ impl ContactSystem for DelassusProblem {
 mod tests {
     use super::*;
 
-    /// Two contacts on opposite sides of one body, each closing at 1 m/s: u₀ + u₁ = −2 m/s for any impulses, so they
-    /// cannot both be ≥ 0.
+    /// The problem has two contacts on opposite sides of one body, each closing at 1 m/s. For any impulses
+    /// u₀ + u₁ = −2 m/s, so the two velocities cannot both be ≥ 0.
     #[test]
     fn a_problem_without_solution_is_told_from_one_that_was_stopped_too_early() {
         let matrix = Triplets {

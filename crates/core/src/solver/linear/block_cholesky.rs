@@ -1,25 +1,27 @@
-//! A sparse symmetric factorisation of D × D blocks, one row and one column of blocks per body.
+//! Sparse Cholesky factorisation of a symmetric positive definite matrix of D × D blocks, with one row and one column
+//! of blocks per body.
 //!
-//! With U_ab the block of places a < b and D_k the diagonal block of k after all earlier eliminations, eliminating
-//! place k makes
+//! Rows are numbered by the bodies' positions in the elimination order. With U_ab the block in row a and column b > a,
+//! and D_k the diagonal block of k after all earlier eliminations, the elimination of position k computes
 //!
 //! > D_k = L_k L_kᵀ,  W_kb = L_k⁻¹ U_kb,  U_ab ← U_ab − W_kaᵀ W_kb for all later neighbours a ≤ b of k,
 //!
 //! and finally A = WᵀW, with L_kᵀ on the diagonal of W. This takes half the work and half the memory of unsymmetric
-//! factors, and a positive definite matrix needs no pivoting. Places with the same later neighbours form a supernode
-//! and are eliminated together: each block that they change is fetched once and changed by all of them while they are
-//! in the cache (C. C. Ashcraft, R. G. Grimes, 1989). Diagonal blocks are factorised rather than inverted: the inverse
-//! of a block that is stiff along one direction and soft along another loses half of all digits.
+//! factors, and a positive definite matrix needs no pivoting. Adjacent positions with the same later neighbours form a
+//! supernode and are eliminated together: each block that they change is fetched once, and receives the changes from
+//! all of them while they are in the cache (C. C. Ashcraft, R. G. Grimes, 1989). Diagonal blocks are factorised rather
+//! than inverted: the inverse of a block that is stiff along one direction and soft along another loses half of all
+//! digits.
 
 use std::ops::Range;
 
 use super::block_lu::Block;
 use super::elimination::Elimination;
 
-/// Rows of a block are padded to the length of a vector register, so that a row is one operation.
+/// Number of columns of a stored block: the length of a vector register, so that one operation changes a whole row.
 const WIDTH: usize = 4;
 
-/// A block padded with columns of 0 after the first D.
+/// A D × D block with additional columns of 0 after the first D columns.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 struct Padded<const D: usize>([[f64; WIDTH]; D]);
@@ -28,20 +30,22 @@ impl<const D: usize> Padded<D> {
     const ZERO: Self = Self([[0.0; WIDTH]; D]);
 }
 
-/// A symmetric matrix, replaced by its factors in [`SymmetricBlockMatrix::factorise`]. Memory is kept between matrices.
+/// A symmetric matrix, which [`SymmetricBlockMatrix::factorise`] replaces by its factors. The memory is reused for the
+/// next matrix.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SymmetricBlockMatrix<const D: usize> {
-    /// Diagonal blocks by place; after the factorisation L_k, with the inverses of its diagonal entries on the
-    /// diagonal.
+    /// Diagonal blocks in elimination order. After the factorisation the block at position k is L_k, with the inverses
+    /// of the diagonal entries of L_k on the diagonal.
     diagonal: Vec<Padded<D>>,
-    /// Block (a, b) for each pair a < b of neighbours, numbered as in [`Elimination::later`].
+    /// Blocks above the diagonal, in row a and column b, one per pair a < b of neighbours in the elimination order.
+    /// They are numbered as in [`Elimination::later`].
     upper: Vec<Padded<D>>,
-    /// Blocks of a supernode's rows outside the supernode, column by column.
+    /// Work memory: the blocks of a supernode's rows outside the supernode, column by column.
     panel: Vec<Padded<D>>,
 }
 
 impl<const D: usize> SymmetricBlockMatrix<D> {
-    /// Sets the matrix to zero, with the given structure.
+    /// Sets the matrix to zero, with the nonzero pattern of `elimination`.
     pub(crate) fn clear(&mut self, elimination: &Elimination) {
         self.diagonal.clear();
         self.diagonal.resize(elimination.body_at.len(), Padded::ZERO);
@@ -49,20 +53,20 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         self.upper.resize(elimination.later.len(), Padded::ZERO);
     }
 
-    /// Adds to the diagonal block of a place.
+    /// Adds `block` to the diagonal block at position `place` of the elimination order.
     #[inline(always)]
     pub(crate) fn add_to_diagonal(&mut self, place: u32, block: &Block<D>) {
         add(&mut self.diagonal[place as usize], block);
     }
 
-    /// Adds to the block of two neighbouring places; `number` is the index of the later place in
-    /// [`Elimination::later`]. The rows of the block belong to the earlier place.
+    /// Adds `block` to the block of two neighbours in the elimination order. `number` is the index of the later
+    /// neighbour in [`Elimination::later`]. The rows of the block belong to the earlier neighbour.
     #[inline(always)]
     pub(crate) fn add_to_upper(&mut self, number: u32, block: &Block<D>) {
         add(&mut self.upper[number as usize], block);
     }
 
-    /// Factorises in place.
+    /// Replaces the matrix by its Cholesky factors.
     pub(crate) fn factorise(&mut self, elimination: &Elimination) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx") {
@@ -73,7 +77,8 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         self.factorise_each(elimination);
     }
 
-    /// Performs the same operations in the same order, four at a time, with bitwise the same result.
+    /// Does the work of `factorise_each` with the AVX instructions: the same operations in the same order, four numbers
+    /// at a time, so that the result is bitwise the same.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx")]
     fn factorise_with_avx(&mut self, elimination: &Elimination) {
@@ -102,7 +107,8 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         }
     }
 
-    /// Factorises a place's row, and subtracts its contribution to the rest of its supernode, which ends before `end`.
+    /// Factorises the row at position `place` of the elimination order, and subtracts its contribution to the later
+    /// rows of its supernode, which ends before position `end`.
     #[inline(always)]
     fn factorise_place(&mut self, elimination: &Elimination, place: usize, end: usize) {
         let Self { diagonal, upper, .. } = self;
@@ -112,7 +118,7 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         for block in &mut upper[row.clone()] {
             solve_lower(&factor, block);
         }
-        // All rows of a supernode end with the same blocks.
+        // All rows of a supernode end with blocks in the same columns.
         let (done, ahead) = upper.split_at_mut(row.end);
         for (later, first) in (place + 1..end).zip(row.clone()) {
             let of_first = &done[first];
@@ -124,11 +130,11 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         }
     }
 
-    /// Subtracts the contributions of a place that is a supernode by itself.
+    /// Subtracts the contributions of a factorised row that is a supernode by itself from the blocks of later rows.
     #[inline(always)]
     fn subtract_row(&mut self, elimination: &Elimination, row: Range<usize>, targets: &[u32]) {
         let Self { diagonal, upper, .. } = self;
-        // `targets` has an entry for every pair, in this order.
+        // `targets` has one entry per pair (first, second), in the order of this loop.
         let mut targets = targets.iter();
         for first in row.clone() {
             let of_first = upper[first];
@@ -141,7 +147,8 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         }
     }
 
-    /// Subtracts a supernode's contributions to blocks outside it: each block once, for all its places.
+    /// Subtracts the contributions of a factorised supernode from the blocks of later rows. Each block is loaded and
+    /// stored once for all rows of the supernode.
     #[inline(always)]
     fn subtract_supernode(
         &mut self,
@@ -151,7 +158,7 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
     ) {
         let Self { diagonal, upper, panel } = self;
         let outside = elimination.row(places.end - 1);
-        // For one later neighbour after the other, the blocks that all places have with it.
+        // For each column outside the supernode, the panel has the blocks of all rows of the supernode in that column.
         panel.clear();
         for edge in outside.clone() {
             let back = outside.end - edge;
@@ -162,7 +169,7 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
             let of_first = with(first);
             let on_first = &mut diagonal[elimination.later[first] as usize];
             [*on_first] = less_products([*on_first], of_first, [of_first]);
-            // `targets` has an entry for every pair, in this order.
+            // `targets` has one entry per pair (first, second), in the order of this loop.
             let (of_these, rest) = targets.split_at(outside.end - first - 1);
             targets = rest;
             for (second, of_these) in (first + 1..).step_by(3).zip(of_these.chunks(3)) {
@@ -183,7 +190,8 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         }
     }
 
-    /// Solves with the factors: `vector` (by place) is the right-hand side and becomes the solution.
+    /// Solves the linear equations with the factors. `vector`, in elimination order, is the right-hand side on entry
+    /// and the solution on return.
     pub(crate) fn solve(&self, elimination: &Elimination, vector: &mut [[f64; D]]) {
         for place in 0..vector.len() {
             let factor = &self.diagonal[place].0;
@@ -240,7 +248,7 @@ fn add<const D: usize>(to: &mut Padded<D>, block: &Block<D>) {
     }
 }
 
-/// L with D = L Lᵀ; its diagonal contains the inverses of L's diagonal entries.
+/// Returns the factor L of a diagonal block D = L Lᵀ, with the inverses of L's diagonal entries on the diagonal.
 #[inline(always)]
 fn cholesky<const D: usize>(block: &Padded<D>) -> Padded<D> {
     let mut factor = Padded::ZERO;
@@ -257,7 +265,7 @@ fn cholesky<const D: usize>(block: &Padded<D>) -> Padded<D> {
     factor
 }
 
-/// Replaces a block by L⁻¹ times the block.
+/// Replaces a block B by L⁻¹ B, where `factor` is L as [`cholesky`] returns it.
 #[inline(always)]
 fn solve_lower<const D: usize>(factor: &Padded<D>, block: &mut Padded<D>) {
     for row in 0..D {
@@ -271,7 +279,7 @@ fn solve_lower<const D: usize>(factor: &Padded<D>, block: &mut Padded<D>) {
     }
 }
 
-/// Returns left − Σ aᵀb, for each `left` with its own b.
+/// Returns the N blocks left − Σ aᵀb. The blocks `a` are common to all N sums; `b` has one list of blocks per sum.
 #[inline(always)]
 fn less_products<const D: usize, const N: usize>(
     mut left: [Padded<D>; N],
@@ -287,7 +295,7 @@ fn less_products<const D: usize, const N: usize>(
     left
 }
 
-/// Replaces `from` by from − aᵀb.
+/// Replaces the block `from` by from − aᵀb.
 #[inline(always)]
 fn subtract_product<const D: usize>(from: &mut Padded<D>, a: &Padded<D>, b: &Padded<D>) {
     let mut result = *from;
@@ -306,7 +314,8 @@ mod tests {
     use super::*;
     use crate::solver::linear::tests::{grid, numbers};
 
-    /// Springs of random directions and strengths between the bodies of a grid, and unit masses.
+    /// The matrix consists of unit masses, and of springs with random directions and strengths between the bodies of a
+    /// grid.
     #[test]
     fn a_grid_of_springs_is_solved_to_rounding() {
         let side = 15u32;

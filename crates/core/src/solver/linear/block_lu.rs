@@ -1,8 +1,9 @@
-//! A sparse LU factorisation of D × D blocks, one row and one column of blocks per body.
+//! Sparse LU factorisation of a matrix of D × D blocks, with one row and one column of blocks per body.
 //!
-//! The pattern is symmetric; the numbers need not be. There is no pivoting between blocks: the matrices that Newton's
-//! method factorises are masses plus contact stiffnesses, whose diagonal blocks dominate unless friction is large. If a
-//! factorisation breaks down, its numbers are not finite or the step is refused.
+//! The pattern of nonzero blocks is symmetric; their entries need not be symmetric. There is no pivoting between
+//! blocks: the matrices that Newton's method factorises are masses plus contact stiffnesses, whose diagonal blocks
+//! dominate unless friction is large. If a factorisation breaks down, its entries are not finite or Newton's method
+//! rejects the step.
 
 use super::elimination::Elimination;
 use crate::solver::kinematics::Model;
@@ -10,7 +11,7 @@ use crate::solver::kinematics::Model;
 /// A block of D × D numbers.
 pub(crate) type Block<const D: usize> = [[f64; D]; D];
 
-/// A block with these numbers on its diagonal.
+/// Returns a block with these numbers on its diagonal and 0 elsewhere.
 pub(crate) fn diagonal<const D: usize>(numbers: [f64; D]) -> Block<D> {
     let mut block = [[0.0; D]; D];
     for (axis, row) in block.iter_mut().enumerate() {
@@ -19,24 +20,26 @@ pub(crate) fn diagonal<const D: usize>(numbers: [f64; D]) -> Block<D> {
     block
 }
 
-/// The inertias of a body of mass `mass`, kg.
+/// Returns the inertias of a body of mass `mass`, one per degree of freedom, kg.
 pub(crate) fn inertias<M: Model, const D: usize>(mass: f64) -> [f64; D] {
     std::array::from_fn(|axis| mass * M::INERTIA_OVER_MASS[axis])
 }
 
-/// A matrix, replaced by its factors in [`BlockMatrix::factorise`]. Memory is kept between matrices.
+/// A matrix, which [`BlockMatrix::factorise`] replaces by its factors. The memory is reused for the next matrix.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlockMatrix<const D: usize> {
-    /// Diagonal blocks by place, inverted by [`BlockMatrix::factorise`].
+    /// Diagonal blocks in elimination order. [`BlockMatrix::factorise`] inverts them.
     diagonal: Vec<Block<D>>,
-    /// Block (b, a) for each pair a < b of neighbours, numbered as in [`Elimination::later`].
+    /// Blocks below the diagonal, in row b and column a, one per pair a < b of neighbours in the elimination order.
+    /// They are numbered as in [`Elimination::later`].
     lower: Vec<Block<D>>,
-    /// Block (a, b).
+    /// Blocks above the diagonal, in row a and column b, one per pair a < b of neighbours in the elimination order.
+    /// They are numbered as in [`Elimination::later`].
     upper: Vec<Block<D>>,
 }
 
 impl<const D: usize> BlockMatrix<D> {
-    /// Sets the matrix to zero, with the given structure.
+    /// Sets the matrix to zero, with the nonzero pattern of `elimination`.
     pub(crate) fn clear(&mut self, elimination: &Elimination) {
         let zero = [[0.0; D]; D];
         for (blocks, count) in [
@@ -49,7 +52,7 @@ impl<const D: usize> BlockMatrix<D> {
         }
     }
 
-    /// Sets the matrix to the inertias of bodies with these masses (kg).
+    /// Sets the matrix to the diagonal matrix of the inertias of bodies with these masses (kg).
     pub(crate) fn start<M: Model>(&mut self, elimination: &Elimination, masses: &[f64]) {
         self.clear(elimination);
         for (&place, &mass) in elimination.place_of.iter().zip(masses) {
@@ -57,13 +60,13 @@ impl<const D: usize> BlockMatrix<D> {
         }
     }
 
-    /// The diagonal block of a place.
+    /// Returns the diagonal block at position `place` of the elimination order.
     pub(crate) fn diagonal_mut(&mut self, place: u32) -> &mut Block<D> {
         &mut self.diagonal[place as usize]
     }
 
-    /// Blocks (i, j) and (j, i) of two neighbouring places; `number` is the index of the later place in
-    /// [`Elimination::later`].
+    /// Returns the blocks (i, j) and (j, i) of two neighbours in the elimination order. `number` is the index of the
+    /// later neighbour in [`Elimination::later`].
     #[inline(always)]
     pub(crate) fn off_diagonal_mut(
         &mut self,
@@ -74,8 +77,8 @@ impl<const D: usize> BlockMatrix<D> {
         if i_is_earlier { (upper, lower) } else { (lower, upper) }
     }
 
-    /// Factorises in place into L below the diagonal (its own diagonal is 1), U above it, and the inverses of U's
-    /// diagonal blocks.
+    /// Replaces the matrix by its factors: L below the diagonal (the diagonal of L is 1), U above it, and the inverses
+    /// of U's diagonal blocks on it.
     pub(crate) fn factorise(&mut self, elimination: &Elimination) {
         let mut targets = elimination.targets.iter();
         for place in 0..self.diagonal.len() {
@@ -90,7 +93,7 @@ impl<const D: usize> BlockMatrix<D> {
                 let lower_a = self.lower[first];
                 subtract_product(&mut self.diagonal[a], &lower_a, &self.upper[first]);
                 for second in first + 1..range.end {
-                    // `targets` has an entry for every pair, in this order.
+                    // `targets` has one entry per pair (first, second), in the order of this loop.
                     let Some(&target) = targets.next() else { return };
                     let target = target as usize;
                     let (upper_b, lower_b) = (self.upper[second], self.lower[second]);
@@ -102,7 +105,8 @@ impl<const D: usize> BlockMatrix<D> {
         }
     }
 
-    /// Solves with the factors: `vector` (by place) is the right-hand side and becomes the solution.
+    /// Solves the linear equations with the factors. `vector`, in elimination order, is the right-hand side on entry
+    /// and the solution on return.
     pub(crate) fn solve(&self, elimination: &Elimination, vector: &mut [[f64; D]]) {
         for place in 0..vector.len() {
             let here = vector[place];
@@ -166,7 +170,7 @@ fn subtract_applied<const D: usize>(from: &mut [f64; D], a: &Block<D>, b: &[f64;
     }
 }
 
-/// The inverse by Gauss–Jordan elimination with pivoting inside the block.
+/// Returns the inverse of a block, by Gauss–Jordan elimination with pivoting inside the block.
 fn inverse<const D: usize>(block: &Block<D>) -> Block<D> {
     let mut left = *block;
     let mut right = [[0.0; D]; D];

@@ -1,39 +1,41 @@
-//! The order in which bodies are eliminated, and the pattern of the factors that it makes.
+//! The order in which a sparse factorisation eliminates bodies, and the pattern of nonzero blocks in its factors.
 //!
-//! Minimum degree on the graph of contacts between grains: the body with the fewest neighbours is eliminated first, and
-//! its neighbours become neighbours of each other. Contact graphs are nearly planar, so the neighbourhoods stay small.
+//! The order is a minimum degree order of the graph whose edges are the contacts between bodies: the body with the
+//! fewest neighbours is eliminated first, and its neighbours become neighbours of each other. Contact graphs are nearly
+//! planar, so the neighbourhoods stay small.
 //!
-//! **Postorder** keeps together the places that work on the same numbers. The parent of a place in the elimination tree
-//! is the first of its later neighbours, the one that its elimination changes next. Every order that has each place
-//! before its parent makes the same factors with the same fill. An order that finishes a subtree before it begins the
-//! next one changes blocks that were made recently, and puts places with the same later neighbours next to each other
-//! (J. W. H. Liu, 1990).
+//! **Postorder** puts positions that work on the same numbers next to each other. The parent of a position in the
+//! elimination tree is the first of its later neighbours. Every order that has each position before its
+//! parent leads to the same factors with the same fill-in. An order that finishes a subtree before it begins the next
+//! subtree changes blocks that were computed recently, and puts positions with the same later neighbours next to each
+//! other (J. W. H. Liu, 1990).
 
 use smallvec::SmallVec;
 
 use crate::solver::kinematics::Model;
 use crate::solver::problem::StepProblem;
 
-/// Neighbours of a body. A disc seldom has more than six at first, and elimination seldom doubles them; longer lists go
-/// to the heap.
+/// Neighbours of a body. A disc seldom has more than six neighbours at first, and elimination seldom doubles that
+/// number; longer lists are stored on the heap.
 type BodyNeighbours = SmallVec<[u32; 12]>;
 
-/// An elimination order and the structure of the factors. After the ordering, bodies are named by their place in it.
+/// An elimination order and the nonzero pattern of the factors. A *place* is the position of a body in this order.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Elimination {
-    /// The body at each place.
+    /// The body at each position of the elimination order.
     pub body_at: Vec<u32>,
-    /// The place of each body.
+    /// The position of each body in the elimination order.
     pub place_of: Vec<u32>,
-    /// The later neighbours of place k are `later[starts[k] .. starts[k + 1]]`, in rising order; the index in `later`
-    /// is the number of the off-diagonal block.
+    /// Boundaries of the lists of later neighbours, which are in rising order. The list of position k is
+    /// `later[starts[k] .. starts[k + 1]]`, and the index in `later` is the number of the off-diagonal block.
     pub starts: Vec<u32>,
-    /// Later neighbours, as places.
+    /// Later neighbours of all positions, given by their own positions in the elimination order.
     pub later: Vec<u32>,
-    /// For each place, and each pair a < b of its later neighbours in lexicographic order: the number of block (a, b).
+    /// For each position, and each pair a < b of its later neighbours in lexicographic order: the number of block
+    /// (a, b).
     pub targets: Vec<u32>,
-    /// First places of the supernodes, then the number of places. A supernode is a run of places, each of which has as
-    /// later neighbours the next place and all later neighbours of the next place.
+    /// First positions of the supernodes, then the number of positions. A supernode is a run of positions, each of
+    /// which has as later neighbours the next position and all later neighbours of the next position.
     pub supernodes: Vec<u32>,
     postorder: Postorder,
     neighbours: Vec<BodyNeighbours>,
@@ -42,7 +44,8 @@ pub(crate) struct Elimination {
 }
 
 impl Elimination {
-    /// Orders `bodies` bodies with the given pairs of neighbours (in any order; repeats are allowed).
+    /// Computes the order and the pattern for `bodies` bodies with the given pairs of neighbours (in any order;
+    /// repeated pairs are allowed).
     pub(crate) fn analyse(&mut self, bodies: usize, pairs: impl Iterator<Item = (u32, u32)>) {
         self.neighbours.resize_with(bodies.max(self.neighbours.len()), BodyNeighbours::new);
         for list in &mut self.neighbours {
@@ -61,13 +64,13 @@ impl Elimination {
         self.structure(bodies);
     }
 
-    /// Number of the block of places a < b, which must be neighbours.
+    /// Returns the number of the block of positions a < b in the elimination order, whose bodies must be neighbours.
     pub(crate) fn block(&self, a: u32, b: u32) -> usize {
         let row = self.row(a as usize);
         row.start + self.later[row].partition_point(|&place| place < b)
     }
 
-    /// Numbers of the blocks of a place with its later neighbours.
+    /// Returns the numbers of the blocks of a position with its later neighbours.
     #[inline(always)]
     pub(super) fn row(&self, place: usize) -> std::ops::Range<usize> {
         self.starts[place] as usize..self.starts[place + 1] as usize
@@ -85,7 +88,7 @@ impl Elimination {
         }
         let mut degree = 0;
         while self.body_at.len() < bodies {
-            // Outdated entries are skipped: a body is filed again when its degree changes.
+            // Outdated entries are skipped: a body is listed again under its new degree when its degree changes.
             let Some(body) = self.by_degree.get_mut(degree).and_then(Vec::pop) else {
                 degree += 1;
                 continue;
@@ -106,10 +109,10 @@ impl Elimination {
         }
     }
 
-    /// Renumbers the places in postorder.
+    /// Renumbers the positions in postorder.
     fn rearrange(&mut self) {
         let Self { body_at, place_of, neighbours, postorder, .. } = self;
-        // All neighbours that a body had when it was eliminated come later.
+        // All neighbours that a body had when it was eliminated come later in the order.
         postorder.arrange(body_at.iter().map(|&body| {
             let later = &neighbours[body as usize];
             (later.iter().map(|&body| place_of[body as usize]).min(), later.len())
@@ -125,7 +128,7 @@ impl Elimination {
     fn join(&mut self, body: u32, eliminated: u32, clique: &[u32]) {
         let own = &mut self.neighbours[body as usize];
         self.merged.clear();
-        // Both lists are sorted, and so is their merge.
+        // Both lists are sorted, so they can be merged in one pass.
         let (mut a, mut b) = (own.iter().copied().peekable(), clique.iter().copied().peekable());
         loop {
             let next = match (a.peek(), b.peek()) {
@@ -157,7 +160,7 @@ impl Elimination {
         self.starts.push(0);
         for place in 0..bodies {
             let start = self.later.len();
-            // All neighbours that a body had when it was eliminated come later.
+            // All neighbours that a body had when it was eliminated come later in the order.
             let neighbours = &self.neighbours[self.body_at[place] as usize];
             self.later.extend(neighbours.iter().map(|&body| self.place_of[body as usize]));
             self.later[start..].sort_unstable();
@@ -178,7 +181,8 @@ impl Elimination {
         for place in 0..bodies {
             let range = self.row(place);
             for first in range.clone() {
-                // A place that is later than both is a later neighbour of the first, and both lists rise.
+                // A position that is later than `first` and `second` is a later neighbour of `first`, and both lists
+                // are in rising order.
                 let mut block = self.starts[self.later[first] as usize] as usize;
                 for second in first + 1..range.end {
                     while self.later[block] < self.later[second] {
@@ -191,27 +195,29 @@ impl Elimination {
     }
 }
 
-/// Marks a missing place.
+/// Marks a missing position or child.
 const NONE: u32 = u32::MAX;
 
-/// Work memory of the postorder, kept between orders.
+/// Work memory of the postorder, reused for the next order.
 #[derive(Clone, Debug, Default)]
 struct Postorder {
-    /// For each place, the head of the list of its children.
+    /// For each position, the head of the list of its children in the elimination tree.
     first_child: Vec<u32>,
-    /// For each place, the next child of the same parent.
+    /// For each position, the next child of the same parent.
     next_child: Vec<u32>,
-    /// For each place, the child with the most later neighbours, which comes right before its parent in the new order.
+    /// For each position, the child with the most later neighbours, which comes right before its parent in the new
+    /// order.
     heir: Vec<u32>,
-    /// For each place, the number of later neighbours of that child.
+    /// For each position, the number of later neighbours of the child in `heir`.
     most: Vec<usize>,
     stack: Vec<u32>,
-    /// The places in their new order, in reverse.
+    /// The positions in their new order, reversed.
     reversed: Vec<u32>,
 }
 
 impl Postorder {
-    /// Orders places, given the parent (`None` for a root) and the number of later neighbours of each.
+    /// Computes the postorder of the positions, given the parent (`None` for a root) and the number of later neighbours
+    /// of each position.
     fn arrange(&mut self, parents: impl ExactSizeIterator<Item = (Option<u32>, usize)>) {
         let Self { first_child, next_child, heir, most, stack, reversed } = self;
         for links in [&mut *first_child, next_child, heir] {
@@ -234,8 +240,8 @@ impl Postorder {
                 (heir[parent], most[parent]) = (child, neighbours);
             }
         }
-        // A depth-first walk visits each place before its children, and `heir` first among them. The new order is its
-        // reverse.
+        // A depth-first walk visits each position before its children, and the child `heir` before the other children.
+        // The new order is the reverse of the walk.
         while let Some(place) = stack.pop() {
             reversed.push(place);
             let heir = heir[place as usize];
@@ -253,21 +259,21 @@ impl Postorder {
     }
 }
 
-/// An elimination order for the contacts between grains and of grains with driven walls, kept while these contacts stay
-/// the same. Driven walls are numbered after the grains.
+/// The elimination order for the contacts between grains, and between grains and driven walls. It is kept as long as
+/// these contacts stay the same. Driven walls are numbered after the grains.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ContactGraph {
     /// The elimination order.
     pub elimination: Elimination,
-    /// The block of each row between two bodies that can move, as an index in [`Elimination::later`].
+    /// The block of each row between two moving bodies, as an index in [`Elimination::later`].
     pub pair_blocks: Vec<u32>,
-    /// Numbers that `elimination` was made for.
+    /// Number of bodies, and pairs of bodies in contact, for which `elimination` was computed.
     bodies: usize,
     pairs: Vec<(u32, u32)>,
 }
 
 impl ContactGraph {
-    /// Computes the elimination order, unless bodies and contacts are the same as last time.
+    /// Computes the elimination order, unless bodies and contacts are the same as at the last call.
     pub(crate) fn analyse<M: Model>(&mut self, problem: &StepProblem<M>) {
         let grains = problem.bodies.now.len();
         let bodies = grains + problem.walls.driven.len();
@@ -313,7 +319,7 @@ mod tests {
             assert_eq!(elimination.later[block], a.max(b));
         }
         for place in 0..(side * side) as usize {
-            // A subtree is finished before the next one begins.
+            // In a postorder, a subtree is finished before the next subtree begins.
             let parent = elimination.later[elimination.row(place)].first();
             let children =
                 |at: usize| elimination.later[elimination.row(at)].first() == Some(&(place as u32));
@@ -344,7 +350,8 @@ mod tests {
                 }
             }
         }
-        // A nested dissection of a 9 × 9 grid has about 31 n log2 n / 8 blocks; a bad order n².
+        // Minimum degree gives about 400 blocks on a 9 × 9 grid (n = 81 bodies); a bad order gives of the order of n²
+        // blocks.
         assert!(elimination.later.len() < 500, "{} blocks", elimination.later.len());
     }
 }

@@ -1,4 +1,4 @@
-//! Sparse block systems: elimination order and factorisations.
+//! Sparse systems of linear equations in blocks: elimination order and factorisations.
 
 mod block_cholesky;
 mod block_lu;
@@ -10,7 +10,7 @@ pub(super) use self::elimination::{ContactGraph, Elimination};
 
 #[cfg(test)]
 mod tests {
-    /// Pairs of neighbours on a square grid with `side` bodies along each side.
+    /// Returns the pairs of neighbours on a square grid with `side` bodies along each side.
     pub(super) fn grid(side: u32) -> Vec<(u32, u32)> {
         let neighbours = |k: u32| {
             let right = (k % side + 1 < side).then_some((k, k + 1));
@@ -20,7 +20,7 @@ mod tests {
         (0..side * side).flat_map(neighbours).collect()
     }
 
-    /// Pseudo-random numbers between −½ and ½, the same sequence every time.
+    /// Returns a generator of pseudo-random numbers between −½ and ½, with the same sequence in every run.
     pub(super) fn numbers() -> impl FnMut() -> f64 {
         let mut random = 1u64;
         move || {

@@ -2,8 +2,8 @@
 //! problems V. Acary, M. Brémond, O. Huber 2018).
 //!
 //! Body velocities V and contact velocities z are separate unknowns, coupled by HV = z with the impulses as multipliers
-//! and a penalty m_ij/ε. In reduced impulses (`contact::law`), with u = v_n + ρ v_n^{n−1} of V, one iteration computes
-//! the impulses from V by the law,
+//! and a penalty m_ij/ε. In reduced impulses (shifted normal impulse σ, tangential impulse λ_t, `contact::law`), with
+//! u = v_n + ρ v_n^{n−1} computed from V, one iteration computes the impulses from V by the law,
 //!
 //! > σ' = max(σ − u/ε, 0),  λ_t' = clamp(λ_t − v_t m_t/(m_n ε), ±bound(σ')),
 //!
@@ -12,8 +12,8 @@
 //! > (M + Σ m_ij/ε (n nᵀ + m_t/m_n t tᵀ)) V = M V_free + Σ m_ij [n (2σ' − σ − c + v_n/ε) + t (…)],
 //!
 //! c the capture speed. The matrix depends only on ε, so an iteration is one pass over the contacts and one solve with
-//! cached factors. At a fixed point V agrees with the impulses, and the impulses with the law: the common natural map
-//! is 0. ε balances penalty and law; it is changed if one of ε(σ' − σ) and (z' − z)/ε is much larger than the other.
+//! cached factors. At a fixed point V agrees with the impulses, and the impulses with the law: the natural map is 0. ε
+//! balances penalty and law; ε is changed if one of ε(σ' − σ) and (z' − z)/ε is much larger than the other.
 
 use super::contact_system::{BestIterate, BodySystem, ContactSystem, ScaledVector};
 use super::stopping::{SolveReport, is_tested};
@@ -23,24 +23,26 @@ use crate::solver::linear::{BlockMatrix, Elimination};
 use crate::solver::problem::{Row, StepProblem};
 use crate::solver::settings::SolverSettings;
 
-/// Initial ε.
+/// Initial compliance ε, the inverse of the penalty.
 const FIRST_COMPLIANCE: f64 = 0.03;
-/// Iterations between two checks of ε; a factorisation costs as much as about ten iterations.
+/// Number of iterations between two checks of the compliance ε. A factorisation costs as much as about ten iterations.
 const BALANCE_INTERVAL: u32 = 24;
-/// Minimum ratio of the two residuals for which ε is changed.
+/// Minimum ratio of the larger to the smaller of the two residuals, of velocities and of impulses, at which the
+/// compliance ε is changed.
 const OUT_OF_BALANCE: f64 = 4.0;
-/// Maximum factor by which ε changes at a time.
+/// Maximum factor by which the compliance ε changes at a time.
 const LARGEST_CHANGE: f64 = 10.0;
-/// Minimum and maximum ε. At a smaller ε rounding in the factorisation matters; at a larger ε impulses hardly spread.
+/// Minimum and maximum compliance ε. With a smaller ε rounding errors in the factorisation matter; with a larger ε
+/// impulses hardly spread from contact to contact.
 const COMPLIANCES: [f64; 2] = [1e-5, 1.0];
 
-/// Work memory for each number of degrees of freedom; unused entries hold no memory.
+/// Work memory for each number of degrees of freedom of a body. Unused entries allocate no memory.
 #[derive(Debug, Default)]
 pub(crate) struct AdmmMemory {
     one: Directions<1>,
     two: Directions<2>,
     three: Directions<3>,
-    /// The best impulses of a solve.
+    /// The impulses with the smallest residual of a solve.
     best: ScaledVector,
 }
 
@@ -51,14 +53,14 @@ impl Clone for AdmmMemory {
     }
 }
 
-/// V and z of one solve, and the matrix that couples them.
+/// Body velocities V and contact velocities z of one solve, and the matrix that couples them.
 #[derive(Debug, Default)]
 struct Directions<const D: usize> {
     elimination: Elimination,
     matrix: BlockMatrix<D>,
-    /// V, or its right-hand side before the solve, by place in the elimination order.
+    /// Body velocities V in elimination order, m/s; before the linear solve, its right-hand side.
     vector: Vec<[f64; D]>,
-    /// z of each contact without the restitution term, m/s.
+    /// Contact velocities z without the restitution term, m/s.
     targets: ScaledVector,
     impulses: ScaledVector,
     before: ScaledVector,
@@ -131,7 +133,7 @@ fn run<M: Model, const D: usize>(
 }
 
 impl<const D: usize> Directions<D> {
-    /// Factorises the matrix for a compliance ε.
+    /// Factorises the matrix of the linear equations for the body velocities V, with the compliance ε = `compliance`.
     fn factorise<M: Model>(&mut self, problem: &StepProblem<M>, compliance: f64) {
         let Self { elimination, matrix, .. } = self;
         matrix.start::<M>(elimination, &problem.bodies.masses);
@@ -166,7 +168,7 @@ impl<const D: usize> Directions<D> {
         matrix.factorise(elimination);
     }
 
-    /// Sets V and z from the present velocities.
+    /// Sets the body velocities V and the contact velocities z from the present velocities of the problem.
     fn start<M: Model>(&mut self, problem: &StepProblem<M>) {
         let bodies =
             self.elimination.body_at.iter().map(|&body| &problem.bodies.now[body as usize]);
@@ -185,7 +187,7 @@ impl<const D: usize> Directions<D> {
         self.targets = targets;
     }
 
-    /// (v_n, v_t) of V at a contact, m/s.
+    /// Returns the relative velocity (v_n, v_t) at a contact that follows from the body velocities V, m/s.
     #[inline(always)]
     fn velocity<M: Model>(&self, row: &Row<M>, is_pair: bool) -> [f64; 2] {
         let [on_i, on_j] = M::gradients(row.normal);
@@ -201,13 +203,13 @@ impl<const D: usize> Directions<D> {
         velocity
     }
 
-    /// Computes the rows' impulses and z from V. Returns the factor by which ε would have to change to make the two
-    /// residuals equal.
+    /// Computes the rows' impulses and the contact velocities z from the body velocities V. Returns the factor of ε
+    /// that would make the residuals of velocities and impulses equal.
     fn apply_law<M: Model>(&mut self, problem: &mut StepProblem<M>, compliance: f64) -> f64 {
         let (mut of_velocities, mut of_impulses) = (0.0, 0.0);
         let mut targets = std::mem::take(&mut self.targets);
         for (number, target) in targets.iter_mut().enumerate() {
-            // V contains neither the slide of images nor the motion of surfaces.
+            // The body velocities V contain neither the slide of periodic images nor the motion of surfaces.
             let is_pair = problem.rows.is_pair(number);
             let [away, along] = match is_pair {
                 true => M::slide_along(problem.rows.get(number).normal),
@@ -239,11 +241,11 @@ impl<const D: usize> Directions<D> {
         }
         self.targets = targets;
         let balance: f64 = of_impulses / of_velocities;
-        // If nothing changes, nothing is out of balance.
+        // If nothing changes, ε is kept.
         if balance.is_finite() && balance > 0.0 { balance.sqrt().sqrt() } else { 1.0 }
     }
 
-    /// Computes the right-hand side from impulses and z.
+    /// Computes the right-hand side of the linear equations for V from the impulses and the contact velocities z.
     fn take_loads<M: Model>(&mut self, problem: &StepProblem<M>, compliance: f64) {
         let Self { elimination, vector, targets, .. } = self;
         for (place, &body) in elimination.body_at.iter().enumerate() {
@@ -276,5 +278,5 @@ impl<const D: usize> Directions<D> {
     }
 }
 
-/// Gradients of v_n and v_t with respect to a body's coordinates.
+/// Gradients of a contact's normal and tangential velocity (v_n, v_t) by a body's velocity coordinates.
 type Gradients = [[f64; 3]; 2];

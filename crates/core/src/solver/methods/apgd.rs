@@ -1,34 +1,35 @@
 //! Accelerated projected gradients with adaptive restart (H. Mazhar, T. Heyn, D. Negrut, A. Tasora, *Using Nesterov's
 //! method to accelerate multibody dynamics with friction and contact*, 2015).
 //!
-//! With fixed friction bounds (Tresca) a step's impulses minimise the convex f(s) = ½ s·As + b·s over a box, and
-//! Nesterov's method applies:
+//! With fixed friction bounds (Tresca) a step's scaled impulses s minimise the convex function f(s) = ½ s·As + b·s over
+//! a box (A, b and the scaled velocities w: see `contact_system`), and Nesterov's method applies:
 //!
 //! > x_{k+1} = projection of y_k − D w(y_k)/L,  y_{k+1} = x_{k+1} + β_k (x_{k+1} − x_k),
 //!
-//! with D = diag(1, m_t/m_n) and β_k from Nesterov's recursion. *Coulomb's* bound depends on the solution. It is
-//! recomputed from the normal impulses of every iterate (an outer fixed-point iteration on the bound, with one inner
-//! step each). So a fixed point of the iteration is a zero of the common natural map: it solves Coulomb's law itself,
-//! not its convex relaxation. In return no theorem guarantees convergence; in practice restarts achieve it. Solving for
-//! each bound before computing the next bound is worse: the outer iteration may oscillate with growing amplitude.
+//! with D = diag(1, m_t/m_n) and β_k from Nesterov's recursion. The friction bound of *Coulomb's law* depends on the
+//! solution. The method recomputes it from the normal impulses of every iterate (an outer fixed-point iteration on the
+//! bound, with one inner step each). So a fixed point of the iteration is a zero of the natural map that is common to
+//! all methods: it solves Coulomb's law, not a convex relaxation of it. In return no theorem guarantees convergence; in
+//! practice restarts achieve it. Solving for each bound before computing the next bound is worse: the outer iteration
+//! may oscillate with growing amplitude.
 //!
-//! * **L** is the largest curvature that the solve has met. A step is accepted if Δ·AΔ ≤ L Δ·D⁻¹Δ; otherwise it is
-//!   repeated with a larger L, up to the bound of `ContactSystem::splitting`. Letting L fall between iterations, as is
-//!   often done, takes more iterations.
+//! * **L** is the largest curvature found during the solve. A step Δ is accepted if Δ·AΔ ≤ L Δ·D⁻¹Δ; otherwise it is
+//!   repeated with a larger L, up to the bound of `ContactSystem::splitting`. A variant in which L falls between
+//!   iterations, which is common, takes more iterations.
 //! * **Restart** (B. O'Donoghue, E. Candès 2015): the momentum is reset if it points away from the direction of the
 //!   projected step, (y_k − x_{k+1})·D⁻¹(x_{k+1} − x_k) > 0. The test with the gradient instead of the projected step
 //!   takes two to three times as many iterations.
-//! * w is affine, so w(y) is formed from the known w(x): one product with A per iteration.
+//! * w is affine, so w(y) is computed from the known w(x): one product with A per iteration.
 
 use super::contact_system::{BestIterate, ContactSystem, ScaledVector, WorkVectors, projected};
 use super::stopping::{SolveReport, is_tested};
 use crate::solver::settings::SolverSettings;
 
-/// L after a step that was too long, divided by the curvature met there: slightly above 1, since the next step meets
-/// about the same curvature again.
+/// Ratio of the curvature bound L after a step that was too long to the curvature found in that step. It is slightly
+/// above 1, because the next step has about the same curvature.
 const MARGIN: f64 = 1.05;
 
-/// Solves a system from its present impulses. Every product with A counts as an iteration.
+/// Solves a contact system from its present impulses. Every product with its matrix A counts as an iteration.
 pub(super) fn solve<S: ContactSystem>(
     system: &mut S,
     settings: &SolverSettings,
@@ -64,7 +65,7 @@ pub(super) fn solve<S: ContactSystem>(
         if best.look(system, next, sweeps, settings) {
             return best.restore(system, sweeps);
         }
-        // (y − next)·D⁻¹(next − now).
+        // (y − next)·D⁻¹(next − now): if positive, the momentum points away from the projected step.
         let mut product = 0.0;
         for (contact, ((y, next), now)) in y.iter().zip(&*next).zip(&*x).enumerate() {
             product += (y[0] - next[0]) * (next[0] - now[0])
@@ -88,7 +89,8 @@ pub(super) fn solve<S: ContactSystem>(
     best.restore(system, settings.max_sweeps)
 }
 
-/// Δ·AΔ / Δ·D⁻¹Δ between two points with their w; 0 if they are the same.
+/// Returns the curvature Δ·AΔ / Δ·D⁻¹Δ, dimensionless, between two points x and y with the scaled velocities w_x and
+/// w_y; 0 if the points are the same.
 fn curvature<S: ContactSystem>(
     system: &S,
     [y, w_y]: [&ScaledVector; 2],
@@ -104,7 +106,7 @@ fn curvature<S: ContactSystem>(
     if squared > 0.0 { energy / squared } else { 0.0 }
 }
 
-/// next + momentum · (next − now).
+/// Writes next + momentum · (next − now) to `result`.
 fn extrapolate(next: &ScaledVector, now: &ScaledVector, momentum: f64, result: &mut ScaledVector) {
     result.clear();
     let ahead = |next: f64, now: f64| next + momentum * (next - now);

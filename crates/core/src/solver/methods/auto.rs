@@ -1,12 +1,12 @@
-//! `auto`: chooses a method by the model of friction, the stopping test and the size of the problem.
+//! `auto`: chooses a method by the friction model, the stopping test and the size of the problem.
 //!
-//! Convex problems (the models of friction, and grains without friction) are solved by the interior point, which works
-//! at any size. Under Coulomb's law Newton's method is tried first. A pile at rest takes 2 factorisations in the median
-//! step, and 22 in the first step of 10,000 grains; sweeps do not solve such a pile if its bonds are strong. A flowing
-//! pile takes 12 factorisations in the median at 138 grains and more than 100 at 2,000. There conjugate gradients give
-//! a smaller error at the same cost. So `auto` stops Newton's method the earlier the larger a problem is, and does not
-//! try it on a large flowing pile. A stopping test on the impulses per mass belongs to Gauss–Seidel: studies with it
-//! are about the error of that scheme.
+//! Convex problems (the friction models other than Coulomb's law, and grains without friction) are solved by the
+//! interior point, which works at any size. Under Coulomb's law Newton's method is tried first. A pile at rest takes 2
+//! factorisations in the median step, and 22 in the first step of 10,000 grains; sweeps do not solve such a pile if its
+//! bonds are strong. A flowing pile takes 12 factorisations in the median at 138 grains and more than 100 at 2,000
+//! grains. At 2,000 grains conjugate gradients have a smaller error at the same cost. So `auto` stops Newton's method
+//! the earlier the larger a problem is, and does not try it on a large flowing pile. The stopping test on the impulses
+//! per mass always uses Gauss–Seidel: studies with this test are about the error of that scheme.
 
 use super::newton::NewtonEffort;
 use super::{Memory, SolveReport, solve_by, wedged};
@@ -15,41 +15,43 @@ use crate::solver::method::Method;
 use crate::solver::problem::StepProblem;
 use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 
-/// Newton's method stops after this number divided by the number of contacts, in factorisations that have not halved
-/// the residual, limited by [`LEAST_PATIENCE`] and [`MOST_PATIENCE`].
+/// Patience of Newton's method times the number of contacts of a problem. The *patience* is the number of
+/// factorisations that have not halved the residual, after which the method stops. It is limited by [`LEAST_PATIENCE`]
+/// and [`MOST_PATIENCE`].
 ///
 /// Measured at Δt of 1e-3 s. At 2,000 flowing grains (3,900 contacts) a patience of 5, 10 and 20 factorisations leaves
 /// an error of 1.4e-2, 1.0e-2 and 0.8e-2 √(g d) in relative times of 1, 2 and 3. At 138 grains (260 contacts) and Bond
 /// 100, a patience of 20 does not solve steps that a patience of 99 solves, and the pile slumps because of them.
 const PATIENCE_OF_CONTACTS: usize = 20_000;
 
-/// Minimum patience without cohesion and with cohesion. A bond that an unsolved step breaks stays broken: a pile of
-/// 10,000 grains at Bond 100 and 5e-3 s falls with a patience of 5, which does not solve the first step, and does not
-/// fall with a patience of 10, which solves that step in 22 factorisations.
+/// Minimum patience of Newton's method, without cohesion and with cohesion: a number of factorisations that have not
+/// halved the residual. A bond that an unsolved step breaks stays broken: a pile of 10,000 grains at Bond 100 and
+/// 5e-3 s falls with a patience of 5, which does not solve the first step. With a patience of 10 the first step is
+/// solved in 22 factorisations, and the pile does not fall.
 const LEAST_PATIENCE: [usize; 2] = [5, 10];
-/// Maximum patience.
+/// Maximum patience of Newton's method: a number of factorisations that have not halved the residual.
 const MOST_PATIENCE: usize = 100;
 
-/// Number of contacts from which `auto` uses sweeps for a flowing pile. Below it Newton's method costs less for the
-/// same error.
+/// Number of contacts from which `auto` solves a flowing pile by conjugate gradients. With fewer contacts Newton's
+/// method costs less for the same error.
 pub const CONTACTS_THAT_FLOW: usize = 500;
-/// A pile flows if more than this fraction of the contacts between grains slide faster than [`SLIDING_SPEED`] at the
-/// step's contact-free velocities. Of 2,000 grains at rest none do; of 2,000 falling grains 0.08 to 0.3 do after the
-/// first steps.
+/// Fraction of the contacts between grains that must slide faster than [`SLIDING_SPEED`], at the velocities without
+/// contact impulses, for a pile to count as flowing. The fraction is 0 for 2,000 grains at rest, and 0.08 to 0.3 for
+/// 2,000 falling grains after the first steps.
 const SLIDING_SHARE: f64 = 0.05;
-/// Minimum speed of a sliding contact, in √(g d).
+/// Minimum speed of a sliding contact of a flowing pile, in √(g d).
 const SLIDING_SPEED: f64 = 0.02;
 
-/// Sweeps of conjugate gradients after Newton's method has failed. 200 instead of 400 sweeps give 1.5 times the error
-/// at 2,000 flowing grains, and save a tenth of the time.
+/// Maximum number of sweeps of conjugate gradients after Newton's method has failed. 200 instead of 400 sweeps leave
+/// 1.5 times the error at 2,000 flowing grains, and save a tenth of the time.
 const SWEEPS_AFTER: u32 = 400;
 
-/// Sweeps of conjugate gradients if a force drives a wall. Even 5,000 sweeps do not solve one step in six of 234
-/// cohesive grains under shear.
+/// Maximum number of sweeps of conjugate gradients if a force drives a wall. Even 5,000 sweeps do not solve one step in
+/// six of 234 cohesive grains under shear.
 const SWEEPS_OF_DRIVEN: u32 = 1_000;
 
-/// The method that solves a problem under this model of friction, with friction or rolling friction (`rubs`) or
-/// without, and with or without driven walls: the method of the settings, or the choice of `auto`.
+/// Returns the method that solves a problem: the method of the settings, or the choice of `auto`. `rubs` is true if the
+/// problem has friction or rolling friction, and `is_driven` if a force drives a wall.
 pub(crate) fn picked(
     settings: &SolverSettings,
     model: FrictionModel,
@@ -99,7 +101,8 @@ fn flows<M: Model>(problem: &StepProblem<M>) -> bool {
     sliding.count() as f64 > SLIDING_SHARE * pairs.len() as f64
 }
 
-/// Effort that `auto` spends on a problem with this number of contacts, with or without cohesion.
+/// Returns the limits that `auto` sets to Newton's method for a problem with this number of contacts; `coheres` is true
+/// if the problem has cohesion.
 fn effort(contacts: usize, coheres: bool) -> NewtonEffort {
     let least = LEAST_PATIENCE[usize::from(coheres)];
     let patience = (PATIENCE_OF_CONTACTS / contacts.max(1)).clamp(least, MOST_PATIENCE);

@@ -1,13 +1,13 @@
 //! A contact problem in which all impulses form one vector, as some methods need it.
 //!
-//! **Scaled variables.** With p = P_n + C₀Δt and u_n = v_n + ρ v_n^{n−1} a step's problem is to find impulses, and
-//! velocities that are affine in the impulses, with
+//! **Scaled variables.** With the shifted impulse p = P_n + C₀Δt and u_n = v_n + ρ v_n^{n−1} (the normal velocity with
+//! its restitution term), a step's problem is to find impulses, and velocities that are affine in the impulses, with
 //!
 //! > p = max(0, p − m_n u_n),  P_t = clamp(P_t − m_t v_t, ±bound(p)).
 //!
-//! In s = (p, P_t)/√m_n and w = √m_n·(u_n, v_t) the map w(s) = A s + b has a *symmetric* positive semi-definite A (the
-//! Delassus operator multiplied by √m_n from both sides). Its diagonal is 1 in every normal entry and m_n/m_t in every
-//! tangential entry. The conditions become
+//! In the scaled impulses s = (p, P_t)/√m_n and the scaled velocities w = √m_n·(u_n, v_t) the map w(s) = A s + b has a
+//! *symmetric* positive semi-definite A (the Delassus operator multiplied by √m_n from both sides). Its diagonal is 1
+//! in every normal entry and m_n/m_t in every tangential entry. The conditions become
 //!
 //! > s_n = max(0, s_n − w_n),  s_t = clamp(s_t − w_t m_t/m_n, ±bound(s_n)).
 //!
@@ -21,16 +21,17 @@ use crate::solver::problem::{ContactRows, Row, StepProblem, is_solved, residual}
 use crate::solver::settings::{SolverSettings, StopTest};
 use crate::world::FrictionCone;
 
-/// Scaled impulses or velocities of all contacts: (normal, tangential) each, √J. Impulses of contacts that resist
-/// rolling are followed by (√m_n ψ, 0) of each (`problem::rolling`).
+/// Scaled impulses or velocities of all contacts: (normal, tangential) per contact, √J. In a vector of impulses,
+/// contacts that resist rolling have a further entry (√m_n ψ, 0) at the end, with ψ the reduced rolling impulse
+/// (`problem::rolling`).
 pub type ScaledVector = Vec<[f64; 2]>;
 
-/// Work memory of a method. The memory is kept between steps, its contents are not.
+/// Work memory of a method. The memory is reused for the next solve, its contents are not.
 #[derive(Debug, Default)]
 pub(crate) struct WorkVectors {
-    /// Scaled vectors, as many as any method needs.
+    /// Scaled vectors for intermediate results, as many as any method needs.
     pub pairs: [ScaledVector; 8],
-    /// One number per contact.
+    /// One weight per contact, see [`ContactSystem::splitting`].
     pub weights: Vec<f64>,
 }
 
@@ -41,12 +42,13 @@ impl Clone for WorkVectors {
     }
 }
 
-/// One step's contact problem in scaled variables (see the module). `contact` is an index below [`ContactSystem::len`].
+/// One step's contact problem in scaled variables (see the head of the file). The argument `contact` of a function is
+/// an index below [`ContactSystem::len`].
 pub trait ContactSystem {
-    /// True if contacts carry tangential impulses. If not, tangential entries are 0.
+    /// True if contacts have tangential impulses. If not, tangential entries are 0.
     const FRICTION: bool;
 
-    /// Number of contacts.
+    /// Returns the number of contacts.
     fn len(&self) -> usize;
 
     /// Returns true if there are no contacts.
@@ -54,49 +56,53 @@ pub trait ContactSystem {
         self.len() == 0
     }
 
-    /// Reads the present impulses s. Clears `impulses` first.
+    /// Copies the present scaled impulses s of all contacts to `impulses`, which is cleared first.
     fn read(&self, impulses: &mut ScaledVector);
 
-    /// Sets the impulses, which may have any sign and size, and forms the velocities that they make.
+    /// Sets the scaled impulses, which may have any sign and size, and computes the velocities that follow from them.
     fn write(&mut self, impulses: &[[f64; 2]]);
 
-    /// Reads the scaled velocities w. Clears `velocities` first.
+    /// Copies the present scaled velocities w of all contacts to `velocities`, which is cleared first.
     fn velocities(&self, velocities: &mut ScaledVector);
 
-    /// m_n/m_t: the tangential entries on the diagonal of A; the normal entries are 1.
+    /// Returns m_n/m_t of a contact, the tangential entry on the diagonal of A; the normal entry is 1.
     fn tangential_diagonal(&self, contact: usize) -> f64;
 
-    /// μ of a contact.
+    /// Returns the friction coefficient μ of a contact.
     fn friction(&self, contact: usize) -> f64;
 
-    /// The largest |s_t| that a normal impulse s_n ≥ 0 allows.
+    /// Returns the largest tangential impulse |s_t| that a normal impulse s_n ≥ 0 allows.
     fn friction_bound(&self, contact: usize, normal: f64) -> f64;
 
-    /// Computes a number d > 0 per contact such that A ⪯ D⁻¹, where D has the entries (d, d m_t/m_n). With this D a
-    /// projected step s − D w of all contacts at once cannot diverge. Clears `weights` first.
+    /// Computes a weight d > 0 per contact such that A ⪯ D⁻¹, where D has the diagonal entries (d, d m_t/m_n). With
+    /// this D a projected gradient step s − D w for all contacts at once cannot diverge. Clears `weights` first.
     fn splitting(&self, weights: &mut Vec<f64>);
 
-    /// Makes one Gauss–Seidel sweep from the present impulses. The resulting impulses satisfy the bounds of the laws.
+    /// Performs one Gauss–Seidel sweep from the present impulses. The resulting impulses satisfy the bounds of the
+    /// contact law.
     fn sweep(&mut self);
 
-    /// Makes a sweep. Returns true if the stopping test is met after it.
+    /// Performs one Gauss–Seidel sweep. Returns true if the stopping test is met after the sweep.
     fn tested_sweep(&mut self, settings: &SolverSettings) -> bool;
 
-    /// The common residual of the present impulses.
+    /// Returns the residual of the present impulses under Coulomb's law, dimensionless.
     fn residual(&self) -> f64;
 
-    /// Returns true if the stopping test is met by an iteration from the impulses `before` to the present impulses.
+    /// Returns true if the stopping test is met by an iteration that changed the impulses from `before` to the present
+    /// ones.
     fn is_settled(&self, before: &[[f64; 2]], settings: &SolverSettings) -> bool;
 }
 
-/// The problem of a step as a contact system. Impulses move bodies; A is never formed.
+/// The contact problem of a step in scaled variables. Impulses change the velocities of bodies; the matrix A is never
+/// computed.
 #[derive(Debug)]
 pub struct BodySystem<'a, M: Model> {
     problem: &'a mut StepProblem<M>,
 }
 
 impl<'a, M: Model> BodySystem<'a, M> {
-    /// Creates the system of a problem. Contacts are numbered like the rows: contacts with fixed bodies come first.
+    /// Creates the system of a contact problem. Contacts are numbered like the rows: contacts with fixed bodies come
+    /// first.
     pub fn new(problem: &'a mut StepProblem<M>) -> Self {
         let StepProblem { rows, root_masses, .. } = &mut *problem;
         root_masses.clear();
@@ -104,12 +110,12 @@ impl<'a, M: Model> BodySystem<'a, M> {
         Self { problem }
     }
 
-    /// √m_n of a contact, kg^½: P = √m_n s.
+    /// Returns √m_n of a contact, kg^½, the factor between a scaled impulse s and the impulse P = √m_n s.
     pub fn root_mass(&self, contact: usize) -> f64 {
         self.problem.root_masses[contact]
     }
 
-    /// Rows, each with √m_n, kg^½.
+    /// Iterates over the rows (the data of the contacts), each with √m_n, kg^½.
     fn rows(&self) -> impl Iterator<Item = (&Row<M>, &f64)> {
         self.problem.rows.iter().zip(&self.problem.root_masses)
     }
@@ -181,13 +187,14 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
         }
     }
 
-    /// Mass splitting (R. Tonge, F. Benevolenski, A. Voroshilov 2012): a body with k contacts is cut into k parts of
-    /// 1/k of its mass and inertia, one per contact. By Cauchy–Schwarz the separate parts respond at least as much as
-    /// the body does: A ⪯ D⁻¹. In the contact's own diagonal entry 1/m_i becomes k_i/m_i, and with g_i = m_ij/m_i
+    /// Computes the weights by mass splitting (R. Tonge, F. Benevolenski, A. Voroshilov 2012): a body with k contacts
+    /// is cut into k parts of 1/k of its mass and inertia, one per contact. By Cauchy–Schwarz the separate parts
+    /// respond at least as much as the body does: A ⪯ D⁻¹. In the contact's own diagonal entry 1/m_i becomes k_i/m_i.
+    /// So with the mass ratio g_i = m_ij/m_i
     ///
     /// > 1/d = k_i g_i + k_j (1 − g_i), against a fixed body k_i,
     ///
-    /// and k_i + k κ(b_n² + b_t² m_t/m_n) against a driven wall with k contacts (`problem::walls`).
+    /// and k_i + k κ(b_n² + b_t² m_t/m_n) against a driven wall with k contacts (κ and b: see `problem::walls`).
     fn splitting(&self, weights: &mut Vec<f64>) {
         let ContactRows { fixed, pairs, .. } = &self.problem.rows;
         // The first entries of `weights` temporarily contain the number of contacts of each body.
@@ -228,7 +235,7 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
             return is_solved(self.problem, settings);
         }
         let tolerance = settings.tolerance;
-        // Impulses in N·s, without the shift.
+        // Impulses in N·s, without the shift by the cohesion impulse.
         let (mut squared, mut absolute, mut whole) = (0.0, 0.0, 0.0);
         for ((number, (row, root)), [normal, tangential]) in self.rows().enumerate().zip(before) {
             let mass = row.effective_mass;
@@ -247,17 +254,17 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
             StopTest::ImpulsePerMass => absolute <= tolerance * self.problem.bodies.mean_mass,
             _ => squared <= tolerance * tolerance * whole,
         };
-        // Impulses may stop changing for a while although nothing is solved.
+        // Impulses may stop changing for a while although the problem is not solved.
         rests && is_solved(self.problem, settings)
     }
 }
 
-/// Iterations between two checks of the residual, if the stopping test does not compute it. A shorter interval costs
-/// more; a longer one may miss a better iterate of a solve that fails.
+/// Number of iterations between two computations of the residual, if the stopping test does not compute it. A shorter
+/// interval costs more; a longer interval may miss the best iterate of a solve that fails.
 const LOOK_INTERVAL: u32 = 16;
 
-/// Projects trial impulses on the contact laws: the nearest allowed normal impulse, then the nearest tangential impulse
-/// that this normal impulse allows.
+/// Returns trial impulses projected on the contact law: the nearest allowed normal impulse, and the nearest tangential
+/// impulse that this normal impulse allows.
 #[inline(always)]
 pub(crate) fn projected<S: ContactSystem>(
     system: &S,
@@ -271,7 +278,8 @@ pub(crate) fn projected<S: ContactSystem>(
     [normal, law::coulomb(tangential, system.friction_bound(contact, normal))]
 }
 
-/// Σ a·b, in four sums that do not depend on each other.
+/// Returns the scalar product Σ a·b of two scaled vectors, computed as four sums that the processor can form at the
+/// same time.
 pub(crate) fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
     let mut sums = [0.0; 4];
     let (mut pairs_of_a, mut pairs_of_b) = (a.chunks_exact(2), b.chunks_exact(2));
@@ -288,7 +296,7 @@ pub(crate) fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
     (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// Keeps the impulses with the smallest residual so far.
+/// The impulses with the smallest residual of a solve so far.
 pub(crate) struct BestIterate<'a> {
     impulses: &'a mut ScaledVector,
     residual: f64,
@@ -302,8 +310,9 @@ impl<'a> BestIterate<'a> {
         Self { impulses, residual: system.residual(), watch: StallWatch::default() }
     }
 
-    /// Checks the residual of `impulses`, the present impulses of the system, after iteration `sweeps`, once every
-    /// [`LOOK_INTERVAL`] iterations. Returns true if the solve should stop.
+    /// Computes the residual of `impulses`, the present impulses of the system, once every [`LOOK_INTERVAL`]
+    /// iterations; `sweeps` is the number of iterations so far. Keeps the impulses if they are the best so far. Returns
+    /// true if the solve should stop.
     pub(crate) fn look<S: ContactSystem>(
         &mut self,
         system: &S,
@@ -323,10 +332,10 @@ impl<'a> BestIterate<'a> {
         self.watch.look(sweeps, settings, || self.residual)
     }
 
-    /// Ends a solve that failed: gives the system the best impulses, which may be its present ones.
+    /// Ends a solve that failed: sets the system's impulses to the best impulses, which may be the present ones.
     pub(crate) fn restore<S: ContactSystem>(self, system: &mut S, sweeps: u32) -> SolveReport {
         let residual = system.residual();
-        // NaN compares false, so it counts as worse.
+        // NaN compares false, so a residual of NaN counts as worse.
         let present_is_best = residual <= self.residual;
         if !present_is_best {
             system.write(self.impulses);

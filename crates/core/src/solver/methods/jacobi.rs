@@ -3,13 +3,14 @@
 //!
 //! A grain with k contacts is cut into k parts of 1/k of its mass and inertia, one per contact. Each contact is solved
 //! exactly with its two parts; then the velocities of a grain's parts are replaced by their mean. The mean moves like
-//! the whole grain under all impulses, so parts are never stored: with 1/(d m_n), the inverse mass of the split contact
-//! (`ContactSystem::splitting`), one iteration is
+//! the whole grain under all impulses, so parts are never stored. In scaled impulses s and velocities w, and with the
+//! inverse mass 1/(d m_n) of the split contact (D has the entries d and d m_t/m_n, `ContactSystem::splitting`), one
+//! iteration is
 //!
 //! > s ← projection of s − D w(s),
 //!
 //! a projected gradient step whose D is small enough for any pile. Impulses spread by one contact per iteration and are
-//! reduced by k, so many iterations are needed; but the result does not depend on an order of contacts.
+//! reduced by a factor of k, so many iterations are needed; but the result does not depend on an order of contacts.
 
 use super::contact_system::{BestIterate, ContactSystem, WorkVectors, projected};
 use super::stopping::{SolveReport, is_tested};

@@ -1,4 +1,5 @@
-//! The methods that solve a step's problem, one file or folder each. `method` lists their properties.
+//! The methods that find the impulses of a step's contact problem, one file or folder per method. `method` lists their
+//! properties.
 
 mod admm;
 mod apgd;
@@ -35,7 +36,7 @@ use super::method::Method;
 use super::problem::StepProblem;
 use super::settings::{FrictionModel, SolverSettings};
 
-/// Memory of the methods from one solve to the next. Results do not depend on it.
+/// Data that the methods keep from one solve to the next. Results do not depend on them.
 #[derive(Clone, Debug, Default)]
 pub struct Memory {
     nsgs_parallel: nsgs_parallel::BlockMemory,
@@ -45,7 +46,7 @@ pub struct Memory {
     vectors: WorkVectors,
 }
 
-/// Solves a prepared problem with the method of the settings.
+/// Solves a prepared contact problem with the method of the settings.
 pub(super) fn solve_by_method<M: Model>(
     problem: &mut StepProblem<M>,
     memory: &mut Memory,
@@ -57,7 +58,7 @@ pub(super) fn solve_by_method<M: Model>(
     }
 }
 
-/// Solves with `method`, which may differ from the method of the settings.
+/// Solves a contact problem with `method`, which may differ from the method of the settings.
 fn solve_by<M: Model>(
     method: Method,
     problem: &mut StepProblem<M>,
@@ -76,7 +77,7 @@ fn solve_by<M: Model>(
                 && problem.law.friction == 0.0
                 && problem.friction.model == FrictionModel::Coulomb =>
         {
-            // With friction bounds of 0 the problem is convex, and its solution is that of Coulomb's law.
+            // With friction bounds of 0 the problem is convex, and its solution is the solution under Coulomb's law.
             problem.begin_friction(FrictionModel::Tresca);
             let report =
                 interior_point::solve(problem, path, settings, |_, _| SolveReport::default());
@@ -96,7 +97,7 @@ fn solve_by<M: Model>(
     }
 }
 
-/// Solves any contact system from its present impulses with the method of the settings. Returns `None` if that method
+/// Solves a contact system from its present impulses with the method of the settings. Returns `None` if that method
 /// needs bodies.
 pub(crate) fn solve_system<S: ContactSystem>(
     system: &mut S,
@@ -105,7 +106,7 @@ pub(crate) fn solve_system<S: ContactSystem>(
 ) -> Option<SolveReport> {
     match settings.method {
         _ if system.is_empty() => Some(SolveReport::nothing_yet()),
-        // Without bodies there is nothing to factorise.
+        // Without bodies there is no matrix that Newton's method could factorise.
         Method::Nncg | Method::Auto => Some(nncg::solve(system, settings, vectors)),
         Method::Apgd => Some(apgd::solve(system, settings, vectors)),
         Method::Jacobi => Some(jacobi::solve(system, settings, vectors)),

@@ -1,4 +1,5 @@
-//! The outer loop of models of friction with lagged numbers (`problem::friction`), the same for all methods.
+//! The outer loop of friction models that keep numbers fixed during a solve (`problem::friction`), the same for all
+//! methods.
 
 use super::pass::{settles_in, sweep};
 use super::stopping::SolveReport;
@@ -6,14 +7,15 @@ use crate::solver::kinematics::Model;
 use crate::solver::problem::StepProblem;
 use crate::solver::settings::{FrictionModel, SolverSettings};
 
-/// Coulomb sweeps used to estimate the friction bounds, in two stages. The step is tested after each stage; most steps
-/// of a pile at rest are solved after the first. With fewer sweeps the bounds come from a state that is further from
-/// Coulomb's law, at 2,000 grains further than the result of a first solve. More sweeps cost more than the second solve
-/// they save.
+/// Numbers of Coulomb sweeps that estimate the friction bounds, in two stages. The stopping test is made after each
+/// stage; most steps of a pile at rest are solved after the first stage. With fewer sweeps the bounds are worse: at
+/// 2,000 grains they are further from Coulomb's law than the impulses of a first solve. More sweeps cost more than the
+/// second solve that they save.
 const SWEEPS_FOR_BOUNDS: [u32; 2] = [4, 46];
 
-/// Solves a problem with `solve_once` as often as the settings ask for, with the lagged numbers recomputed before each
-/// further solve. The step is solved if the last solve is; earlier solves only provide the lagged numbers.
+/// Solves a problem with `solve_once` as often as the settings ask for. Before each further solve it recomputes the
+/// friction bounds or opening speeds that stay fixed during a solve. The step is solved if the last solve has
+/// converged; earlier solves only provide these numbers.
 pub(super) fn solve_models<M: Model>(
     problem: &mut StepProblem<M>,
     settings: &SolverSettings,
@@ -35,7 +37,7 @@ pub(super) fn solve_models<M: Model>(
     report
 }
 
-/// Sweeps under Coulomb's law, and computes the friction bounds from the result.
+/// Performs sweeps under Coulomb's law, and computes the friction bounds of `tresca` from the result.
 fn take_bounds_from_sweeps<M: Model>(
     problem: &mut StepProblem<M>,
     settings: &SolverSettings,

@@ -1,32 +1,33 @@
-//! Semi-smooth Newton in body-velocity space, with a sparse direct factorisation.
+//! Semi-smooth Newton method for the velocities of bodies, with a sparse direct factorisation.
 //!
 //! The contact law is a fixed point of projections (`contact::law`). Regularised with a compliance ε it becomes, per
-//! contact and in reduced impulses,
+//! contact and in reduced impulses (shifted normal impulse σ and tangential impulse λ_t, m/s),
 //!
 //! > σ' = max(σ − u/ε, 0),  λ_t' = clamp(λ_t − v_t m_t/(m_n ε), ±μσ'),
 //!
-//! u = v_n + ρ v_n^{n−1}, with the velocities at the *end* of the Newton step. The present state gives a guess for each
-//! contact: open, stick or slip. Each guess makes the law linear, so impulses can be eliminated and velocities V
-//! remain:
+//! u = v_n + ρ v_n^{n−1}, with the velocities at the *end* of the Newton step. From the present impulses and velocities
+//! the method predicts the state of each contact: open, stick or slip. With a predicted state the law is linear, so
+//! impulses can be eliminated and the velocities V of the bodies remain:
 //!
 //! > M (V − V_free) = Σ m_ij [ n (σ' − c) + t λ_t' ],  c the capture speed,
 //!
 //! one sparse system with a D × D block per body: masses plus contact stiffnesses m_ij/ε. A slipping contact,
-//! λ_t' = ±μσ', adds the unsymmetric n + (±μ) t. The exact solution is a fixed point for any ε: a small ε converges in
-//! few steps, a larger ε is more robust if guesses keep changing. A rolling moment (`problem::rolling`) is one more
-//! clamp, ψ' = clamp(ψ − v_r/(W ε), ±μ_r σ'), with its own guess. After each step
+//! λ_t' = ±μσ', adds the unsymmetric term n + (±μ) t. The exact solution is a fixed point for any ε: a small ε
+//! converges in few steps, a larger ε is more robust if predicted states keep changing. A rolling moment
+//! (`problem::rolling`) is one more clamp, ψ' = clamp(ψ − v_r/(W ε), ±μ_r σ'), with its own predicted state. After each
+//! step
 //!
-//! 1. the impulses are projected on the law, and the velocities are formed from them;
-//! 2. a few Gauss–Seidel sweeps correct wrong guesses;
-//! 3. after the first factorisations, the contacts with most of the residual are also solved separately
+//! 1. the impulses are projected on the law, and the velocities are computed from them;
+//! 2. a few Gauss–Seidel sweeps correct wrong predictions;
+//! 3. after the first factorisations, the contacts that contribute most to the residual are also solved separately
 //!    (`nonlinear_elimination`).
 //!
 //! The unknown is the *change* of the velocities, and the load is the change of the impulses at the present velocities.
 //! If the velocities themselves were the unknown, rounding would leave an error of V·10⁻¹⁶ in them. Multiplied by the
-//! stiffness 1/ε twice, it would stall the residual of a fast pile at 10⁻⁴ … 10⁻⁷.
+//! stiffness 1/ε twice, this error would stall the residual of a fast pile at 10⁻⁴ … 10⁻⁷.
 //!
-//! The method is an augmented Lagrangian with generalised Newton steps (P. Alart, A. Curnier 1991), with ε adapted as
-//! in a trust region.
+//! The method is an augmented Lagrangian with generalised Newton steps (P. Alart, A. Curnier 1991). ε is adapted as in
+//! a trust region.
 
 use super::contact_system::{BodySystem, WorkVectors};
 use super::newton_terms::{Guess, RollingTerms, Terms, guess, guess_rolling};
@@ -41,50 +42,52 @@ use crate::solver::onlooker::{SolveProgress, is_ended};
 use crate::solver::problem::{StepProblem, residual};
 use crate::solver::settings::SolverSettings;
 
-/// Compliance of the first step.
+/// Compliance ε of the first Newton step, relative to the compliance of a contact.
 const FIRST_COMPLIANCE: f64 = 1e-7;
-/// At a smaller compliance, rounding in the factorisation cancels the gain.
+/// Minimum compliance ε. With a smaller ε, rounding in the factorisation cancels the gain.
 const SMALLEST_COMPLIANCE: f64 = 1e-7;
-/// At a larger compliance a Newton step is no better than sweeps, which then take over for a while.
+/// Maximum compliance ε. With a larger ε a Newton step is no better than sweeps, which then replace it for a while.
 const LARGEST_COMPLIANCE: f64 = 0.1;
-/// Factor of the compliance after an accepted step.
+/// Factor by which the compliance ε is multiplied after an accepted step.
 const AFTER_SUCCESS: f64 = 0.2;
-/// Factor of the compliance after a rejected step.
+/// Factor by which the compliance ε is multiplied after a rejected step.
 const AFTER_FAILURE: f64 = 10.0;
-/// Sweeps before the first factorisation: many steps of a pile at rest need no more.
+/// Number of sweeps before the first factorisation: many steps of a pile at rest need no more.
 const SWEEPS_FIRST: u32 = 4;
-/// Sweeps after each factorisation: they correct wrong guesses at a fraction of its cost.
+/// Number of sweeps after each factorisation: they correct wrong contact states at a fraction of the cost of a
+/// factorisation.
 const SWEEPS_AFTER: u32 = 4;
-/// Sweeps if Newton's method stalls, doubled each time up to [`MOST_SWEEPS_BETWEEN`].
+/// Number of sweeps that replace a Newton step if Newton's method stalls, doubled each time up to
+/// [`MOST_SWEEPS_BETWEEN`].
 const SWEEPS_BETWEEN: u32 = 20;
 const MOST_SWEEPS_BETWEEN: u32 = 200;
-/// Factorisations before contacts are also solved separately. If that starts with the first one, easy steps, which end
-/// before, take twice as long. Of 21,600 steps of 138 grains, solved to 1e-6, 1,339 are unsolved without elimination in
-/// 60 s, and 878, 961, 875, 893 and 921 with it after 0, 4, 8, 16 and 32 factorisations in 136, 124, 121, 120 and 100
-/// s.
+/// Number of factorisations before contacts are also solved separately (non-linear elimination). If elimination begins
+/// with the first factorisation, easy steps, which need few factorisations, take twice as long. Of 21,600 steps of 138
+/// grains, solved to 1e-6, 1,339 are unsolved without elimination in 60 s. With elimination after 0, 4, 8, 16 and 32
+/// factorisations, 878, 961, 875, 893 and 921 steps are unsolved in 136, 124, 121, 120 and 100 s.
 const FACTORISATIONS_FIRST: u32 = 8;
 
-/// Limits of Newton's method and of the conjugate gradients after it.
+/// Limits of Newton's method, and of the conjugate gradients that follow if it fails.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NewtonEffort {
-    /// Newton's method stops after this many factorisations that have not halved the best residual.
+    /// Number of factorisations that have not halved the best residual, after which Newton's method stops.
     pub patience: u32,
-    /// Sweeps of conjugate gradients after Newton's method, within the limit of the settings.
+    /// Maximum number of sweeps of conjugate gradients after Newton's method, within the limit of the settings.
     pub sweeps_after: u32,
 }
 
 impl NewtonEffort {
-    /// Effort up to the limit of the settings.
+    /// The limits of a solve that may use all sweeps of the settings.
     pub(super) const FULL: Self = Self { patience: 100, sweeps_after: u32::MAX };
 }
 
-/// A step is accepted if its residual is below [`ENOUGH`] times the largest of this many previous residuals: the
-/// residual may rise for a few steps on the way down. With 1, useful steps are rejected; with 15, many useless steps
-/// are accepted.
+/// Number of previous residuals that a step is compared with. A step is accepted if its residual is below [`ENOUGH`]
+/// times the largest of them: the residual may rise for a few steps on the way down. With 1, useful steps are rejected;
+/// with 15, many useless steps are accepted.
 const HISTORY: usize = 6;
 const ENOUGH: f64 = 0.99;
 
-/// One workspace for each number of degrees of freedom; unused ones hold no memory.
+/// One workspace for each number of degrees of freedom of a body. Unused workspaces allocate no memory.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NewtonMemory {
     one: NewtonWorkspace<1>,
@@ -92,19 +95,19 @@ pub(crate) struct NewtonMemory {
     three: NewtonWorkspace<3>,
 }
 
-/// Work memory for bodies with `D` degrees of freedom.
+/// Work memory of a solve whose bodies have `D` degrees of freedom.
 #[derive(Clone, Debug, Default)]
 struct NewtonWorkspace<const D: usize> {
     graph: ContactGraph,
     matrix: BlockMatrix<D>,
     vector: Vec<[f64; D]>,
     guesses: Vec<Guess>,
-    /// Guesses of the rolling moments of the rows; empty without rolling friction.
+    /// Predicted states of the rolling moments of the rows; empty without rolling friction.
     rolling_guesses: Vec<Guess>,
     alone: NonlinearElimination,
-    /// (σ, λ_t) of the rows at the last accepted state.
+    /// Impulses (σ, λ_t) of the rows after the last accepted step, m/s.
     saved: Vec<[f64; 2]>,
-    /// (σ, λ_t) of the smallest residual so far.
+    /// Impulses (σ, λ_t) of the rows with the smallest residual so far, m/s.
     best: Vec<[f64; 2]>,
 }
 
@@ -190,13 +193,13 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         self.go_on_without(report)
     }
 
-    /// Makes up to `sweeps` sweeps. Returns true if the stopping test is met.
+    /// Performs up to `sweeps` sweeps. Returns true if the stopping test is met.
     fn settles_in(&mut self, sweeps: u32, report: &mut SolveReport) -> bool {
         settles_in(self.problem, self.settings, sweeps, report)
     }
 
-    /// Uses the remaining sweeps for conjugate gradients after Newton's method has failed. They solve some of the
-    /// problems that it cannot solve, and they show whether a problem has no solution.
+    /// Uses the remaining sweeps for conjugate gradients after Newton's method has failed. Conjugate gradients solve
+    /// some of the problems that Newton's method cannot solve, and show whether a problem has no solution.
     fn go_on_without(self, report: SolveReport) -> SolveReport {
         let left = (self.settings.max_sweeps - report.sweeps).min(self.effort.sweeps_after);
         if left == 0 {
@@ -211,7 +214,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         }
     }
 
-    /// Guesses the states, solves for the velocities, and sets the impulses that go with them.
+    /// Predicts the states of the contacts, solves for the velocities, and sets the impulses that belong to them.
     fn newton_step(&mut self, compliance: f64) {
         assemble::<M, D>(self.problem, self.workspace, compliance);
         let NewtonWorkspace { graph, matrix, vector, .. } = &mut *self.workspace;
@@ -221,7 +224,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         self.problem.form_velocities();
     }
 
-    /// Sets the impulses to the regularised law at the new velocities, projected on the law.
+    /// Sets the impulses by the regularised law at the new velocities, projected on the contact law.
     fn take_impulses(&mut self, compliance: f64) {
         let NewtonWorkspace { graph, vector, guesses, rolling_guesses, .. } = &*self.workspace;
         let places = &graph.elimination.place_of;
@@ -287,7 +290,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
     }
 }
 
-/// Guesses the state of every contact, and assembles the resulting equations for the velocities.
+/// Predicts the state of every contact, and assembles the resulting linear equations for the velocities.
 fn assemble<M: Model, const D: usize>(
     problem: &StepProblem<M>,
     workspace: &mut NewtonWorkspace<D>,
@@ -348,16 +351,16 @@ fn assemble<M: Model, const D: usize>(
     }
 }
 
-/// History of the residual during a solve.
+/// History of the residual during a solve, which decides whether a step is accepted.
 struct ResidualHistory {
-    /// Residuals of the last accepted steps.
+    /// Residuals after the last accepted steps.
     history: [f64; HISTORY],
     accepted: usize,
     best: f64,
-    /// The last best residual that was below half of the milestone before it, so that a slow decrease does not count as
-    /// progress.
+    /// The last residual that was the best so far and below half of the milestone before it, so that a slow decrease
+    /// does not count as progress.
     milestone: f64,
-    /// Factorisations since the milestone.
+    /// Number of factorisations since the milestone.
     since_milestone: u32,
 }
 
@@ -368,12 +371,12 @@ impl ResidualHistory {
         Self { history, accepted: 0, best: residual, milestone: residual, since_milestone: 0 }
     }
 
-    /// A step must have a residual below this bound.
+    /// Returns the bound below which the residual of an accepted step must be.
     fn bound(&self) -> f64 {
         ENOUGH * self.history.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Accepts a state with this residual. Returns true if it is the best.
+    /// Records the residual of an accepted step. Returns true if it is the smallest so far.
     fn accept(&mut self, residual: f64) -> bool {
         self.accepted += 1;
         self.history[self.accepted % HISTORY] = residual;

@@ -1,22 +1,23 @@
-//! The equations of a step of Newton's method (`newton`): guesses of the states of contacts, and their contributions to
-//! the equations of bodies.
+//! The linear equations of a step of Newton's method (`newton`): predicted states of contacts, and the contributions of
+//! contacts to the equations of bodies.
 
 use crate::contact::ContactLaw;
 use crate::solver::kinematics::Model;
 use crate::solver::problem::{Rolling, Row};
 
-/// Guess of a contact's state, made from the present impulses and velocities. For a rolling moment, `Stick` and `Slip`
-/// mean below and at its bound.
+/// Predicted state of a contact, from the present impulses and velocities. For a rolling moment, `Stick` means below
+/// its bound and `Slip` at its bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Guess {
     Open,
     Stick,
-    /// The tangential impulse is at its bound, with this sign; 0 if the bound itself is 0.
+    /// The tangential impulse is at its bound and has this sign; 0 if the bound itself is 0.
     Slip(f64),
 }
 
 impl Guess {
-    /// The guess from the trial impulses: σ, and λ_t or ψ with its bound at this σ.
+    /// Predicts a state from trial impulses: `shifted` is σ, `trial` is λ_t or the rolling impulse ψ, and `bound` is
+    /// the friction bound of `trial` at this σ, all in m/s.
     fn new(shifted: f64, trial: f64, bound: f64) -> Self {
         if shifted <= 0.0 {
             return Self::Open;
@@ -28,7 +29,7 @@ impl Guess {
     }
 }
 
-/// The next state of a contact according to its law.
+/// Predicts the state of a contact at the end of a Newton step, from its relative velocities (v_n, v_t), m/s.
 pub(super) fn guess<M: Model>(
     law: &ContactLaw,
     row: &Row<M>,
@@ -40,7 +41,8 @@ pub(super) fn guess<M: Model>(
     Guess::new(shifted, row.tangential_impulse - compliance * tangential_velocity, bound)
 }
 
-/// The next state of the rolling moment of a contact with this v_n and v_r, m/s.
+/// Predicts the state of a contact's rolling moment from the contact's normal velocity v_n and rolling velocity v_r
+/// (`speed`), m/s.
 pub(super) fn guess_rolling<M: Model>(
     law: &ContactLaw,
     row: &Row<M>,
@@ -53,7 +55,8 @@ pub(super) fn guess_rolling<M: Model>(
     Guess::new(shifted, trial, rolling.bound(law, shifted))
 }
 
-/// The rolling moment of a contact: its v_r (m/s), its guess, and the compliance of the step.
+/// Data of a contact's rolling moment in a Newton step: its law and impulse (`rolling`), the rolling velocity v_r
+/// (`speed`, m/s), the predicted state (`guess`), and the regularisation ε of the step (`compliance`).
 pub(super) struct RollingTerms<'a> {
     pub rolling: &'a Rolling,
     pub speed: f64,
@@ -61,21 +64,21 @@ pub(super) struct RollingTerms<'a> {
     pub compliance: f64,
 }
 
-/// Contribution of a contact to the equations of one of its bodies.
+/// Contribution of a contact to the linear equations of one of its bodies in a Newton step.
 pub(super) struct Terms<const D: usize> {
-    /// Gradients of v_n and v_t with respect to the body's velocity.
+    /// Gradients of the contact's normal velocity v_n and (`tangent`) tangential velocity v_t by the body's velocity.
     normal: [f64; D],
     tangent: [f64; D],
-    /// Gradient of v_r; 0 without rolling friction.
+    /// Gradient of the contact's rolling velocity v_r by the body's velocity; 0 without rolling friction.
     rolling: [f64; D],
-    /// Direction of the impulse that responds to v_n: n, or n ± μt in slip, plus ±μ_r times the gradient of v_r if the
-    /// rolling moment is at its bound.
+    /// Direction of the impulse that responds to v_n: n, or n ± μt if the contact slips, plus ±μ_r times the gradient
+    /// of v_r if the rolling moment is at its bound.
     answer: [f64; D],
-    /// Stiffnesses of the response to v_n, v_t and v_r, kg.
+    /// Stiffnesses of the contact's response to v_n, and (next two fields) to v_t and to the rolling velocity v_r, kg.
     normal_stiffness: f64,
     tangential_stiffness: f64,
     rolling_stiffness: f64,
-    /// Change of the impulse at the present velocities, kg·m/s.
+    /// Change of the impulse on the body at the present velocities, kg·m/s.
     load: [f64; D],
 }
 
@@ -123,7 +126,8 @@ impl<const D: usize> Terms<D> {
         }
     }
 
-    /// Adds the rolling moment to the equations of i, or of j if `on_j`; the contact has this v_n, m/s.
+    /// Adds the rolling moment of a contact to the equations of body j (`on_j`) or body i. The contact has the normal
+    /// velocity `normal_velocity`, m/s.
     #[inline(always)]
     pub(super) fn add_rolling<M: Model>(
         &mut self,
@@ -155,7 +159,7 @@ impl<const D: usize> Terms<D> {
         }
     }
 
-    /// Adds to `block` the stiffness that couples this body's equations to the velocity of `other`.
+    /// Adds to `block` the stiffness that couples the equations of this body to the velocity of the body of `other`.
     #[inline(always)]
     pub(super) fn add<M: Model>(&self, block: &mut [[f64; D]; D], other: &Self) {
         for (row, entries) in block.iter_mut().enumerate() {

@@ -1,15 +1,15 @@
 //! Non-smooth non-linear conjugate gradients (M. Silcowitz, S. Niebe, K. Erleben, *A nonsmooth nonlinear conjugate
 //! gradient method for interactive contact force problems*, 2010).
 //!
-//! A Gauss–Seidel sweep G maps impulses s to G(s), and its fixed points are solutions. If the sweep is read as a
+//! A Gauss–Seidel sweep G maps impulses s to G(s), and its fixed points are solutions. If the sweep is regarded as a
 //! descent step, r = G(s) − s is a preconditioned negative gradient, and two sweeps can be combined as the
 //! Fletcher–Reeves method combines gradients:
 //!
 //! > r_k = G(s_k) − s_k,  β = ‖r_k‖²/‖r_{k−1}‖²,  s_{k+1} = G(s_k) + β p_{k−1},  p_k = r_k + β p_{k−1}.
 //!
-//! If the gradient has grown (β > 1), the direction is reset and the plain sweep is kept. The sweep solves Coulomb's
-//! law itself, and so does the method. Impulses that leave the cone by extrapolation are projected by the next sweep,
-//! and the result is always that of a sweep.
+//! If the gradient has grown (β > 1), the direction p is reset and the result of the sweep is kept without
+//! extrapolation. The sweep solves Coulomb's law, and so does the method. If extrapolation moves impulses out of the
+//! friction cone, the next sweep projects them, and the final result is always the result of a sweep.
 
 use super::contact_system::{BestIterate, ContactSystem, WorkVectors, dot};
 use super::stopping::{SolveReport, is_tested};
@@ -43,7 +43,7 @@ pub(super) fn solve<S: ContactSystem>(
             swept.iter().zip(&*impulses).map(|(now, old)| [now[0] - old[0], now[1] - old[1]]),
         );
         let squared = dot(step, step);
-        // NaN compares false, so it does not extrapolate.
+        // NaN compares false, so a factor of NaN does not extrapolate.
         let factor = squared / squared_before;
         let extrapolates = factor <= 1.0 && sweeps < settings.max_sweeps;
         squared_before = squared;

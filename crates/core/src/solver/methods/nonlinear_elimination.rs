@@ -1,12 +1,12 @@
-//! Non-linear elimination: before the next linearisation, the few contacts with most of the residual are solved
-//! separately, with the rest of the pile fixed (P. Lanzkron, D. Rose, J. Wilkes 1996; X.-C. Cai, X. Li 2011).
+//! Non-linear elimination: before the next linearisation, the few contacts that contribute most to the residual are
+//! solved separately, with the rest of the pile fixed (P. Lanzkron, D. Rose, J. Wilkes 1996; X.-C. Cai, X. Li 2011).
 //!
 //! The result is kept only if it reduces the residual of the whole pile. In an overfull box, contacts that are solved
 //! separately push each other harder and harder; without this condition discs kept moving at 7 √(g d).
 //!
-//! A few contacts that change between sticking, sliding and opening make a Newton step short for all the others. Of 300
-//! steps of 2,000 collapsing grains, solved to 1e-3 under Coulomb's law, 0, 11 and 22 are unsolved at Bond 0, 20 and 50
-//! without elimination, and 0, 6 and 15 with it, in 1.4 times the time.
+//! A few contacts that change between sticking, sliding and opening shorten the Newton step for all other contacts. Of
+//! 300 steps of 2,000 collapsing grains, solved to 1e-3 under Coulomb's law, 0, 11 and 22 are unsolved at Bond 0, 20
+//! and 50 without elimination. With elimination 0, 6 and 15 steps are unsolved, in 1.4 times the time.
 
 use super::sweep::ImpulseChange;
 use crate::solver::kinematics::Model;
@@ -14,31 +14,35 @@ use crate::solver::problem::{
     ContactRows, CoulombFriction, FrictionProjection, StepProblem, errors, law_of_row, residual,
 };
 
-/// Fraction of the squared residual that the selected contacts have together.
+/// Fraction of the squared residual of all contacts that the selected contacts must have together.
 const HELD: f64 = 0.9;
-/// Sweeps over the selected contacts. Of 21,600 steps of 138 grains, solved to 1e-6 with elimination from the first
-/// factorisation on, 1,339 are unsolved with no such sweeps, 1,152 with 30, 878 with 100 and 759 with 300, in 1, 1.5,
-/// 2.1 and 3.9 times the time.
+/// Number of sweeps over the selected contacts. Of 21,600 steps of 138 grains, solved to 1e-6 with elimination from the
+/// first factorisation on, 1,339 are unsolved with 0 sweeps, 1,152 with 30, 878 with 100 and 759 with 300 sweeps, in 1,
+/// 1.5, 2.1 and 3.9 times the time.
 const SWEEPS: u32 = 100;
 
-/// The contacts that are solved separately. Only its memory is kept between calls.
+/// Work memory of the non-linear elimination: the contacts that are solved separately. Its contents are not kept from
+/// one call to the next.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NonlinearElimination {
-    /// Squared residual of each row, (N·s)², and the numbers of the rows from the largest to the smallest.
+    /// Squared residual of each contact, (N·s)². `by_square` has the numbers of the contacts from the largest to the
+    /// smallest.
     squares: Vec<f64>,
     by_square: Vec<usize>,
-    /// For each body: true if it has a selected contact; below, true if it has one or touches such a body.
+    /// True for each body with a contact that is selected for a separate solution. `around` is true also for each body
+    /// that touches such a body.
     at: Vec<bool>,
     around: Vec<bool>,
     fixed: Vec<usize>,
     pairs: Vec<usize>,
-    /// (σ, λ_t) of the rows before the elimination.
+    /// Impulses (σ, λ_t) of the rows before the elimination, m/s.
     saved: Vec<[f64; 2]>,
 }
 
 impl NonlinearElimination {
-    /// Solves under Coulomb's law all contacts of the bodies with most of the residual and of their neighbours. Reports
-    /// do not count these sweeps, which cover only a part of the pile.
+    /// Selects the bodies of the contacts that contribute most to the residual, and solves all contacts of these bodies
+    /// and of their neighbours under Coulomb's law. The reported number of sweeps does not include these sweeps,
+    /// because they visit only a few contacts of the pile.
     pub(super) fn apply<M: Model>(&mut self, problem: &mut StepProblem<M>) {
         let before = residual(problem);
         problem.rows.read_impulses(&mut self.saved);
@@ -74,7 +78,7 @@ impl NonlinearElimination {
                 }
             }
         }
-        // NaN compares false, so it counts as no progress.
+        // NaN compares false, so a residual of NaN counts as no progress.
         let is_better = residual(problem) < before;
         if !is_better {
             problem.write_impulses(self.saved.iter().copied());
@@ -153,7 +157,7 @@ mod tests {
     fn what_one_contact_holds_is_solved_there_and_nowhere_else() {
         for seed in 0..20 {
             let law = ContactLaw::new(0.4, 0.1, FrictionCone::Shifted);
-            // The bodies of a contact are at most two numbers apart, so bodies with distant numbers are far from each
+            // The numbers of a contact's bodies differ by at most two, so bodies with distant numbers are far from each
             // other.
             let mut problem = random_problem::<SpinningPlane>(seed, law, 60, 120, 3, 0.0..0.3);
             for _ in 0..2_000 {

@@ -2,7 +2,7 @@
 //! result from the previous updates.
 //!
 //! For solid discs the local Delassus block is diagonal (W_nt = 0), so a contact's solution is two scalar projections
-//! (`methods::sweep`). Models of friction with lagged numbers (`problem::friction`) use the projection of the model.
+//! (`methods::sweep`). Friction models other than Coulomb's law (`problem::friction`) have their own projections.
 
 use super::model_solves::solve_models;
 use super::pass::{sweep_by, sweep_of_model};
@@ -12,7 +12,7 @@ use crate::solver::method::Ordering;
 use crate::solver::problem::{StepProblem, natural_map, with_projection};
 use crate::solver::settings::{FrictionModel, SolverSettings};
 
-/// Solves a prepared problem by sweeps, under the model of friction that it was prepared for.
+/// Solves a prepared problem by Gauss–Seidel sweeps, under the problem's friction model.
 pub(super) fn solve<M: Model>(
     problem: &mut StepProblem<M>,
     settings: &SolverSettings,

@@ -1,4 +1,4 @@
-//! Gauss–Seidel passes over all contacts of a problem, with or without the stopping test.
+//! Gauss–Seidel sweeps over all contacts of a problem, with or without a stopping test.
 
 use super::stopping::{SolveReport, is_settled};
 use super::sweep::ImpulseChange;
@@ -10,8 +10,7 @@ use crate::solver::problem::{
 };
 use crate::solver::settings::{FrictionModel, SolverSettings};
 
-/// Makes one sweep under the model of friction that a problem was prepared for. Returns true if the stopping test is
-/// met after it.
+/// Performs one sweep under the friction model of a problem. Returns true if the stopping test is met after the sweep.
 pub(super) fn sweep_of_model<M: Model>(
     problem: &mut StepProblem<M>,
     settings: &SolverSettings,
@@ -20,7 +19,7 @@ pub(super) fn sweep_of_model<M: Model>(
     with_projection!(problem, M, P => tested::<M, P>(problem, settings, backward))
 }
 
-/// Makes up to `sweeps` sweeps under the model of friction of a problem. Returns true if the stopping test is met.
+/// Performs up to `sweeps` sweeps under the friction model of a problem. Returns true if the stopping test is met.
 pub(super) fn settles_in<M: Model>(
     problem: &mut StepProblem<M>,
     settings: &SolverSettings,
@@ -37,7 +36,7 @@ pub(super) fn settles_in<M: Model>(
     report.converged
 }
 
-/// Makes one sweep under Coulomb's law. Returns true if the stopping test is met after it.
+/// Performs one sweep under Coulomb's law. Returns true if the stopping test is met after the sweep.
 pub(super) fn tested_sweep<M: Model>(
     problem: &mut StepProblem<M>,
     settings: &SolverSettings,
@@ -66,7 +65,7 @@ fn tested<M: Model, P: FrictionProjection>(
     is_settled(problem, change, mean_mass, settings, squares, residual, of_velocities)
 }
 
-/// One pass over all contacts under Coulomb's law.
+/// Performs one sweep over all contacts under Coulomb's law. Returns the change of the impulses if `MEASURE` is set.
 pub fn sweep<M: Model, const MEASURE: bool>(problem: &mut StepProblem<M>) -> ImpulseChange {
     if problem.has_one_simple_law() {
         sweep_by::<M, CoulombFriction<true>, MEASURE>(problem, false)
@@ -75,7 +74,7 @@ pub fn sweep<M: Model, const MEASURE: bool>(problem: &mut StepProblem<M>) -> Imp
     }
 }
 
-/// One pass over all contacts; from the last to the first if `backward`.
+/// Performs one sweep over all contacts under the friction model `P`; from the last contact to the first if `backward`.
 pub(super) fn sweep_by<M: Model, P: FrictionProjection, const MEASURE: bool>(
     problem: &mut StepProblem<M>,
     backward: bool,
@@ -91,8 +90,8 @@ pub(super) fn sweep_by<M: Model, P: FrictionProjection, const MEASURE: bool>(
     pass::<M, P, MEASURE, false>(problem, backward)
 }
 
-/// Performs the same operations in the same order, with bitwise the same result. The three-operand encoding of AVX
-/// saves copies that the older encoding needs.
+/// Does the work of `pass` with the AVX instructions: the same operations in the same order, so that the result is
+/// bitwise the same. The three-operand encoding of AVX saves copies that the older encoding needs.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx")]
 fn pass_with_avx<M: Model, P: FrictionProjection, const MEASURE: bool>(
@@ -102,8 +101,8 @@ fn pass_with_avx<M: Model, P: FrictionProjection, const MEASURE: bool>(
     pass::<M, P, MEASURE, false>(problem, backward)
 }
 
-/// One pass over all contacts. If walls are driven (`problem::walls`), a contact's impulse changes the velocity of its
-/// wall at once, and each contact is solved with the compliance of its wall as well as of its grain.
+/// Performs one sweep over all contacts. If walls are driven (`problem::walls`), the impulse of a contact changes the
+/// velocity of its wall at once, and each contact is solved with the compliance of its wall as well as of its grain.
 #[inline(always)]
 fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool>(
     problem: &mut StepProblem<M>,
@@ -116,7 +115,7 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
     let own_numbers = [&**frictions, captures];
     let walls = &mut problem.walls;
     let first_pair = fixed.len();
-    // The list is empty without rolling friction.
+    // Without rolling friction the list of rolling resistances is empty.
     let fixed_count = first_pair.min(rolling.len());
     let (rolling_fixed, rolling_pairs) = rolling.split_at_mut(fixed_count);
     let law_of = |number| if P::TAKES_PAIRS { law_of_row(own_numbers, number, &law) } else { law };
@@ -173,8 +172,9 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
     change
 }
 
-/// Solves the contact of a grain with a driven wall, and returns the change of (λ_n, λ_t). If the wall moves obliquely,
-/// a normal impulse also moves it along the tangent, so the tangential velocity is read after the normal update.
+/// Solves the contact of a grain with a driven wall. Returns the change of the impulses (λ_n, λ_t) divided by the
+/// effective mass, m/s. If the wall moves obliquely, a normal impulse also changes the wall's speed along the tangent,
+/// so the tangential velocity is computed after the normal update.
 fn solve_driven<M: Model>(
     project: impl Fn([f64; 2]) -> [f64; 2],
     row: &mut FixedRow<M>,

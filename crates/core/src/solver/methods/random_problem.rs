@@ -9,9 +9,10 @@ use crate::contact::ContactLaw;
 use crate::solver::kinematics::Model;
 use crate::solver::problem::{FixedRow, PairRow, Row, StepProblem};
 
-/// Random contacts between bodies of different masses. The numbers of the two bodies differ by less than `reach`; every
-/// sixth contact is with a fixed body. `added` is the range of the term added to v_n: if it is positive, the problem
-/// has a solution, because no contact forces anything to move.
+/// Returns a problem with random contacts between bodies of different masses. The numbers of the two bodies of a
+/// contact differ by less than `reach`; every sixth contact is with a fixed body. `added` is the range of the
+/// restitution terms added to v_n, m/s. If it is positive, the problem has a solution, because bodies at rest
+/// violate no contact.
 pub(super) fn random_problem<M: Model>(
     seed: u64,
     law: ContactLaw,

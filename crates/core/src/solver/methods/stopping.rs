@@ -1,13 +1,14 @@
 //! Stopping tests, and the report of a solve.
 //!
-//! **A stalled solve** must be distinguished from one that was stopped too early. The restitution term ρ v^{n−1} can
-//! ask wedged contacts for velocities that their neighbours do not allow. Such a problem has no solution: the residual
-//! of any iteration falls to a floor and stays there, while impulses drift. In a problem that is merely slow to solve,
-//! doubling the number of sweeps clearly reduces the residual: if eight digits take 1e5 sweeps, the residual still
-//! falls by a third from 2,048 sweeps to 4,096. So the residual is checked each time the number of sweeps has doubled.
+//! **A stalled solve** must be distinguished from a solve that was stopped too early. The restitution term ρ v^{n−1}
+//! can demand velocities of wedged contacts that their neighbours do not allow. Such a problem has no solution: the
+//! residual of any iteration falls to a floor and remains there, while impulses drift. In a problem that is merely slow
+//! to solve, doubling the number of sweeps clearly reduces the residual: if eight digits take 1e5 sweeps, the residual
+//! still falls by a third from 2,048 sweeps to 4,096. So the residual is compared each time the number of sweeps has
+//! doubled.
 //!
-//! A stall is a property of a method: sometimes Newton's method finds a solution although Gauss–Seidel stalls. There is
-//! a floor only if all methods stall.
+//! A stall is a property of a method: sometimes Newton's method finds a solution although Gauss–Seidel stalls. The
+//! problem has no solution only if all methods stall.
 
 use super::sweep::ImpulseChange;
 use crate::solver::onlooker::{SolveProgress, is_ended};
@@ -17,23 +18,24 @@ use crate::solver::settings::{SolverSettings, StopTest};
 /// The outcome of a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SolveReport {
-    /// Number of sweeps, or iterations if the method has no sweeps.
+    /// Number of sweeps, or of iterations if the method has no sweeps.
     pub sweeps: u32,
-    /// Number of factorisations.
+    /// Number of matrix factorisations.
     pub factorisations: u32,
     /// True if the stopping test was met.
     pub converged: bool,
-    /// True if a solve that did not converge has stalled, rather than being stopped too early.
+    /// True if a solve did not converge because it stalled; false if it was stopped too early.
     pub stalled: bool,
 }
 
 impl SolveReport {
-    /// Report before the first solve, and of a step without contacts: no work, converged.
+    /// Returns the report of no work, which counts as converged: before the first solve, and for a step without
+    /// contacts.
     pub(crate) fn nothing_yet() -> Self {
         Self { converged: true, ..Self::default() }
     }
 
-    /// Adds another solve of the same step. The step has stalled if one of its solves has.
+    /// Adds the report of another solve of the same step. The step has stalled if one of its solves has stalled.
     pub fn add(&mut self, other: Self) {
         self.sweeps += other.sweeps;
         self.factorisations += other.factorisations;
@@ -41,7 +43,8 @@ impl SolveReport {
         self.stalled |= other.stalled;
     }
 
-    /// This report with the sweeps and factorisations of earlier solves added, whose outcome it replaces.
+    /// Returns this report with the sweeps and factorisations of earlier solves added. The outcome of the earlier
+    /// solves is dropped.
     pub(crate) fn after(self, earlier: Self) -> Self {
         Self {
             sweeps: self.sweeps + earlier.sweeps,
@@ -51,10 +54,11 @@ impl SolveReport {
     }
 }
 
-/// After this many sweeps only every [`TEST_INTERVAL`]th sweep is tested, because a sweep that also measures itself
-/// costs more. A smaller number makes steps with a good start more expensive.
+/// Number of sweeps that are each followed by a stopping test. Of the later sweeps only every [`TEST_INTERVAL`]th is
+/// tested, because a sweep that also measures its change costs more. With a smaller number, steps with good initial
+/// impulses take more sweeps than they need.
 const SWEEPS_TESTED_EACH: u32 = 16;
-/// Sweeps between two tests of a long solve, and thus the limit of unnecessary sweeps.
+/// Number of sweeps between two stopping tests of a long solve, and thus the limit of unnecessary sweeps.
 const TEST_INTERVAL: u32 = 8;
 
 /// Returns true if the stopping test is made after sweep (or iteration) number `sweeps`, counted from 1.
@@ -65,8 +69,9 @@ pub(super) fn is_tested(sweeps: u32, settings: &SolverSettings) -> bool {
         || settings.stop == StopTest::ImpulsePerMass
 }
 
-/// Sweeps over `problem` until `sweep` returns true because the stopping test is met, until the solve stalls, or up to
-/// the limit. `sweep` gets the number of the sweep, counted from 1.
+/// Calls `sweep` until it returns true (the stopping test is met), until the solve stalls, or up to the maximum number
+/// of sweeps. The argument of `sweep` is the number of the sweep, counted from 1. `residual` returns the present
+/// residual.
 pub(in crate::solver) fn sweep_until_settled<P>(
     problem: &mut P,
     settings: &SolverSettings,
@@ -88,8 +93,9 @@ pub(in crate::solver) fn sweep_until_settled<P>(
     SolveReport { sweeps, stalled, ..SolveReport::default() }
 }
 
-/// Returns true if the stopping test is met after a sweep with this change. The test uses the mean mass of the grains
-/// (kg), Σ P² ((N·s)²), the residual or the velocity error.
+/// Returns true if the stopping test is met after a sweep with the impulse change `change`. The other arguments are the
+/// quantities that the four tests need: the mean mass of the grains (kg), the sum of the squared impulses Σ P²
+/// ((N·s)²), the residual, and the velocity error.
 pub(super) fn is_settled<P>(
     problem: &mut P,
     change: ImpulseChange,
@@ -101,7 +107,7 @@ pub(super) fn is_settled<P>(
 ) -> bool {
     let tolerance = settings.tolerance;
     match settings.stop {
-        // An infinite change compares as no larger than infinite impulses, but is not converged.
+        // An infinite change is not converged, although it is not larger than infinite impulses.
         StopTest::RelativeChange => {
             change.squared.is_finite()
                 && change.squared <= tolerance * tolerance * squared_impulses(problem)
@@ -112,18 +118,19 @@ pub(super) fn is_settled<P>(
     }
 }
 
-/// Number of sweeps at the first check; before that all problems look alike.
+/// Number of sweeps at the first comparison of residuals; with fewer sweeps all problems look alike.
 const FIRST_LOOK: u32 = 512;
-/// A residual above this fraction of the residual at half as many sweeps counts as flat.
+/// Ratio of the residual to the residual after half as many sweeps, at or above which the residual counts as flat.
 const FLAT: f64 = 0.95;
-/// Number of flat checks in a row that end a solve to a residual. With 1, a solve that only pauses would end, too.
+/// Number of consecutive flat comparisons that end a solve to a residual or velocity error. With 1, a solve that only
+/// pauses would end, too.
 const LOOKS_IN_VAIN: u32 = 2;
 
-/// History of the residual during a solve.
+/// History of the residual during a solve, to detect a stall.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StallWatch {
     next_look: u32,
-    /// Residuals of the last two checks, the older one first.
+    /// The residuals of the last two comparisons, the older one first.
     looks: [f64; 2],
     in_vain: u32,
 }
@@ -135,9 +142,9 @@ impl Default for StallWatch {
 }
 
 impl StallWatch {
-    /// Checks the residual each time the number of sweeps has doubled. Returns true if the solve should stop: because
-    /// an onlooker ends it, or because a solve to a residual or velocity error has stalled. With other stopping tests,
-    /// which are those of published schemes, a stalled solve continues.
+    /// Computes the residual each time the number of sweeps has doubled. Returns true if the solve should stop: because
+    /// an onlooker ends it, or because a solve to a residual or velocity error has stalled. With the other stopping
+    /// tests, which belong to published schemes, a stalled solve continues.
     pub(super) fn look(
         &mut self,
         sweeps: u32,
@@ -157,8 +164,8 @@ impl StallWatch {
         self.in_vain >= LOOKS_IN_VAIN && settings.stop.judges_solutions()
     }
 
-    /// Returns true if a solve that ended unsolved after this many sweeps with this residual has stalled. The residual
-    /// is compared with the last check at no more than half as many sweeps.
+    /// Returns true if a solve has stalled that ended without a solution after this many sweeps with this residual. The
+    /// residual is compared with the last recorded residual after at most half as many sweeps.
     pub(super) fn has_stalled(&self, sweeps: u32, residual: f64) -> bool {
         let last_look = self.next_look / 2;
         let before = if 2 * last_look <= sweeps { self.looks[1] } else { self.looks[0] };

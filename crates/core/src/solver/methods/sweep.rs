@@ -1,18 +1,19 @@
 //! The update of one contact in a Gauss–Seidel sweep, or of several contacts that share no grain.
 //!
-//! In reduced impulses (`contact::law`, `solver::kinematics`):
+//! In reduced impulses (`contact::law`, `solver::kinematics`), with the shifted normal impulse σ, the tangential
+//! impulse λ_t, the relative velocities v_n and v_t of the contact and the effective masses m_n and m_t, the update is
 //!
 //! > σ ← max(σ − (v_n + ρ v_n^{n−1}), 0),  λ_t ← clamp(λ_t − v_t · m_t/m_n, ±bound(σ)).
 //!
-//! The normal impulse does not change v_t, so both velocities are read once. Other models of friction use another
-//! projection of the same trial impulses (`problem::friction`).
+//! The normal impulse does not change v_t, so both velocities are computed once. Friction models other than Coulomb's
+//! law use another projection of the same trial impulses (`problem::friction`).
 
 use crate::contact::{ContactLaw, Lanes};
 use crate::solver::kinematics::Model;
 use crate::solver::problem::{FixedRow, PairRow, Rolling, Row};
 
-/// The data of a row that an update needs, except the impulses; with several lanes, one row per lane. Units as in
-/// [`Row`].
+/// The data that the update of a contact needs, except the impulses, in the units of [`Row`]. With several SIMD lanes,
+/// one contact per lane.
 #[derive(Clone, Copy)]
 pub(crate) struct Local<M: Model, T: Lanes> {
     pub normal: M::Normal<T>,
@@ -20,17 +21,17 @@ pub(crate) struct Local<M: Model, T: Lanes> {
     pub effective_mass: T,
 }
 
-/// Change of the impulses in a sweep; zero if it was not measured. With several lanes, one change per lane.
+/// Change of the impulses in a sweep; 0 if it was not measured. With several SIMD lanes, one change per lane.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ImpulseChange<T = f64> {
-    /// Σ ΔP², (N·s)².
+    /// Sum of the squared changes of the impulses Σ ΔP², (N·s)².
     pub squared: T,
-    /// Σ |ΔP|, N·s.
+    /// Sum of the absolute changes of the impulses Σ |ΔP|, N·s.
     pub absolute: T,
 }
 
 impl ImpulseChange {
-    /// Adds the change of other contacts.
+    /// Adds the change of the impulses of other contacts.
     pub(crate) fn add_all(&mut self, other: Self) {
         self.squared += other.squared;
         self.absolute += other.absolute;
@@ -38,7 +39,7 @@ impl ImpulseChange {
 }
 
 impl<T: Lanes> ImpulseChange<T> {
-    /// Adds a change of (λ_n, λ_t) of a contact with effective mass `mass`, if `MEASURE` is set.
+    /// Adds a change of the impulses (λ_n, λ_t), divided by the effective mass `mass` (kg), m/s, if `MEASURE` is set.
     #[inline(always)]
     pub(crate) fn add<M: Model, const MEASURE: bool>(
         &mut self,
@@ -59,14 +60,16 @@ impl<T: Lanes> ImpulseChange<T> {
 }
 
 impl<M: Model, T: Lanes> Local<M, T> {
-    /// (v_n, v_t) of grains i against fixed bodies, as in [`FixedRow::velocity`], m/s.
+    /// Returns the velocities (v_n, v_t) of grains at contacts with fixed bodies, defined as in [`FixedRow::velocity`],
+    /// m/s.
     #[inline(always)]
     pub(crate) fn velocity(&self, surface_speed: T, i: &M::Body<T>) -> [T; 2] {
         let [normal, tangential] = M::velocity(self.normal, i);
         [normal, tangential - surface_speed]
     }
 
-    /// Solves contacts of grains i with fixed bodies; `impulse` is (σ, λ_t).
+    /// Solves contacts of grains with fixed bodies: updates the impulses (σ, λ_t), m/s, and the velocities of the
+    /// grains.
     #[inline(always)]
     pub(crate) fn solve_fixed<const MEASURE: bool>(
         &self,
@@ -81,7 +84,8 @@ impl<M: Model, T: Lanes> Local<M, T> {
         change.add::<M, MEASURE>(self.effective_mass, pushed);
     }
 
-    /// Solves contacts between grains i and j; `share` is g_i.
+    /// Solves contacts between grains i and j: updates the impulses (σ, λ_t) and the velocities. `share` is
+    /// g_i = m_ij/m_i.
     #[inline(always)]
     pub(crate) fn solve_pair<const MEASURE: bool>(
         &self,
@@ -97,7 +101,7 @@ impl<M: Model, T: Lanes> Local<M, T> {
         change.add::<M, MEASURE>(self.effective_mass, pushed);
     }
 
-    /// Solves contacts at the given (v_n, v_t) and returns the change of (λ_n, λ_t).
+    /// Updates the impulses (σ, λ_t) of contacts with the velocities (v_n, v_t). Returns the change of (λ_n, λ_t), m/s.
     #[inline(always)]
     fn update(
         &self,
@@ -120,7 +124,8 @@ impl<M: Model, T: Lanes> Local<M, T> {
 }
 
 impl<M: Model> FixedRow<M> {
-    /// Solves the contact of a body with a fixed body.
+    /// Updates the impulses of this contact of a grain with a fixed body by the contact law, and the velocity of the
+    /// grain.
     #[inline(always)]
     pub(crate) fn solve<const MEASURE: bool>(
         &mut self,
@@ -137,7 +142,7 @@ impl<M: Model> FixedRow<M> {
 }
 
 impl<M: Model> PairRow<M> {
-    /// Solves the contact between two bodies.
+    /// Updates the impulses of this contact between two grains by the contact law, and the velocities of the grains.
     #[inline(always)]
     pub(crate) fn solve<const MEASURE: bool>(
         &mut self,
@@ -156,7 +161,8 @@ impl<M: Model> PairRow<M> {
 }
 
 impl<M: Model> Row<M> {
-    /// Solves the rolling resistance of the contact after its (σ, λ_t); `share` is g_i, or `None` against a fixed body.
+    /// Updates the rolling impulse of the contact after its impulses (σ, λ_t). `share` is the mass ratio
+    /// g_i = m_ij/m_i, or `None` against a fixed body.
     #[inline(always)]
     pub(crate) fn solve_rolling<const MEASURE: bool>(
         &self,

@@ -1,11 +1,12 @@
-//! Detects impulses of the step before that are wedged by friction, from which no solve should start.
+//! Detects impulses of the previous step that are wedged by friction. No solve should start from such impulses.
 //!
 //! Discs in a ring, or in a box that is too small for them, can press on each other with any force if friction holds
-//! them, and no velocity shows it: such impulses are in the null space of the problem. A warm start keeps the wedged
-//! impulses of an unsolved step. Products of huge impulses and rounding errors of velocities then look like an error.
-//! The path of the interior point leads to the middle of all such impulses. If the friction bounds come from these
-//! impulses, the middle moves: for three discs, whose |λ| = σ tan 30° stays within the μσ of the solve before, by a
-//! factor of μ per solve. So above a certain μ impulses would grow from step to step until rounding stops the solve.
+//! them, without any effect on velocities: such impulses are in the null space of the problem. A warm start keeps the
+//! wedged impulses of an unsolved step. Products of huge impulses and rounding errors of velocities then look like an
+//! error. The interior point's path leads to the middle of all such impulses. If the friction bounds are computed from
+//! these impulses, the middle moves: for three discs, whose |λ| = σ tan 30° stays within the bound μσ of the solve
+//! before, by a factor of μ per solve. So above a certain μ impulses would grow from step to step until rounding stops
+//! the solve.
 
 use glam::DVec2;
 
@@ -13,15 +14,16 @@ use crate::solver::kinematics::Model;
 use crate::solver::problem::{Bodies, StepProblem};
 use crate::solver::settings::FrictionModel;
 
-/// Above this μ the friction bounds of a step are assumed to come from wedged impulses. At μ = 2.5 the impulses of
-/// piles stay at 9 to 100 grain weights in the root mean square (5 to 7 from a cold start), the more the higher Bond
-/// is; at μ = 3 and Bond 20 they grow to 3e4 in 0.3 s.
+/// Friction coefficient μ above which the friction bounds of a step are assumed to come from wedged impulses. At
+/// μ = 2.5 the root mean square of the impulses of piles stays at 9 to 100 grain weights (5 to 7 from a cold start) and
+/// rises with Bond; at μ = 3 and Bond 20 the impulses grow to 3e4 grain weights in 0.3 s.
 const WEDGING_FRICTION: f64 = 2.0;
-/// A contact is wedged if its impulse is more than this many times the total momentum that contacts give the bodies.
-/// Levers and arches multiply the impulse only a few times.
+/// Ratio of a contact's impulse to the sum of the momenta that contacts give to the bodies, above which the contact
+/// counts as wedged. Levers and arches multiply the impulse only a few times.
 const WEDGED: f64 = 3.0;
 
-/// Returns true if friction may have wedged the impulses that a solve would start from.
+/// Returns true if friction may have wedged bodies between each other, so that the initial impulses of a solve are much
+/// larger than the momenta of the bodies require.
 pub(super) fn is_wedged<M: Model>(problem: &StepProblem<M>) -> bool {
     let model = problem.friction.model;
     if !M::FRICTION || !matches!(model, FrictionModel::Coulomb | FrictionModel::Tresca) {
@@ -42,7 +44,7 @@ pub(super) fn is_wedged<M: Model>(problem: &StepProblem<M>) -> bool {
         .any(|(number, row)| row.effective_mass * problem.reduced_impulse(number, row)[0] > most)
 }
 
-/// Resets the impulses of the step before, for a cold start.
+/// Sets the impulses of all contacts to 0 for a cold start, instead of the impulses of the previous step.
 pub(super) fn start_cold<M: Model>(problem: &mut StepProblem<M>) {
     for number in 0..problem.rows.len() {
         let capture_speed = problem.capture(number);

@@ -1,30 +1,34 @@
-//! Models of friction with lagged numbers, which stay fixed while a step is solved and make the problem convex.
+//! Friction models that replace Coulomb's law by a convex problem. Each model keeps one number per contact fixed while
+//! a step is solved: the *lagged number*, which is estimated before the solve (0 in `associated`).
 //!
-//! With w = v_n + ρ v_n^{n−1} and v = v_t of a contact, in reduced impulses (`contact::law`):
+//! Let w = v_n + ρ v_n^{n−1} be the normal velocity of a contact with its restitution term, v = v_t its tangential
+//! velocity, σ its shifted normal impulse and λ_t its tangential impulse, all in m/s (reduced impulses,
+//! `contact::law`).
 //!
-//! * `tresca`: 0 ≤ σ ⟂ w ≥ 0 and λ_t = clamp(λ_t − v m_t/m_n, ±g). The lagged number is g, Coulomb's bound at an
-//!   earlier σ: first that of some sweeps under Coulomb's law, then that of the solve before (P. D. Panagiotopoulos,
-//!   1975, solved Coulomb's law by such problems).
+//! * `tresca`: 0 ≤ σ ⟂ w ≥ 0 and λ_t = clamp(λ_t − v m_t/m_n, ±g). The lagged number is g, Coulomb's friction bound at
+//!   an earlier σ: for the first solve the σ after some sweeps under Coulomb's law, for a further solve the σ of the
+//!   solve before (P. D. Panagiotopoulos, 1975, solved Coulomb's law by such problems).
 //! * `associated`: K ∋ (σ, λ_t) ⟂ (w, v) ∈ K* with K = {|λ_t| ≤ μσ} (M. Anitescu, 2006; A. Tasora and M. Anitescu,
-//!   2011). If a contact slides, w = μ|v|: it opens although it ought to stay closed.
+//!   2011). If a contact slides, w = μ|v|: the contact opens although it ought to stay closed.
 //! * `desaxce`: like `associated`, with w + s instead of w. With s = μ|v| of the solution this would be Coulomb's law
-//!   (G. de Saxcé and Z.-Q. Feng, 1998; V. Acary and others, 2011). The lagged number is s of the solve before, at
-//!   first s at the velocities at the beginning of the step.
+//!   (G. de Saxcé and Z.-Q. Feng, 1998; V. Acary and others, 2011). The lagged number is s: for the first solve from
+//!   the velocities at the beginning of the step, for a further solve from the velocities of the solve before.
 //!
-//! In each model the impulses of a contact are the point of a convex set that is nearest to (σ − w − s, λ_t − v
-//! m_t/m_n) in the metric diag(1, m_n/m_t). This projection is the Gauss–Seidel update of a contact of solid discs,
-//! whose Delassus block is diagonal, and it defines the natural map.
+//! In each model the impulses of a contact are the point of a convex set that is nearest to
+//! (σ − w − s, λ_t − v m_t/m_n) in the metric diag(1, m_n/m_t). This projection is the Gauss–Seidel update of a contact
+//! of solid discs, whose Delassus block is diagonal, and it defines the natural map.
 
 use super::{Row, StepProblem};
 use crate::contact::{ContactLaw, Lanes, law};
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
-/// The model of friction of a step, and its lagged numbers.
+/// The friction model of a step, and the *lagged numbers*: one number per contact that stays fixed during a solve.
 #[derive(Clone, Debug)]
 pub(crate) struct LaggedFriction {
     pub model: FrictionModel,
-    /// The lagged number of each row, m/s; empty under Coulomb's law.
+    /// For each row (contact), the number that stays fixed during a solve, m/s: a friction bound or an opening speed.
+    /// Empty under Coulomb's law.
     pub now: Vec<f64>,
 }
 
@@ -34,20 +38,21 @@ impl Default for LaggedFriction {
     }
 }
 
-/// The projection of a contact's impulses under a model of friction.
+/// The projection of a contact's trial impulses onto the impulses that a friction model allows.
 pub(crate) trait FrictionProjection: Sized {
-    /// True if each row has a lagged number.
+    /// True if the model has a number per contact that stays fixed during a solve.
     const LAGS: bool;
-    /// True if rows may have different laws.
+    /// True if the contacts of a problem may have different contact laws.
     const TAKES_PAIRS: bool = false;
     /// True if sweeps with this projection support walls that a force drives.
     const TAKES_DRIVES: bool = true;
 
-    /// The allowed (σ, λ_t) nearest to `trial`, in the metric diag(1, m_n/m_t).
+    /// Returns the allowed shifted normal and tangential impulses (σ, λ_t), m/s, that are nearest to `trial` in the
+    /// metric diag(1, m_n/m_t). `lagged` is the contact's number that stays fixed during the solve, m/s.
     fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2];
 }
 
-/// Evaluates an expression with the projection that a problem is solved by.
+/// Evaluates an expression with the projection of the friction model that a problem is solved under.
 macro_rules! with_projection {
     ($problem:expr, $M:ident, $P:ident => $work:expr) => {
         match $problem.friction.model {
@@ -72,9 +77,9 @@ macro_rules! with_projection {
 }
 pub(crate) use with_projection;
 
-/// Coulomb's law itself; `ALL_RUBS` as in [`ContactLaw::all_rubs`], with one law for all rows. A sweep is one chain of
-/// dependent operations. Knowing at compile time that the tip of the cone is at 0 removes two of them, which saves 11 %
-/// of a run.
+/// Coulomb's law. With `ALL_RUBS` the tip of the friction cone is at 0 ([`ContactLaw::all_rubs`]) and all rows have the
+/// same law. A sweep is one chain of dependent operations. If the compiler knows that the tip of the cone is at 0, it
+/// removes two operations of the chain, which saves 11 % of the time of a run.
 pub(crate) enum CoulombFriction<const ALL_RUBS: bool> {}
 
 impl<const ALL_RUBS: bool> FrictionProjection for CoulombFriction<ALL_RUBS> {
@@ -91,7 +96,8 @@ impl<const ALL_RUBS: bool> FrictionProjection for CoulombFriction<ALL_RUBS> {
     }
 }
 
-/// The nearest allowed σ, then the nearest λ_t that this σ allows.
+/// Returns the shifted normal impulse σ projected onto σ ≥ 0, and the tangential impulse λ_t projected onto the
+/// friction bound of this σ, m/s.
 #[inline(always)]
 pub(crate) fn project_by_coulomb<M: Model, T: Lanes>(
     law: &ContactLaw,
@@ -104,7 +110,7 @@ pub(crate) fn project_by_coulomb<M: Model, T: Lanes>(
     [shifted, law::coulomb(tangential, law.friction_bound(shifted))]
 }
 
-/// `tresca`: the lagged number is the friction bound.
+/// The projection of the friction model `tresca`. The friction bound, m/s, stays fixed during a solve.
 pub(crate) enum BoundedFriction {}
 
 impl FrictionProjection for BoundedFriction {
@@ -116,7 +122,8 @@ impl FrictionProjection for BoundedFriction {
     }
 }
 
-/// `associated` and `desaxce`: the lagged number is added to w.
+/// The projection of the friction models `associated` and `desaxce`. They add to the normal velocity of a contact a
+/// number, m/s, that stays fixed during a solve.
 pub(crate) enum ConeFriction {}
 
 impl FrictionProjection for ConeFriction {
@@ -131,8 +138,9 @@ impl FrictionProjection for ConeFriction {
 }
 
 impl<M: Model> StepProblem<M> {
-    /// Sets the model of friction of a problem whose rows and velocities are already set up. Computes the lagged
-    /// numbers from the present impulses (`tresca`) or from the velocities at the beginning of the step (`desaxce`).
+    /// Sets the friction model of a problem whose rows and velocities are already set up. Computes the numbers that
+    /// stay fixed during a solve: the friction bounds of `tresca` from the present impulses, or the opening speeds of
+    /// `desaxce` from the velocities at the beginning of the step.
     pub(crate) fn begin_friction(&mut self, model: FrictionModel) {
         self.friction.model = model;
         self.friction.now.clear();
@@ -151,13 +159,15 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Switches back to Coulomb's law.
+    /// Makes Coulomb's law the friction model again, and deletes the numbers that another model keeps fixed during a
+    /// solve.
     pub(crate) fn forget_bounds(&mut self) {
         self.friction.model = FrictionModel::Coulomb;
         self.friction.now.clear();
     }
 
-    /// Recomputes the lagged numbers from the present impulses and velocities.
+    /// Recomputes the friction bounds of `tresca` or the opening speeds of `desaxce` from the present impulses and
+    /// velocities.
     pub(crate) fn renew_friction(&mut self) {
         match self.friction.model {
             FrictionModel::Tresca => self.lag_by(bound),
@@ -166,7 +176,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the lagged numbers to `lagged_of` of each row and its v_t.
+    /// Sets the number of each row that stays fixed during a solve to `lagged_of`, a function of the contact law, the
+    /// row and its tangential velocity.
     fn lag_by(&mut self, lagged_of: impl Fn(&ContactLaw, &Row<M>, f64) -> f64) {
         let mut lagged = std::mem::take(&mut self.friction.now);
         lagged.clear();
@@ -177,12 +188,12 @@ impl<M: Model> StepProblem<M> {
     }
 }
 
-/// The lagged number g of `tresca` after a solve.
+/// Returns the friction bound g of `tresca`, m/s, that follows from the impulses of a solve.
 fn bound<M: Model>(law: &ContactLaw, row: &Row<M>, _: f64) -> f64 {
     law.friction_bound(row.shifted_impulse)
 }
 
-/// The lagged number s of `desaxce` after a solve that ended with this v_t.
+/// Returns the opening speed s of `desaxce`, m/s, that follows from the tangential velocity of a solve.
 fn opening<M: Model>(law: &ContactLaw, _: &Row<M>, tangential_velocity: f64) -> f64 {
     law.friction * tangential_velocity.abs()
 }
@@ -197,7 +208,8 @@ mod tests {
         ContactLaw::new(friction, 0.0, FrictionCone::Shifted)
     }
 
-    /// Half the squared distance in the metric: ½(σ − a)² + ½c(λ − b)².
+    /// Returns half the squared distance of two impulses (σ, λ) and (a, b) in the metric of the projection,
+    /// ½(σ − a)² + ½c(λ − b)² with c = m_n/m_t.
     fn distance<M: Model>(point: [f64; 2], trial: [f64; 2]) -> f64 {
         let across = M::TANGENTIAL_COMPLIANCE * (point[1] - trial[1]).powi(2);
         0.5 * ((point[0] - trial[0]).powi(2) + across)

@@ -1,4 +1,4 @@
-//! Measures of a solved step: residual, velocity error, contact counts and works, in one pass over the rows.
+//! Measures of a solved step, computed in one pass over the rows: residual, velocity error, contact counts and works.
 
 use super::residual::{Sums, natural_map};
 use super::row_velocities::{RowVelocities, sum_of_rows};
@@ -7,35 +7,37 @@ use super::{Row, StepProblem};
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
-/// Results of one pass over the rows of a solved step.
+/// Measures of a solved step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measures {
-    /// The common residual, dimensionless.
+    /// Residual of the natural map under Coulomb's law, dimensionless; the same measure for all methods and friction
+    /// models.
     pub residual: f64,
-    /// The residual of the model of friction that was solved, dimensionless; `None` under Coulomb's law, for which it
-    /// would equal `residual`.
+    /// Residual of the convex friction model under which the step was solved, dimensionless; `None` under Coulomb's
+    /// law, for which it would equal `residual`.
     pub model_residual: Option<f64>,
-    /// Distance of the velocities from those that Coulomb's law asks for, whichever model was solved, m/s: an estimate
-    /// of the root mean square over the grains with contacts, weighted by mass
+    /// Estimated distance of the velocities from velocities that satisfy Coulomb's law, whichever friction model the
+    /// step was solved under, m/s: the root mean square over the grains with contacts, weighted by mass
     /// ([`VelocityError`](super::VelocityError)).
     pub velocity_error: f64,
-    /// Contacts with P_n > 0.
+    /// Number of contacts with a normal impulse P_n > 0.
     pub compressive_contacts: u32,
-    /// Contacts with P_n < 0.
+    /// Number of contacts with a normal impulse P_n < 0.
     pub tensile_contacts: u32,
-    /// Work of the normal impulses, J.
+    /// Work of the normal contact impulses, J.
     pub normal_work: f64,
-    /// Work of the tangential impulses and of the moments against rolling, J.
+    /// Work of the tangential contact impulses and of the rolling moments, J.
     pub tangential_work: f64,
-    /// The part of both works that is done by moving surfaces, J.
+    /// The part of the normal and tangential work that moving surfaces do, J.
     pub wall_work: f64,
-    /// Work of sliding images on the grains that touch them, J; not part of the other works.
+    /// Work that images of grains beyond a sheared periodic border do on the grains that touch them, J; not part of the
+    /// other works.
     pub border_work: f64,
 }
 
 impl Measures {
-    /// Reports the common residual of a step that was solved under Coulomb's law also as its model residual, because
-    /// other steps of the run were solved under a model of friction.
+    /// Sets the model residual of a step that was solved under Coulomb's law to its residual. This is for runs in which
+    /// other steps were solved under another friction model.
     pub(crate) fn measure_as_a_model(&mut self) {
         self.model_residual = self.model_residual.or(Some(self.residual));
     }
@@ -49,7 +51,8 @@ impl Measures {
         self.border_work += rows.border_work;
     }
 
-    /// Adds another part of the same step; the contact counts are those of the last part.
+    /// Adds the measures of a later part of the same step. Works are added, the larger errors are kept, and the contact
+    /// counts are the counts of the later part.
     pub fn add(&mut self, piece: Self) {
         let Self { residual, model_residual, velocity_error, .. } = piece;
         let Self { compressive_contacts, tensile_contacts, .. } = piece;
@@ -66,11 +69,11 @@ impl Measures {
     }
 }
 
-/// The residual of the model of friction of a problem; `None` under Coulomb's law.
+/// Returns the residual of the friction model of a problem, dimensionless; `None` under Coulomb's law.
 fn model_residual<M: Model>(problem: &StepProblem<M>, common_residual: f64) -> Option<f64> {
     match problem.friction.model {
         FrictionModel::Coulomb => None,
-        // Without friction all models are the same.
+        // Without friction all friction models are the same.
         _ if !M::FRICTION => Some(common_residual),
         _ => Some(natural_map(problem)),
     }
@@ -83,18 +86,19 @@ fn worst_of(one: Option<f64>, other: Option<f64>) -> Option<f64> {
     }
 }
 
-/// The larger of two residuals or other errors; NaN if one of them is NaN.
+/// Returns the larger of two residuals or other errors; NaN if an argument is NaN.
 pub fn worst(one: f64, other: f64) -> f64 {
     if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
 }
 
-/// Measures residual, velocity error, contact counts and works in one pass.
+/// Computes residual, velocity error, contact counts and works of a problem in one pass over its rows.
 ///
-/// Work: from v^n = v^{n−1} + M⁻¹(ΔtF + HP) the kinetic energy changes by ½(v^n + v^{n−1})·(ΔtF + HP), so a contact
-/// impulse does the work P·½(u^n + u^{n−1}) with u its relative velocity. Together with the work of gravity this closes
-/// the energy budget to rounding, however large the solver's error is. If j is a sliding image, u is relative to the
-/// image, and P times the slide velocity is the work of the border.
-// Compiled once, in this crate.
+/// Works are computed so that the energy balance closes. From v^n = v^{n−1} + M⁻¹(ΔtF + HP) (M: inertias, F: gravity,
+/// HP: contact impulses on the bodies) the kinetic energy changes by ½(v^n + v^{n−1})·(ΔtF + HP). So a contact impulse
+/// P does the work P·½(u^n + u^{n−1}), with u its relative velocity. Together with the work of gravity this closes the
+/// energy balance to rounding, however large the solver's error is. If j is a sliding image, u is relative to the
+/// image, and P times the slide velocity is the work of the periodic border.
+// Without inlining, the function is compiled once per model, in this crate.
 #[inline(never)]
 pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {
     type Sum = (Sums, ErrorSums, Measures);

@@ -1,7 +1,8 @@
-//! The problem of one step: its data, its set-up, and the measures of its solution.
+//! The contact problem of one step: its data, its set-up, and the measures of its solution.
 //!
-//! [`StepProblem::prepare`] sets up a problem in this order: bodies, rows in the order of the sweep, moving surfaces,
-//! the velocities that the rows' impulses make, and last the lagged numbers of the model of friction.
+//! [`StepProblem::prepare`] sets up a problem in this order: bodies, rows (one per contact) in the order of the sweep,
+//! moving surfaces, the velocities due to the rows' initial impulses, and last the numbers of the friction model that
+//! stay fixed during a solve.
 
 mod friction;
 mod measures;
@@ -44,75 +45,79 @@ use crate::number::Parts;
 use crate::threads;
 use crate::world::{FrictionCone, World};
 
-/// The contact problem of one step. Memory is kept between steps.
+/// The contact problem of one step. The memory is reused for the next step.
 ///
-/// Code outside this crate can read a problem. Its impulses are changed by the methods, and by a method of your own
-/// through [`BodySystem`](crate::solver::BodySystem), which keeps bodies and rows consistent.
+/// Code outside this crate can read a problem. Only methods change its impulses: the methods of this crate, or a method
+/// of your own through [`BodySystem`](crate::solver::BodySystem), which keeps bodies and rows consistent.
 #[derive(Clone, Debug, Default)]
 pub struct StepProblem<M: Model> {
-    /// The bodies that the rows' impulses move.
+    /// The grains, with three velocities each: before the step, after the step without contacts, and with the rows'
+    /// impulses.
     pub bodies: Bodies<M>,
-    /// One row per contact.
+    /// The data of the contacts, one row per contact.
     pub rows: ContactRows<M>,
-    /// The numbers of the contact law, unless rows have their own ([`StepProblem::law_of`]).
+    /// The contact law of all contacts. Contacts with their own numbers modify it ([`StepProblem::law_of`]).
     pub law: ContactLaw,
-    /// Fixed bodies whose surfaces move.
+    /// Fixed bodies whose surfaces move, and walls that a force drives.
     pub(crate) walls: MovingWalls,
-    /// The model of friction and its lagged numbers.
+    /// The friction model, and the numbers of each contact that it keeps fixed during a solve.
     pub(crate) friction: LaggedFriction,
-    /// √(g d), m/s, the scale of velocity errors.
+    /// Scale of velocity errors, m/s: √(g d), the speed after a fall by half a mean diameter d. Without gravity
+    /// C₀/m_ij, the acceleration by cohesion, replaces g.
     pub(crate) fall_speed: f64,
-    /// True for each body that has contacts; empty if all have.
+    /// True for each grain that has contacts; empty if all grains have contacts.
     pub(super) touches: Vec<bool>,
-    /// Total mass of these bodies, kg.
+    /// Total mass of the grains that have contacts, kg.
     pub(super) touching_mass: f64,
-    /// The longest side of the bounding box of the grains with contacts, in mean diameters; 0 if positions are not
-    /// known.
+    /// Longest side of the bounding box of the grains with contacts, in mean diameters; 0 if positions are not known.
     pub(super) extent: f64,
-    /// Unit vector along the sum of the normals of contacts with fixed bodies; 0 if the sum is 0.
+    /// Unit vector along the sum of the normals of the contacts with fixed bodies; 0 if the sum is 0.
     pub(super) way_out: DVec2,
     pub(super) order: RowOrder,
-    /// √m_ij of the rows, kg^½, for methods with scaled variables.
+    /// √m_ij, the square root of each contact's effective mass, kg^½, for methods with scaled variables.
     pub(super) root_masses: Vec<f64>,
 }
 
-/// The numbers that a problem is set up with.
+/// The numbers that a step's contact problem is set up with.
 #[derive(Clone, Copy, Debug)]
 pub struct ProblemNumbers {
-    /// Δt, s.
+    /// Time step Δt, s.
     pub time_step_secs: f64,
-    /// μ; if contacts have [`RowNumbers`], the largest of all pairs.
+    /// Friction coefficient μ; if contacts have [`RowNumbers`], the largest coefficient of all pairs of materials.
     pub friction: f64,
-    /// μ_r; if contacts have [`RowNumbers`], the largest of all pairs.
+    /// Coefficient of rolling friction μ_r; if contacts have [`RowNumbers`], the largest coefficient of all pairs of
+    /// materials.
     pub rolling_friction: f64,
-    /// C₀Δt/m_ij, m/s; 0 without cohesion. If contacts have [`RowNumbers`], the largest of all pairs for grains of the
-    /// mean mass.
+    /// Capture speed C₀Δt/m_ij (cohesion force times time step, divided by effective mass), m/s; 0 without cohesion. If
+    /// contacts have [`RowNumbers`], the largest capture speed of all pairs of materials for grains of the mean mass.
     pub capture_speed: f64,
-    /// The part of the normal force that friction acts on; the shifted cone if there is no cohesion.
+    /// The part of the normal force that bounds friction; the shifted cone if there is no cohesion.
     pub cone: FrictionCone,
 }
 
-/// Computes the numbers of a contact from its effective mass m_ij, kg.
+/// Computes the numbers of the contact law for a contact with an effective mass m_ij in kg.
 pub type NumbersOfContact<'a> = &'a dyn Fn(&Contact, f64) -> RowNumbers;
 
-/// Relative motion and gap of a contact's bodies before the step.
+/// Relative normal velocity and gap of a contact's bodies before the step.
 #[derive(Clone, Copy, Debug)]
 pub struct Approach {
-    /// v_n^{n−1}, relative to the wall if the wall moves, m/s.
+    /// Normal velocity v_n^{n−1} of the contact at the beginning of the step, relative to the wall if the wall moves,
+    /// m/s.
     pub velocity: f64,
     /// Gap, m; negative is overlap.
     pub gap: f64,
-    /// True if the pair touches or is bonded, false if it is only near.
+    /// True if the pair touches or is bonded, false if it is only close enough to be detected.
     pub in_touch: bool,
-    /// ρ of the contact's pair of materials, if pairs have their own numbers.
+    /// Coefficient of restitution ρ of the contact's pair of materials, if pairs of materials have their own numbers.
     pub restitution: Option<f64>,
 }
 
 impl<M: Model> StepProblem<M> {
-    /// Sets up a step: free velocities, and rows in the order of the method and its settings. The rows start with the
-    /// impulses of `contacts` (warm start) or without impulses. `rebound` gives the term that the law adds to v_n of a
-    /// contact, m/s; `surfaces` are the moving surfaces, if there are any. `numbers_of` gives the numbers of each
-    /// contact, if contacts have different ones.
+    /// Sets up the contact problem of a step: velocities without contact impulses, and rows in the order that the
+    /// method and its settings need. The rows start with the impulses of `contacts` (warm start) or with zero impulses.
+    /// `rebound` returns the term, m/s, that the law adds to the normal velocity of a contact. `surfaces` are the
+    /// moving surfaces, if there are any. `numbers_of` returns the numbers of a contact, if contacts have different
+    /// numbers.
     #[expect(clippy::too_many_arguments, reason = "all of a step's problem")]
     pub fn prepare(
         &mut self,
@@ -127,7 +132,7 @@ impl<M: Model> StepProblem<M> {
         let ProblemNumbers { time_step_secs, friction, rolling_friction, capture_speed, cone } =
             numbers;
         self.law = ContactLaw::new(friction, capture_speed, cone);
-        // Without gravity, cohesion alone sets a scale of speeds; without both there is no scale for velocity errors.
+        // Without gravity, cohesion sets the scale of velocity errors. Without gravity and cohesion the scale is 0.
         let acceleration = match world.gravity.magnitude() {
             0.0 => capture_speed / time_step_secs,
             gravity => gravity,
@@ -158,7 +163,8 @@ impl<M: Model> StepProblem<M> {
         self.begin_friction(settings.friction_model);
     }
 
-    /// Records the numbers of each row's law. A pair that is only near does not pull.
+    /// Records the numbers of each contact's law: friction, restitution and capture speed. The capture speed is 0 for a
+    /// pair that does not touch yet.
     fn take_numbers(
         &mut self,
         world: &World,
@@ -171,7 +177,7 @@ impl<M: Model> StepProblem<M> {
         for index in contacts.iter().map(|&index| index as usize) {
             let contact = &list.contacts()[index];
             let mass = masses[contact.grain as usize];
-            // Body indices: grains come first.
+            // Indices of bodies: grains come first, so fixed bodies have no mass in the list.
             let other = masses.get(contact.other as usize);
             let effective_mass = other.map_or(mass, |other| mass * (other / (mass + other)));
             let numbers = numbers_of(contact, effective_mass);
@@ -182,7 +188,7 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Stores the bodies' velocities at the beginning of the step, and after gravity alone has acted.
+    /// Stores the bodies' velocities at the beginning of the step, and their velocities after gravity without contacts.
     fn place_bodies(&mut self, world: &World, time_step_secs: f64) {
         let grains = &world.grains;
         let Bodies { before, free, masses, mean_mass, .. } = &mut self.bodies;
@@ -195,7 +201,7 @@ impl<M: Model> StepProblem<M> {
         });
     }
 
-    /// Creates the rows; the first `fixed` of them are against fixed bodies.
+    /// Creates the rows, one per contact; the first `fixed` rows are contacts with fixed bodies.
     fn fill_rows(
         &mut self,
         world: &World,
@@ -242,7 +248,7 @@ impl<M: Model> StepProblem<M> {
         threads::fill(&mut pair_rows, self.rows.contacts.len() - fixed, |number| {
             let number = fixed + number;
             let contact = contact(number);
-            // Body indices: grains come first.
+            // Indices of bodies: grains come first.
             let (i, j) = (contact.grain as usize, contact.other as usize);
             let share = masses[j] / (masses[i] + masses[j]);
             let normal = M::normal_of(world, contact);
@@ -252,7 +258,7 @@ impl<M: Model> StepProblem<M> {
         (self.rows.fixed, self.rows.pairs) = (fixed_rows, pair_rows);
     }
 
-    /// Records which bodies have contacts, and their total mass.
+    /// Records which grains have contacts, and the total mass of these grains.
     fn find_what_touches(&mut self) {
         let Self { bodies, rows, touches, touching_mass, .. } = self;
         touches.clear();
@@ -266,7 +272,8 @@ impl<M: Model> StepProblem<M> {
         *touching_mass = masses.map(|(mass, touches)| if *touches { *mass } else { 0.0 }).sum();
     }
 
-    /// Switches to Coulomb's law: clips the tangential impulses to its bound and forms the velocities again.
+    /// Makes Coulomb's law the friction model: limits the tangential impulses to its bounds and recomputes the
+    /// velocities.
     pub fn take_coulombs_law(&mut self) {
         self.friction.model = FrictionModel::Coulomb;
         self.friction.now.clear();
@@ -295,13 +302,13 @@ impl<M: Model> StepProblem<M> {
         self.way_out = normals.sum::<DVec2>().normalize_or_zero();
     }
 
-    /// Estimate of the longest chain of grains that pass on a push.
+    /// Estimates the number of grains in the longest chain that transmits a push.
     fn grains_in_a_row(&self) -> f64 {
         let grains = self.bodies.masses.len() as f64;
         if self.extent > 0.0 { self.extent.min(grains) } else { grains.sqrt() }
     }
 
-    /// Uses the error scales of `whole`, of whose rows this problem has a subset.
+    /// Takes the scales of velocity errors from `whole`, the problem of which this problem has a subset of the rows.
     pub(crate) fn hold_errors_against(&mut self, whole: &Self) {
         self.fall_speed = whole.fall_speed;
         self.touches.clone_from(&whole.touches);
@@ -309,12 +316,13 @@ impl<M: Model> StepProblem<M> {
         (self.extent, self.way_out) = (whole.extent, whole.way_out);
     }
 
-    /// The mass of the bodies that have contacts, kg.
+    /// Returns the total mass of the grains that have contacts, kg.
     pub(super) fn touching_mass(&self) -> f64 {
         if self.touches.is_empty() { self.bodies.masses.iter().sum() } else { self.touching_mass }
     }
 
-    /// Moves the bodies from their free velocities by the rows' impulses.
+    /// Sets the bodies' velocities to their velocities without contacts plus the changes due to the impulses of all
+    /// rows.
     pub fn form_velocities(&mut self) {
         let Bodies { now, free, .. } = &mut self.bodies;
         now.clone_from(free);
@@ -343,7 +351,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sorts by colours rows that were not made by [`StepProblem::prepare`], for the method that needs colours.
+    /// Sorts by colours the rows of a problem that [`StepProblem::prepare`] has not set up, for the method
+    /// `nsgs-parallel`.
     pub fn sort_by_colours(&mut self) {
         let Self { rows, order, bodies, .. } = self;
         let contact = |row: &Row<M>, other: u32| Contact {
@@ -364,36 +373,38 @@ impl<M: Model> StepProblem<M> {
         rows.contacts = sorted.iter().map(|&row| rows.contacts[row as usize]).collect();
     }
 
-    /// The capture speed of row `number`, m/s.
+    /// Returns the capture speed of the contact in row `number`, C₀Δt/m_ij (cohesion force times time step, divided by
+    /// effective mass), m/s.
     #[inline(always)]
     pub fn capture(&self, number: usize) -> f64 {
         self.rows.capture(number, &self.law)
     }
 
-    /// The contact law of row `number`.
+    /// Returns the contact law of the contact in row `number`.
     #[inline(always)]
     pub fn law_of(&self, number: usize) -> ContactLaw {
         self.rows.law(number, &self.law)
     }
 
-    /// True if the tip of the cone is at 0 and all rows have the same law.
+    /// Returns true if the tip of the friction cone is at 0 and all rows have the same friction coefficient.
     pub(crate) fn has_one_simple_law(&self) -> bool {
         self.law.all_rubs() && self.rows.frictions.is_empty()
     }
 
-    /// (λ_n, λ_t) of row `number`, m/s.
+    /// Returns the impulses (λ_n, λ_t) of the contact in row `number`, divided by its effective mass and without the
+    /// shift by the capture speed, m/s.
     #[inline(always)]
     pub fn reduced_impulse(&self, number: usize, row: &Row<M>) -> [f64; 2] {
         [row.shifted_impulse - self.capture(number), row.tangential_impulse]
     }
 
-    /// The rows with their numbers.
+    /// Iterates over the rows (the data of the contacts) and their numbers.
     pub fn rows(&self) -> impl Iterator<Item = (usize, &Row<M>)> {
         self.rows.iter().enumerate()
     }
 
-    /// Visits all rows in order with their (v_n, v_t) at the velocities `bodies`, m/s; v_t is relative to moving
-    /// surfaces.
+    /// Calls `visit` for each row (contact) in order, with the relative velocity (v_n, v_t) of the contact, m/s, if the
+    /// bodies have the velocities `bodies`. v_t is relative to moving surfaces.
     #[inline(always)]
     pub(crate) fn for_each_velocity(
         &self,
@@ -420,7 +431,7 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Gives the rows the impulses that another algorithm has found for this step, one per contact, N·s.
+    /// Sets the rows' impulses to impulses that another algorithm has found for this step, one per contact, N·s.
     pub(crate) fn set_impulses(&mut self, impulses: &[Impulse]) {
         for number in 0..self.rows.len() {
             let Impulse { normal, tangential } = impulses[self.rows.contacts[number] as usize];
@@ -431,8 +442,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the rows' impulses, m/s, in the order of [`ContactRows::read_impulses`], and forms the velocities that they
-    /// make.
+    /// Sets the impulses of all rows, divided by the effective masses, m/s, in the order of
+    /// [`ContactRows::read_impulses`], and recomputes the velocities.
     pub(crate) fn write_impulses(&mut self, impulses: impl IntoIterator<Item = [f64; 2]>) {
         let mut impulses = impulses.into_iter();
         for (row, impulse) in self.rows.iter_mut().zip(&mut impulses) {

@@ -1,7 +1,7 @@
 //! The order in which a sweep visits the contacts, and the groups of contacts that can be solved at the same time.
 //!
-//! In every order, contacts with fixed bodies come first, then contacts between grains, so that each kind has its own
-//! loop. An order applies within each kind.
+//! In every order, contacts with fixed bodies come first, then contacts between grains, so that each of the two kinds
+//! has its own loop. An order applies within each kind.
 
 use std::ops::Range;
 
@@ -11,18 +11,21 @@ use crate::contact::{Contact, Numbering};
 use crate::solver::method::Ordering;
 use crate::world::World;
 
-/// Groups of rows of one kind, sorted by tiles and colours, that can be solved at the same time.
+/// Groups of rows (contacts) that can be solved at the same time. All rows are of one kind (with fixed bodies, or
+/// between grains) and are sorted by tiles and colours.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RowGroups {
-    /// Ends of the colours, as row numbers. Rows of one colour share no grain.
+    /// For each colour of each tile, the number of the row after its last row, counted within the kind. Rows of one
+    /// colour share no grain.
     pub colour_ends: Vec<usize>,
-    /// Ends of the tiles, as colour numbers. Rows of two different tiles share no grain. Colours after the last tile
-    /// contain the contacts between tiles.
+    /// For each tile, the number of the colour after its last colour. Rows of two different tiles share no grain. The
+    /// colours after the last tile contain the contacts between tiles.
     pub tile_ends: Vec<usize>,
 }
 
 impl RowGroups {
-    /// Row ranges of the colours of a tile, or of the contacts between tiles if `tile` is past the last tile.
+    /// Returns the ranges of rows of each colour of a tile, or of the contacts between tiles if `tile` is past the last
+    /// tile.
     pub(crate) fn colours_of(&self, tile: usize) -> impl Iterator<Item = Range<usize>> {
         let start_of = |ends: &[usize], at: usize| at.checked_sub(1).map_or(0, |at| ends[at]);
         let (ends, tiles) = (&self.colour_ends, &self.tile_ends);
@@ -38,38 +41,38 @@ impl RowGroups {
     }
 }
 
-/// Number of stretches into which the order of detection is cut to interleave it. Neighbours in the order of detection
-/// share a grain, so each update would wait for the one before it to finish; interleaved updates touch different
-/// grains. With fewer stretches, updates wait for each other; with many more, a sweep over a large pile loses its
-/// locality in the cache. Up to this many contacts of a kind the two orders are the same.
+/// Number of segments into which the list of detected contacts is cut to interleave it. Neighbours in the list share a
+/// grain, so each update would wait until the update before it has finished; interleaved updates change different
+/// grains. With fewer segments, updates wait for each other; with many more, a sweep over a large pile uses the cache
+/// badly. If there are at most this many contacts of a kind, the interleaved order is the order of detection.
 const STREAMS: usize = 8;
 
-/// Number of colours that are tracked per grain. A contact that finds no free colour, because a grain has more
-/// neighbours than that, gets a colour of its own.
+/// Number of colours that are tracked per grain. If a grain has so many neighbours that a contact finds no free colour,
+/// the contact gets a colour of its own.
 const COLOURS: u32 = u128::BITS;
 
-/// Sorts contacts by an order. Memory is kept between steps.
+/// Sorts contacts by an order. The memory is reused for the next step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RowOrder {
-    /// Groups of rows against fixed bodies, and of rows between grains; empty if rows are not coloured.
+    /// Groups of the rows against fixed bodies, then groups of the rows between grains; empty if rows are not coloured.
     pub groups: [RowGroups; 2],
     detected: Vec<u32>,
     keys: Vec<(f64, u32)>,
     tiles: Tiles,
-    /// (tile · [`COLOURS`] + colour, contact).
+    /// Pairs of a group number (tile · [`COLOURS`] + colour) and the number of a contact.
     coloured: Vec<(u32, u32)>,
-    /// Contacts between tiles.
+    /// Contacts whose grains are in different tiles.
     between: Vec<u32>,
     /// Contacts that found no free colour.
     of_their_own: Vec<u32>,
-    /// Number of contacts of each colour of each tile; while they are placed, the next free place.
+    /// First the number of contacts of each colour of each tile, then, while contacts are placed, the next free index.
     counts: Vec<usize>,
     /// The colours used at each grain, as a bit set.
     taken: Vec<u128>,
 }
 
 impl RowOrder {
-    /// Fills `rows` with the numbers of the contacts in the given order. Returns the number of contacts with fixed
+    /// Fills `rows` with the numbers of the contacts in the order `ordering`. Returns the number of contacts with fixed
     /// bodies, which come first.
     pub(super) fn sort(
         &mut self,
@@ -85,7 +88,7 @@ impl RowOrder {
         let grains = world.grains.len();
         let is_pair = |index: &u32| (contacts[*index as usize].other as usize) < grains;
         let mut fixed = 0;
-        // One kind after the other, each in the order of detection.
+        // First the contacts with fixed bodies, then the contacts between grains, each kind in the order of detection.
         for (kind, are_pairs) in [false, true].into_iter().enumerate() {
             fixed = rows.len();
             self.take((0..contacts.len() as u32).filter(|index| is_pair(index) == are_pairs), kind);
@@ -99,7 +102,8 @@ impl RowOrder {
         fixed
     }
 
-    /// Sorts contacts by colours if only their bodies are known. The first `fixed` contacts are with fixed bodies.
+    /// Returns the contacts sorted by colours, if only their bodies are known. The first `fixed` contacts are with
+    /// fixed bodies.
     pub(super) fn sort_by_colours(
         &mut self,
         grains: usize,
@@ -144,9 +148,9 @@ impl RowOrder {
         rows.extend(self.keys.iter().map(|&(_, number)| number));
     }
 
-    /// Sorts contacts by tiles, those between tiles last, and within a tile by colours. Each contact gets the first
-    /// colour that is not yet used at either of its grains. This makes at most 2k − 1 colours if no grain has more than
-    /// k contacts.
+    /// Sorts contacts by tiles, with the contacts between tiles last, and within a tile by colours. Each contact gets
+    /// the first colour that is not yet used at either of its grains. If no grain has more than k contacts, there are
+    /// at most 2k − 1 colours.
     fn colour(&mut self, grains: usize, contacts: &[Contact], rows: &mut Vec<u32>, kind: usize) {
         self.coloured.clear();
         self.of_their_own.clear();
@@ -186,7 +190,8 @@ impl RowOrder {
         self.coloured.push((tile as u32 * COLOURS + colour, number));
     }
 
-    /// Counts the contacts of each colour of each tile, and places them group by group in the order of detection.
+    /// Counts the contacts of each colour of each tile, and puts them into `rows` group by group in the order of
+    /// detection.
     fn group(&mut self, rows: &mut Vec<u32>, kind: usize) {
         let tiles = self.tiles.count;
         let (counts, groups) = (&mut self.counts, &mut self.groups[kind]);
@@ -220,18 +225,19 @@ impl RowOrder {
     }
 }
 
-/// Grains per tile of a dense pile: their bodies take 16 KB, a third of the first-level cache of a current processor.
-/// With fewer grains, more contacts lie between tiles. With more, rows that stream through push bodies out of the
-/// cache, and a small pile has too few tiles for several threads.
+/// Number of grains per tile of a dense pile: the velocities of 512 grains take 16 KB, a third of the first-level cache
+/// of a current processor. With fewer grains, more contacts lie between tiles. With more grains, the rows that pass
+/// through the cache push velocities out of it, and a small pile has too few tiles for several threads.
 const GRAINS_IN_TILE: usize = 512;
-/// Scenes of up to this many grains are one tile: their rows fit in the second-level cache, and waking a thread costs
-/// more than it gains.
+/// Largest number of grains that form a single tile: their rows fit in the second-level cache, and waking a thread
+/// costs more than it gains.
 const GRAINS_IN_ONE: usize = 2048;
 /// Minimum mean number of grains per tile of a scene that is not dense, so that empty tiles cost nothing.
 const LEAST_GRAINS_A_TILE: usize = 64;
 
-/// The tile of each grain. Tiles are squares of the plane, small enough that the bodies of one tile stay in the
-/// first-level cache while its contacts are solved. Tiles share no grain, so several can be solved at the same time.
+/// The tile of each grain. Tiles are squares of the plane, so small that the velocities of one tile's grains stay in
+/// the first-level cache while its contacts are solved. Tiles share no grain, so several tiles can be solved at the
+/// same time.
 #[derive(Clone, Debug, Default)]
 struct Tiles {
     of_grain: Vec<u32>,
@@ -240,7 +246,7 @@ struct Tiles {
 }
 
 impl Tiles {
-    /// Lays square tiles over the grains of a world. The tiles depend only on the relative positions of the grains.
+    /// Divides the grains of a world into square tiles. The tiles depend only on the relative positions of the grains.
     fn lay(&mut self, world: &World) {
         let positions = &world.grains.positions;
         if positions.len() <= GRAINS_IN_ONE {
@@ -267,7 +273,7 @@ impl Tiles {
         }));
     }
 
-    /// Fills the tiles with grains in the order of their numbers, for grains of unknown position.
+    /// Divides grains of unknown positions into tiles in the order of their numbers.
     fn lay_by_number(&mut self, grains: usize) {
         if grains <= GRAINS_IN_ONE {
             return self.lay_one(grains);
@@ -283,7 +289,7 @@ impl Tiles {
         self.of_grain.resize(grains, 0);
     }
 
-    /// The tile that contains all of these grains; `None` if they lie in several tiles.
+    /// Returns the tile that contains all of these grains; `None` if the grains are in several tiles.
     fn of(&self, grains: [Option<usize>; 2]) -> Option<usize> {
         let mut tiles = grains.into_iter().flatten().map(|grain| self.of_grain[grain] as usize);
         let first = tiles.next()?;
@@ -304,7 +310,7 @@ mod tests {
         World::of(Grains::new(&grains, 1.0), gravity, 2.0 * grains[0].radius)
     }
 
-    /// Discs whose height goes up and down with their number.
+    /// Returns a world of discs whose height rises and falls with their number.
     fn uneven() -> World {
         world(
             (0..138)
@@ -320,7 +326,8 @@ mod tests {
         (rows, pairs.colour_ends)
     }
 
-    /// A hub with more neighbours than there are colours, and a ring around it.
+    /// Returns the contacts of a disc with more neighbours than there are colours, and contacts between these
+    /// neighbours.
     fn hub() -> Vec<Contact> {
         let contact = |grain, other| Contact { grain, other, normal: DVec2::Y, gap: -1e-9 };
         let spokes = (1..138).map(|other| contact(0, other));
@@ -372,7 +379,7 @@ mod tests {
         assert!(heights.is_sorted() && heights[0] < heights[rows.len() - 1]);
     }
 
-    /// Discs on a square lattice, moved and stretched.
+    /// Returns a world of discs on a square lattice, each moved by `place`.
     fn lattice(place: impl Fn(DVec2) -> DVec2) -> World {
         let lattice = (0..SIDE * SIDE).map(|k| DVec2::new((k % SIDE) as f64, (k / SIDE) as f64));
         world(lattice.map(|at| Grain::at_rest(place(at), 0.5)))
@@ -389,7 +396,8 @@ mod tests {
     #[test]
     fn tiles_of_a_dense_packing_are_squares_wherever_it_lies() {
         let tiles = laid(|at| at);
-        // 59 diameters between the outermost grains, over a side of 22.6 diameters.
+        // The outermost grains are 59 diameters apart, and a tile has a side of 22.6 diameters: three tiles along each
+        // side.
         assert_eq!(tiles.count, 9);
         for tile in 0..9 {
             let (mut low, mut high) = (DVec2::MAX, DVec2::MIN);
@@ -413,7 +421,7 @@ mod tests {
             let tiles = laid(|at| at * far);
             assert!(tiles.count <= SIDE * SIDE / LEAST_GRAINS_A_TILE, "{}", tiles.count);
         }
-        // So far apart that the distance overflows.
+        // The grains are so far apart that their distance overflows.
         assert_eq!(laid(|at| (at - DVec2::splat(0.5)).signum() * f64::MAX).count, 1);
         let mut tiles = Tiles::default();
         tiles.lay_by_number(GRAINS_IN_ONE);

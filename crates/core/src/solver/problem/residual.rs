@@ -1,4 +1,5 @@
-//! The natural map: the residual that is common to all methods, and the residuals of the models of friction.
+//! The natural map of a step's problem: the residual that is common to all methods, and the residuals of the friction
+//! models.
 
 use super::friction::{FrictionProjection, with_projection};
 use super::row_velocities::{RowVelocities, sum_of_rows};
@@ -7,23 +8,24 @@ use crate::contact::{ContactLaw, Lanes, law};
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
-/// The residual of the natural map in impulse units. A contact's impulses solve its law exactly if a Gauss–Seidel
-/// update, which projects them, would not change them. So with p = P_n + C₀Δt
+/// Returns the residual of a problem under Coulomb's law, dimensionless: the size of the natural map, in units of
+/// impulse. A contact's impulses satisfy its law exactly if a Gauss–Seidel update, which projects them, would not
+/// change them. So with p = P_n + C₀Δt, the normal impulse shifted by the cohesion impulse,
 ///
 /// > e_n = p − max(0, p − m_n (v_n + ρ v_n^{n−1})),  e_t = P_t − clamp(P_t − m_t v_t, ±bound(p)),
 ///
 /// > residual = ‖(e_n, e_t)‖₂ / ‖(m_n v_n^free, m_t v_t^free)‖₂,
 ///
-/// with v^free the relative velocity without any contact impulse, including the restitution term. If nothing would move
-/// without contacts, the residual is 0 if the error is only rounding, and infinite otherwise. Rows store p/m_n and
-/// P_t/m_n, so each row's terms are formed in m/s and weighted by m_n. Moments against rolling add theirs
-/// (`problem::rolling`).
+/// with v^free the relative velocity without any contact impulse, including the restitution term, and m_n and m_t the
+/// effective masses of a contact. If nothing would move without contacts, the residual is 0 if the error is only
+/// rounding, and infinite otherwise. Rows store p/m_n and P_t/m_n, so each row's terms are computed in m/s and weighted
+/// by m_n. Rolling moments add their own errors (`problem::rolling`).
 #[inline(never)]
 pub fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
     common_map(problem).residual::<M>(problem)
 }
 
-/// The sums that make up [`residual`].
+/// Computes the sums over all contacts that make up [`residual`].
 fn common_map<M: Model>(problem: &StepProblem<M>) -> Sums {
     let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
         sums.add_error(problem, number, row, &motion);
@@ -31,8 +33,8 @@ fn common_map<M: Model>(problem: &StepProblem<M>) -> Sums {
     sum_of_rows(problem, add_error, Sums::add_all)
 }
 
-/// The sums for the model of friction that a problem is solved by: the natural map of its projection
-/// (`problem::friction`), over the same scale as [`residual`], so that both can be compared.
+/// Computes the sums of the natural map of the friction model that a problem is solved under (`problem::friction`). The
+/// denominator is the denominator of [`residual`], so that both residuals can be compared.
 fn projection_map<M: Model, P: FrictionProjection>(problem: &StepProblem<M>) -> Sums {
     let compliance = 1.0 / M::TANGENTIAL_COMPLIANCE;
     let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
@@ -47,29 +49,31 @@ fn projection_map<M: Model, P: FrictionProjection>(problem: &StepProblem<M>) -> 
     sum_of_rows(problem, add_error, Sums::add_all)
 }
 
-/// The sums of the natural map of a projection: of Coulomb's law, or of a model of friction.
+/// Computes the sums of the natural map of the projection `P`: Coulomb's law or another friction model.
 fn map_of<M: Model, P: FrictionProjection>(problem: &StepProblem<M>) -> Sums {
     if P::LAGS { projection_map::<M, P>(problem) } else { common_map(problem) }
 }
 
-/// The residual of the natural map of a projection, dimensionless.
+/// Returns the residual of the natural map of the projection `P`, dimensionless.
 pub(crate) fn projection_residual<M: Model, P: FrictionProjection>(
     problem: &StepProblem<M>,
 ) -> f64 {
     map_of::<M, P>(problem).residual(problem)
 }
 
-/// The sums of the natural map of the law that a problem is solved for: its model of friction, or Coulomb's law.
+/// Computes the sums of the natural map of the friction model that a problem is solved under, which may be Coulomb's
+/// law.
 pub(super) fn natural_map_sums<M: Model>(problem: &StepProblem<M>) -> Sums {
     with_projection!(problem, M, P => map_of::<M, P>(problem))
 }
 
-/// The residual of [`natural_map_sums`], dimensionless.
+/// Returns the residual of the friction model that a problem is solved under, dimensionless.
 pub(crate) fn natural_map<M: Model>(problem: &StepProblem<M>) -> f64 {
     natural_map_sums(problem).residual(problem)
 }
 
-/// (e_n, e_t) of [`residual`] divided by the effective masses, m/s, of contacts with these (σ, λ_t) and (v_n, v_t).
+/// Returns the errors (e_n, e_t) of contacts in the natural map, divided by the effective masses, m/s. The arguments
+/// are the contacts' impulses (σ, λ_t), restitution terms and relative velocities (v_n, v_t), m/s.
 #[inline(always)]
 pub(crate) fn errors<M: Model, T: Lanes>(
     law: &ContactLaw,
@@ -86,7 +90,7 @@ pub(crate) fn errors<M: Model, T: Lanes>(
     [error, tangential - law::coulomb(tangential - compliance * tangential_velocity, bound)]
 }
 
-/// The squared scale of [`residual`], which is constant during a solve.
+/// Returns the squared denominator of [`residual`], (N·s)², which is constant during a solve.
 pub(crate) fn squared_residual_scale<M: Model>(problem: &StepProblem<M>) -> f64 {
     let add_scale = |sums: &mut Sums, (_, row): (usize, &Row<_>), motion: RowVelocities| {
         sums.add_scale::<M>(row, motion.free);
@@ -94,7 +98,7 @@ pub(crate) fn squared_residual_scale<M: Model>(problem: &StepProblem<M>) -> f64 
     sum_of_rows(problem, add_scale, Sums::add_all).scale
 }
 
-/// Forms [`residual`] from its squared error and squared scale.
+/// Computes [`residual`] from its squared numerator and squared denominator, (N·s)².
 pub(crate) fn residual_of<M: Model>(
     problem: &StepProblem<M>,
     [squared_error, squared_scale]: [f64; 2],
@@ -102,7 +106,7 @@ pub(crate) fn residual_of<M: Model>(
     Sums { error: squared_error, scale: squared_scale }.residual::<M>(problem)
 }
 
-/// Squared error and squared scale of a residual.
+/// Squared numerator (`error`) and squared denominator (`scale`) of a residual, (N·s)².
 #[derive(Default)]
 pub(crate) struct Sums {
     pub(super) error: f64,
@@ -138,7 +142,7 @@ impl Sums {
         }
     }
 
-    /// Adds the errors (e_n, e_t) of a row, m/s.
+    /// Adds a contact's errors (e_n, e_t) in the natural map, divided by its effective mass, m/s.
     #[inline(always)]
     fn add<M: Model>(
         &mut self,
@@ -154,7 +158,8 @@ impl Sums {
         }
     }
 
-    /// Adds a row's contribution to the scale, from its free (v_n, v_t), m/s.
+    /// Adds a contact's contribution to the denominator of the residual, from its relative velocity (v_n, v_t) without
+    /// contact impulses, m/s.
     #[inline(always)]
     fn add_scale<M: Model>(&mut self, row: &Row<M>, free: [f64; 2]) {
         let squared_mass = row.effective_mass * row.effective_mass;
@@ -175,25 +180,28 @@ impl Sums {
     }
 }
 
-/// Relative rounding error of impulses. If nothing would move without contacts, errors of up to this fraction of the
-/// impulses count as 0. If it were smaller, methods that scale impulses would not solve a step in which nothing
-/// happens; if it were larger, errors would go unseen.
+/// Relative rounding error of impulses. The residual divides by the impulses that would stop the contacts' free motion.
+/// If there is no free motion, errors of at most this fraction of the impulses count as 0. With a smaller value,
+/// methods that scale impulses would not solve a step in which nothing moves; with a larger value, real errors would
+/// count as 0.
 pub(super) const ROUNDING: f64 = 1e-14;
 
-/// The error that counts as rounding, N·s.
+/// Returns the largest error that counts as rounding if nothing moves without contacts, N·s.
 pub(super) fn rounding<M: Model>(problem: &StepProblem<M>) -> f64 {
     let squared = |row: &Row<M>| squared_impulse(row.effective_mass, row.impulse());
     let squares = problem.rows.iter().map(squared).sum::<f64>();
     ROUNDING * (squares + squared_rolling(problem)).sqrt()
 }
 
-/// Σ (MΔt/R)² of the rolling moments, (N·s)².
+/// Returns the sum of the squared rolling impulses, Σ (MΔt/R)², with M the rolling moment and R the reduced radius,
+/// (N·s)².
 pub(super) fn squared_rolling<M: Model>(problem: &StepProblem<M>) -> f64 {
     let rolling = problem.rows.iter().zip(&problem.rows.rolling);
     rolling.map(|(row, rolling)| (row.effective_mass * rolling.impulse).powi(2)).sum()
 }
 
-/// P² of an impulse (λ_n, λ_t) with effective mass `mass`, (N·s)².
+/// Returns the squared impulse P², (N·s)², of impulses (λ_n, λ_t) that are divided by the effective mass `mass` (kg),
+/// m/s.
 #[inline(always)]
 pub(crate) fn squared_impulse(mass: f64, [normal, tangential]: [f64; 2]) -> f64 {
     mass * mass * (normal * normal + tangential * tangential)

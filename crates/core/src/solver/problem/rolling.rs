@@ -1,24 +1,27 @@
-//! Rolling resistance: a moment M of each contact against the relative spin of its bodies.
+//! Rolling resistance: a moment M at each contact against the relative spin of its bodies.
 //!
-//! **Law.** With the reduced radius R, 1/R = 1/r_i + 1/r_j, or R = r_i against a boundary, the rolling velocity is
+//! **Law.** The reduced radius R of bodies with the radii r_i and r_j has 1/R = 1/r_i + 1/r_j, or R = r_i against a
+//! boundary. With the angular velocities ω and the spins s = rω, the rolling velocity is
 //!
 //! > v_r = R (ω_i − ω_j) = a_i s_i − a_j s_j,  s = rω,  a_i = R/r_i,  a_j = R/r_j = 1 − a_i,
 //!
 //! or a_i s_i − R ω_w against a fixed body that turns with ω_w; a_i is 1 against a boundary. The moment impulse MΔt
-//! acts on i, and its opposite on j. The reduced form ψ = MΔt/(R m_ij), in m/s, obeys the law of Coulomb friction,
+//! acts on i, and its opposite on j. The reduced rolling impulse ψ = MΔt/(R m_ij), in m/s, obeys the law of Coulomb
+//! friction,
 //!
 //! > |ψ| ≤ μ_r σ',  ψ = −μ_r σ' sign(v_r) unless v_r = 0,
 //!
-//! with σ' the part of σ that bounds friction (`contact::law`), and v_r at the end of the step. So M does no work while
-//! it prevents rolling, and dissipates otherwise. J. Ai, J.-F. Chen, J. M. Rotter and J. Y. Ooi (2011) call this a
-//! directional constant torque; here the torque also holds at v_r = 0.
+//! with μ_r the coefficient of rolling friction, σ' the part of the shifted normal impulse σ that bounds friction
+//! (`contact::law`), and v_r at the end of the step. So M does no work while it prevents rolling, and dissipates energy
+//! otherwise. J. Ai, J.-F. Chen, J. M. Rotter and J. Y. Ooi (2011) call this a directional constant torque; in this
+//! program the torque also acts at v_r = 0.
 //!
-//! **Response.** With I = ½mr² and g_i as in `solver::kinematics`, MΔt = R m_ij ψ changes the spins by
+//! **Response.** With I = ½mr² and the mass ratio g_i as in `solver::kinematics`, MΔt = R m_ij ψ changes the spins by
 //!
 //! > Δs_i = r_i MΔt/I_i = 2 g_i a_i ψ,  Δs_j = −2 (1 − g_i) a_j ψ,  Δv_r = W ψ,
 //! > W = 2 (g_i a_i² + (1 − g_i) a_j²), or 2 a_i² against a fixed body.
 //!
-//! The update of a contact is ψ ← clamp(ψ − v_r/W, ±μ_r σ'), after that of (σ, λ_t). ψ changes v_t, too, unless
+//! The update of a contact is ψ ← clamp(ψ − v_r/W, ±μ_r σ'), after the update of (σ, λ_t). ψ changes v_t, too, unless
 //! g_i a_i = (1 − g_i) a_j, so the updates of λ_t and ψ are two steps of Gauss–Seidel. The error in the natural map is
 //! the change that the update would make. ψ acts on v_r as λ_t acts on v_t, so it adds μ_r σ'|v_r| + ψ v_r to the gap
 //! in `velocity_error`.
@@ -29,67 +32,68 @@ use crate::solver::kinematics::Model;
 /// Rolling resistance of a contact.
 #[derive(Clone, Copy, Debug)]
 pub struct Rolling {
-    /// ψ, m/s.
+    /// Reduced rolling impulse ψ = MΔt/(R m_ij), with the rolling moment M, m/s.
     pub impulse: f64,
-    /// μ_r.
+    /// Coefficient of rolling friction μ_r.
     pub friction: f64,
-    /// R, m.
+    /// Reduced radius R of the contact, m: 1/R = 1/r_i + 1/r_j.
     pub radius: f64,
-    /// a_i = R/r_i.
+    /// Ratio a_i = R/r_i of the reduced radius to the radius of body i.
     pub lever: f64,
-    /// W = ∂v_r/∂ψ.
+    /// Compliance W = ∂v_r/∂ψ: change of the rolling velocity per reduced rolling impulse.
     pub compliance: f64,
-    /// R times the angular velocity of a fixed body, m/s.
+    /// Reduced radius R times the angular velocity of a fixed body, m/s.
     pub surface_speed: f64,
 }
 
 impl Rolling {
-    /// The largest |ψ| at a shifted normal impulse σ, m/s.
+    /// Returns the largest rolling impulse |ψ| = MΔt/(R m_ij), m/s, that a shifted normal impulse σ (m/s) allows.
     #[inline(always)]
     pub(crate) fn bound(&self, law: &ContactLaw, shifted_impulse: f64) -> f64 {
         self.friction * law::signorini(law.rubbing(shifted_impulse))
     }
 
-    /// The ψ, m/s, that solves the contact if its v_r is now `velocity`, m/s.
+    /// Returns the rolling impulse ψ = MΔt/(R m_ij), m/s, that satisfies the law of rolling resistance if the rolling
+    /// velocity v_r is now `velocity`, m/s.
     #[inline(always)]
     pub(crate) fn solved(&self, law: &ContactLaw, shifted_impulse: f64, velocity: f64) -> f64 {
         let trial = self.impulse - velocity / self.compliance;
         law::coulomb(trial, self.bound(law, shifted_impulse))
     }
 
-    /// The error of ψ in the natural map, m/s.
+    /// Returns the error of the rolling impulse ψ = MΔt/(R m_ij) in the natural map, m/s.
     #[inline(always)]
     pub(crate) fn error(&self, law: &ContactLaw, shifted_impulse: f64, velocity: f64) -> f64 {
         self.impulse - self.solved(law, shifted_impulse, velocity)
     }
 
-    /// v_r of body i, relative to body j or to the fixed body, m/s.
+    /// Returns the rolling velocity v_r of body i relative to body j or to the fixed body, m/s.
     #[inline(always)]
     pub(crate) fn velocity<M: Model>(&self, i: &M::Body<f64>, j: Option<&M::Body<f64>>) -> f64 {
         let of_j = j.map_or(self.surface_speed, |j| (1.0 - self.lever) * M::coordinates(j)[2]);
         self.lever * M::coordinates(i)[2] - of_j
     }
 
-    /// Derivative of v_r by the coordinates of i (`on_j` false) or j.
+    /// Returns the derivatives of the rolling velocity v_r by the velocity coordinates of body j (`on_j`) or of body i.
     #[inline(always)]
     pub(crate) fn gradient(&self, on_j: bool) -> [f64; 3] {
         [0.0, 0.0, if on_j { self.lever - 1.0 } else { self.lever }]
     }
 
-    /// Applies ψ to body i, whose g_i is `share`.
+    /// Applies the rolling impulse ψ = MΔt/(R m_ij), m/s, to body i. `share` is the mass ratio g_i = m_ij/m_i.
     #[inline(always)]
     pub(crate) fn turn_i<M: Model>(&self, i: &mut M::Body<f64>, share: f64, impulse: f64) {
         turn::<M>(i, 2.0 * share * self.lever * impulse);
     }
 
-    /// Applies ψ to body j.
+    /// Applies the rolling impulse ψ = MΔt/(R m_ij), m/s, to body j. `share` is the mass ratio g_i = m_ij/m_i.
     #[inline(always)]
     pub(crate) fn turn_j<M: Model>(&self, j: &mut M::Body<f64>, share: f64, impulse: f64) {
         turn::<M>(j, -2.0 * (1.0 - share) * (1.0 - self.lever) * impulse);
     }
 }
 
-/// Adds to s = rω of a body, m/s.
+/// Adds `change`, m/s, to the spin s = rω of a body.
 #[inline(always)]
 fn turn<M: Model>(body: &mut M::Body<f64>, change: f64) {
     let [x, y, spin] = M::coordinates(body);

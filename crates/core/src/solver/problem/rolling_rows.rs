@@ -1,4 +1,4 @@
-//! Rolling resistance of the rows of a problem: set up, read and stored.
+//! Rolling resistance of the rows of a problem: sets up, returns and stores it.
 
 use super::{MovingSurfaces, NumbersOfContact, Rolling, Row, StepProblem};
 use crate::contact::{Contact, ContactList, Numbering, Other, law};
@@ -6,7 +6,8 @@ use crate::solver::kinematics::Model;
 use crate::world::World;
 
 impl<M: Model> StepProblem<M> {
-    /// Adds the rolling resistance of each row, if there is any: μ_r is `friction`, or the row's own.
+    /// Adds the rolling resistance of each contact if the model has rolling and its coefficient is not 0. The
+    /// coefficient μ_r is `friction`, or comes from `numbers_of` if contacts have different coefficients.
     pub(super) fn fill_rolling(
         &mut self,
         world: &World,
@@ -48,7 +49,7 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the surface speeds of fixed bodies that turn.
+    /// Sets the surface speeds of contacts whose fixed body turns.
     pub(super) fn turn_surfaces(&mut self, contacts: &[Contact], surfaces: &MovingSurfaces<'_>) {
         for (rolling, &index) in self.rows.rolling.iter_mut().zip(&self.rows.contacts) {
             let surface = (surfaces.of)(&contacts[index as usize]);
@@ -56,7 +57,7 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Stores the rolling impulses in the contacts, N·m·s.
+    /// Stores the rolling impulses (moment times time step, N·m·s) in the contacts.
     pub(super) fn store_rolling(&self, contacts: &mut ContactList) {
         let stored = contacts.rolling_mut();
         stored.clear();
@@ -70,7 +71,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// The rolling resistance of row `number`, and its v_r at the velocities `bodies`, m/s.
+    /// Returns the rolling resistance of the contact in row `number`, and its rolling velocity v_r, m/s, if the bodies
+    /// have the velocities `bodies`. Returns `None` without rolling resistance.
     #[inline(always)]
     pub(crate) fn rolling(
         &self,

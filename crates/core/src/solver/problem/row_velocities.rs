@@ -1,4 +1,4 @@
-//! Visits the rows of a problem in order with their relative velocities, and sums over them.
+//! Visits the rows (contacts) of a problem in order with their relative velocities, and sums over the rows.
 
 use std::ops::Range;
 
@@ -6,17 +6,18 @@ use super::{Row, StepProblem};
 use crate::solver::kinematics::Model;
 use crate::threads;
 
-/// Relative (normal, tangential) velocities of one contact, m/s; v_t is relative to the surface if the surface moves.
+/// Relative (normal, tangential) velocities of one contact, m/s. The tangential velocity is relative to the surface of
+/// a fixed body if the surface moves.
 pub struct RowVelocities {
-    /// At the end of the step.
+    /// Normal and tangential velocity at the end of the step, m/s.
     pub now: [f64; 2],
-    /// At the beginning of the step.
+    /// Normal and tangential velocity at the beginning of the step, m/s.
     pub before: [f64; 2],
-    /// At the end of the step if no contact acted.
+    /// Normal and tangential velocity at the end of the step if no contact acted, m/s.
     pub free: [f64; 2],
 }
 
-/// Visits the rows with their numbers and relative velocities.
+/// Calls `visit` for each row (contact) of a problem with the row's number and relative velocities.
 pub fn for_each_row<M: Model>(
     problem: &StepProblem<M>,
     visit: impl FnMut(usize, &Row<M>, RowVelocities),
@@ -24,8 +25,8 @@ pub fn for_each_row<M: Model>(
     for_each_row_of(problem, 0..problem.rows.len(), visit);
 }
 
-/// Sums over the rows, in chunks of fixed length: `visit` adds a row to the sum of its chunk, `join` adds the sum of
-/// the next chunk to the total.
+/// Sums over the rows (contacts), in chunks of fixed length: `visit` adds a row to the sum of its chunk, and `join`
+/// adds the sum of the next chunk to the total.
 pub(super) fn sum_of_rows<M: Model, S: Default + Send>(
     problem: &StepProblem<M>,
     visit: impl Fn(&mut S, (usize, &Row<M>), RowVelocities) + Sync,
@@ -54,7 +55,7 @@ fn for_each_row_of<M: Model>(
         let row = &problem.rows.fixed[number];
         let [now, before, free] =
             [&bodies.now, &bodies.before, &bodies.free].map(|bodies| row.velocity(bodies));
-        // A driven wall, too, would move differently without contacts.
+        // Without contacts a driven wall, too, would have another speed, and v^free is relative to that speed.
         let free = problem.free_part(number, row, free).unwrap_or(free);
         visit(number, row, RowVelocities { now, before, free });
     }
@@ -66,8 +67,8 @@ fn for_each_row_of<M: Model>(
     }
 }
 
-/// Computes v_n of every row at the velocities `bodies`, relative to the wall if the wall moves, m/s. Clears `speeds`
-/// first.
+/// Computes the normal velocity of every contact, m/s, if the bodies have the velocities `bodies`. The velocity is
+/// relative to the wall if the wall moves. Clears `speeds` first.
 pub fn relative_velocities<M: Model>(
     problem: &StepProblem<M>,
     bodies: &[M::Body<f64>],

@@ -1,4 +1,4 @@
-//! The bodies of a step's problem, and its rows, one per contact, in the order of the sweep.
+//! The bodies of a step's contact problem, and its rows: the data of each contact, in the order of the sweep.
 
 use std::ops::{Deref, DerefMut};
 
@@ -6,16 +6,16 @@ use super::rolling::Rolling;
 use crate::contact::ContactLaw;
 use crate::solver::kinematics::Model;
 
-/// The bodies of a step, one per grain.
+/// The bodies of a step's contact problem, one per grain.
 #[derive(Clone, Debug)]
 pub struct Bodies<M: Model> {
-    /// Velocities with the rows' impulses.
+    /// Velocities that follow from the present impulses of the rows.
     pub now: Vec<M::Body<f64>>,
     /// Velocities at the beginning of the step.
     pub before: Vec<M::Body<f64>>,
     /// Velocities at the end of the step if no contact acted.
     pub free: Vec<M::Body<f64>>,
-    /// Masses, kg.
+    /// Masses of the grains, kg.
     pub masses: Vec<f64>,
     /// Mean mass of the grains, kg.
     pub mean_mass: f64,
@@ -28,39 +28,41 @@ impl<M: Model> Default for Bodies<M> {
     }
 }
 
-/// The common part of a row against a fixed body and a row between grains.
+/// The data that a contact with a fixed body and a contact between grains have in common.
 ///
-/// Impulses are reduced impulses, λ = P/m_ij (see `solver::kinematics` and `contact::law`). This is plain data: a
-/// problem shows its rows and does not take rows from outside.
+/// Impulses are reduced impulses λ = P/m_ij, impulse divided by effective mass, in m/s (see `solver::kinematics` and
+/// `contact::law`). This is plain data: code outside this crate can read the rows of a problem, but cannot replace
+/// them.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Row<M: Model> {
-    /// Grain i.
+    /// Index of grain i.
     pub i: u32,
-    /// Grain j; unused in a row against a fixed body.
+    /// Index of grain j; not used in a contact with a fixed body.
     pub j: u32,
-    /// n, from j to i.
+    /// Unit normal n of the contact, from body j (or the fixed body) to grain i.
     pub normal: M::Normal<f64>,
-    /// The term that the contact law adds to v_n, m/s: ρ v_n^{n−1}, or 0 below the threshold, minus the speed of an
-    /// approaching wall (`problem::walls`).
+    /// The term that the contact law adds to v_n, m/s: ρ v_n^{n−1}, or 0 if the approach is slower than the threshold
+    /// of restitution, minus the speed of an approaching wall (`problem::walls`).
     pub restitution_velocity: f64,
-    /// σ = λ_n + capture speed, m/s.
+    /// Shifted normal impulse σ = λ_n + capture speed, m/s.
     pub shifted_impulse: f64,
-    /// λ_t, m/s.
+    /// Tangential impulse λ_t, m/s.
     pub tangential_impulse: f64,
-    /// m_ij, kg.
+    /// Effective mass m_ij, kg.
     pub effective_mass: f64,
 }
 
 /// A contact with a fixed body: exactly one cache line in the plane.
 ///
-/// A structure of arrays took 1.1 to 1.2 times as long (`assets/reports/parts.md`).
+/// A structure of arrays was 1.1 to 1.2 times slower (`assets/reports/parts.md`).
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct FixedRow<M: Model> {
-    /// The common part of a row.
+    /// The data that all contacts have.
     pub row: Row<M>,
-    /// Speed of the body's surface along t, m/s. The law's v_t is relative to it.
+    /// Speed of the fixed body's surface along the tangent, m/s. The tangential velocity v_t of the law is relative to
+    /// it.
     pub surface_speed: f64,
 }
 
@@ -68,9 +70,9 @@ pub struct FixedRow<M: Model> {
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct PairRow<M: Model> {
-    /// The common part of a row.
+    /// The data that all contacts have.
     pub row: Row<M>,
-    /// g_i = m_ij/m_i.
+    /// Mass ratio g_i = m_ij/m_i. An impulse P changes the velocity of grain i by g_i P/m_ij.
     pub share: f64,
 }
 
@@ -98,7 +100,7 @@ is_a_row!(FixedRow);
 is_a_row!(PairRow);
 
 impl<M: Model> Row<M> {
-    /// (σ, λ_t), m/s.
+    /// Returns the shifted normal impulse σ and the tangential impulse λ_t, m/s.
     #[inline(always)]
     pub fn impulse(&self) -> [f64; 2] {
         [self.shifted_impulse, self.tangential_impulse]
@@ -106,8 +108,9 @@ impl<M: Model> Row<M> {
 }
 
 impl<M: Model> FixedRow<M> {
-    /// (v_n, v_t) of the grain, m/s. v_t is relative to the body's surface. v_n is relative to a body at rest, because
-    /// the speed of an approaching wall is in `restitution_velocity`.
+    /// Returns the velocity (v_n, v_t) of the grain at the contact, m/s. v_t is relative to the surface of the fixed
+    /// body. v_n is relative to a body at rest, because the speed of an approaching wall is part of
+    /// `restitution_velocity`.
     #[inline(always)]
     pub fn velocity(&self, bodies: &[M::Body<f64>]) -> [f64; 2] {
         let [normal, tangential] = M::velocity(self.normal, &bodies[self.i as usize]);
@@ -116,36 +119,36 @@ impl<M: Model> FixedRow<M> {
 }
 
 impl<M: Model> PairRow<M> {
-    /// (v_n, v_t) of grain i relative to grain j, m/s.
+    /// Returns the velocity (v_n, v_t) of grain i relative to grain j at the contact, m/s.
     #[inline(always)]
     pub fn velocity(&self, bodies: &[M::Body<f64>]) -> [f64; 2] {
         M::relative_velocity(self.normal, &bodies[self.i as usize], &bodies[self.j as usize])
     }
 }
 
-/// The rows of a step. Their numbers count the rows against fixed bodies first, then the rows between grains, each in
-/// the order of the sweep (`problem::order`).
+/// The data of a step's contacts, one row per contact. Row numbers count the contacts with fixed bodies first, then the
+/// contacts between grains, each in the order of the sweep (`problem::order`).
 #[derive(Clone, Debug, Default)]
 pub struct ContactRows<M: Model> {
-    /// Rows against fixed bodies.
+    /// Rows of contacts with fixed bodies.
     pub fixed: Vec<FixedRow<M>>,
-    /// Rows between grains.
+    /// Rows of contacts between grains.
     pub pairs: Vec<PairRow<M>>,
-    /// The contact of each row.
+    /// Index of each row's contact in the list of contacts.
     pub contacts: Vec<u32>,
-    /// The capture speed of each row, m/s, if rows have different ones (law `range`, pairs of materials); else empty.
-    /// Sweeps in the shifted cone do not need it because they use σ alone.
+    /// Capture speed of each row, m/s, if rows have different capture speeds (law `range`, pairs of materials); else
+    /// empty. Sweeps in the shifted cone do not need it because they use the shifted impulse σ only.
     pub captures: Vec<f64>,
-    /// μ of each row if pairs of materials have their own numbers; else empty.
+    /// Friction coefficient μ of each row, if pairs of materials have their own numbers; else empty.
     pub frictions: Vec<f64>,
-    /// ρ of each row if pairs of materials have their own numbers; else empty.
+    /// Coefficient of restitution ρ of each row, if pairs of materials have their own numbers; else empty.
     pub restitutions: Vec<f64>,
     /// The rolling resistance of each row; empty without rolling friction.
     pub rolling: Vec<Rolling>,
 }
 
 impl<M: Model> ContactRows<M> {
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.fixed.len() + self.pairs.len()
     }
@@ -166,24 +169,24 @@ impl<M: Model> ContactRows<M> {
         self.rolling.clear();
     }
 
-    /// The rows in the order of their numbers.
+    /// Iterates over the rows in the order of their numbers.
     pub fn iter(&self) -> impl Iterator<Item = &Row<M>> {
         self.fixed.iter().map(|row| &row.row).chain(self.pairs.iter().map(|row| &row.row))
     }
 
-    /// Mutable references to the rows in the order of their numbers.
+    /// Iterates over mutable references to the rows in the order of their numbers.
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut Row<M>> {
         let fixed = self.fixed.iter_mut().map(|row| &mut row.row);
         fixed.chain(self.pairs.iter_mut().map(|row| &mut row.row))
     }
 
-    /// Returns true if row `number` is between grains.
+    /// Returns true if row `number` is a contact between grains.
     #[inline(always)]
     pub fn is_pair(&self, number: usize) -> bool {
         number >= self.fixed.len()
     }
 
-    /// Row `number`.
+    /// Returns row `number`, the data of a contact.
     pub(crate) fn get(&self, number: usize) -> &Row<M> {
         match number.checked_sub(self.fixed.len()) {
             None => &self.fixed[number],
@@ -191,7 +194,7 @@ impl<M: Model> ContactRows<M> {
         }
     }
 
-    /// Row `number`, mutable.
+    /// Returns a mutable reference to row `number`, the data of a contact.
     pub(crate) fn get_mut(&mut self, number: usize) -> &mut Row<M> {
         match number.checked_sub(self.fixed.len()) {
             None => &mut self.fixed[number],
@@ -199,32 +202,35 @@ impl<M: Model> ContactRows<M> {
         }
     }
 
-    /// g_i of row `number`; 1 against a fixed body.
+    /// Returns the mass ratio g_i = m_ij/m_i of the contact in row `number`; 1 if the contact is with a fixed body.
     #[inline(always)]
     pub(crate) fn share(&self, number: usize) -> f64 {
         number.checked_sub(self.fixed.len()).map_or(1.0, |number| self.pairs[number].share)
     }
 
-    /// Speed along t of the surface behind row `number`, m/s; 0 between grains.
+    /// Returns the speed along the tangent of the surface of the fixed body in row `number`, m/s; 0 for a contact
+    /// between grains.
     #[inline(always)]
     pub(crate) fn surface_speed(&self, number: usize) -> f64 {
         self.fixed.get(number).map_or(0.0, |row| row.surface_speed)
     }
 
-    /// The capture speed of row `number`, m/s: its own, or that of `law` if all rows have the same.
+    /// Returns the capture speed of the contact in row `number`, m/s: its own, or the capture speed of `law` if the
+    /// contacts have no own capture speeds.
     #[inline(always)]
     pub(super) fn capture(&self, number: usize, law: &ContactLaw) -> f64 {
         if self.captures.is_empty() { law.capture_speed() } else { self.captures[number] }
     }
 
-    /// The law of row `number`: `law`, or with the numbers of the row's pair of materials.
+    /// Returns the contact law of the contact in row `number`: `law`, modified by the numbers of the contact's pair of
+    /// materials, if it has any.
     #[inline(always)]
     pub(crate) fn law(&self, number: usize, law: &ContactLaw) -> ContactLaw {
         law_of_row([&self.frictions, &self.captures], number, law)
     }
 
-    /// Adds a copy of row `number` of `others`, modified by `change`. The copy's entry in `contacts` is `number`, not
-    /// the contact.
+    /// Adds a copy of row `number` of `others`, modified by `change`. The copy's entry in `contacts` is `number`
+    /// instead of the index of the contact.
     pub(crate) fn push_copy(
         &mut self,
         others: &Self,
@@ -245,7 +251,8 @@ impl<M: Model> ContactRows<M> {
         self.contacts.push(number as u32);
     }
 
-    /// Copies (σ, λ_t) of all rows, m/s, then (ψ, 0) of those that resist rolling. Clears `impulses` first.
+    /// Copies the impulses (σ, λ_t) of all rows, m/s, then (ψ, 0) of all rows that resist rolling, with ψ the reduced
+    /// rolling impulse. Clears `impulses` first.
     pub(crate) fn read_impulses(&self, impulses: &mut Vec<[f64; 2]>) {
         impulses.clear();
         impulses.extend(self.iter().map(Row::impulse));
@@ -253,7 +260,8 @@ impl<M: Model> ContactRows<M> {
     }
 }
 
-/// The law of row `number`: `law`, or with the row's own μ and capture speed (m/s), if these lists are not empty.
+/// Returns the contact law of the contact in row `number`: `law`, with the contact's own friction coefficient and
+/// capture speed (m/s) if these lists are not empty.
 #[inline(always)]
 pub(crate) fn law_of_row(
     [frictions, captures]: [&[f64]; 2],

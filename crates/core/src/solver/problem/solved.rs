@@ -1,4 +1,4 @@
-//! The only place that decides whether a step is solved.
+//! Decides whether a step is solved. No other code decides this.
 
 use super::residual::{natural_map_sums, rounding, squared_impulse, squared_rolling};
 use super::{StepProblem, velocity_error};
@@ -8,17 +8,17 @@ use crate::solver::settings::{SolverSettings, StopTest};
 /// Returns true if a problem is solved to the tolerance of the settings. The test does not depend on the method that
 /// solved the problem.
 ///
-/// **Error bound from a small change.** A contact's error e_k in the natural map is the change that a Gauss–Seidel
-/// update would now make to its impulses. Each contact has no error just after its own update, and the later updates of
-/// the same sweep bring some error back. Projections do not increase distances, so with W the Delassus operator and ΔP
-/// the changes of the sweep
+/// **Error bound from a small change.** The error e_k of contact k in the natural map is the change that a Gauss–Seidel
+/// update would now make to its impulses. A contact has no error just after its own update, and the later updates of
+/// the same sweep bring some error back. Projections do not increase distances. So with W the Delassus operator, m_k
+/// the effective mass, and ΔP_l the changes of the impulses in the sweep,
 ///
 /// > |e_k| ≤ m_k Σ_l |W_kl ΔP_l|,  l the later contacts of the bodies of k.
 ///
 /// No m_k/m_i is above 1, so ‖e‖ ≤ C‖ΔP‖. Among equal discs, each with at most six contacts, the row and column sums
-/// give C of at most 7.1. In runs of all built-in scenes except the pile, ‖e‖ after a sweep was 0.14 ‖ΔP‖ in the median
-/// and 0.85 ‖ΔP‖ at most. Impulses that stop changing far from a solution, because nothing moves or because the method
-/// takes small steps, have larger errors.
+/// give a C of at most 7.1. In runs of all built-in scenes except the pile, ‖e‖ after a sweep was 0.14 ‖ΔP‖ in the
+/// median and 0.85 ‖ΔP‖ at most. Impulses that stop changing far from a solution, because nothing moves or because the
+/// method takes small steps, have larger errors.
 pub(crate) fn is_solved<M: Model>(problem: &StepProblem<M>, settings: &SolverSettings) -> bool {
     let tolerance = settings.tolerance;
     if settings.stop == StopTest::VelocityError {
@@ -34,11 +34,12 @@ pub(crate) fn is_solved<M: Model>(problem: &StepProblem<M>, settings: &SolverSet
     error.is_finite() && error <= LEFT_OF_CHANGE * change + rounding(problem)
 }
 
-/// C in [`is_solved`]. If it were smaller, good sweeps among discs of many sizes might be rejected; if it were larger,
-/// impulses would pass that have stopped changing far from a solution.
+/// Largest allowed ratio C of the error ‖e‖ to the change ‖ΔP‖ in a sweep, see [`is_solved`]. With a smaller value,
+/// good sweeps among discs of many sizes might be rejected. With a larger value, impulses that have stopped changing
+/// far from a solution would be accepted.
 const LEFT_OF_CHANGE: f64 = 8.0;
 
-/// Σ P², (N·s)², and Σ (MΔt/R)² of rolling moments.
+/// Returns Σ P² of all contact impulses plus Σ (MΔt/R)² of the rolling moments M with the reduced radii R, (N·s)².
 pub(crate) fn squared_impulses<M: Model>(problem: &StepProblem<M>) -> f64 {
     let squared = |number: usize| {
         let row = problem.rows.get(number);

@@ -1,40 +1,43 @@
-//! Estimated distance of the velocities of a step from those of its solution.
+//! Estimated distance of the velocities of a step from the velocities of its solution.
 //!
-//! **The gap.** Let p be allowed impulses and V the velocities that they make, with w and v of each contact as in
-//! `problem::friction`. Let z ≥ 0 be the shortfall of w, the least value with w + z ≥ 0 within friction bounds g, or
-//! w + s + z ≥ μ|v| on the cone. V solves the dual of a problem in which z is added to w. The two energies of that
-//! problem differ by
+//! **The duality gap.** Let p be allowed impulses and V the velocities of the bodies that they cause. H maps velocities
+//! of bodies to velocities w (normal, with restitution term) and v (tangential) of contacts, as in `problem::friction`;
+//! σ and λ are the shifted normal and the tangential impulse of a contact. Let z ≥ 0 be the shortfall of w, the least
+//! value with w + z ≥ 0 within friction bounds g, or w + s + z ≥ μ|v| on the cone. V solves the dual of a problem in
+//! which z is added to w. The two energies of that problem differ by
 //!
 //! > Σ m_ij (σ (w + z) + g|v| + λv) within bounds,  Σ m_ij (σ (w + s + z) + λv) on the cone,
 //!
 //! each term ≥ 0. Let p* and V* be the impulses and velocities of the solution, at which no contact has a shortfall.
 //! Since (p − p*)·H(V − V*) = ‖V − V*‖²_M, ‖V − V*‖²_M is at most that difference plus Σ m_ij z(σ* − σ). σ* is not
 //! known. It is assumed to be at most 2σ + z: twice the present impulse plus the impulse that would end the contact's
-//! shortfall by itself. With this the gap is
+//! shortfall by itself. With this assumption the gap is
 //!
 //! > S = Σ m_ij (σ(w + 2z) + z² + g|v| + λv)
 //!
 //! within bounds. √S divided by the root of the mass of the grains with contacts is an error in m/s.
 //!
 //! **Grains that rest on a contact with a shortfall** have to move as well, and impulses that are still 0 do not show
-//! this: when a column has just begun to fall, only its lowest disc closes on anything. So consider one motion of all
-//! grains that ends such shortfalls: by b along the mean normal u of the contacts with fixed bodies, b the root mean
-//! square of their z/(n·u), and away from the grains' centre at the rate a/d, a the root mean square of z among grains.
-//! The end of a pile that is L diameters long then moves by
+//! this: when a column has just begun to fall, only its lowest disc approaches another body. So consider one motion of
+//! all grains that ends such shortfalls: a translation by b along the mean normal u of the contacts with fixed bodies,
+//! where b is the root mean square of their z/(n·u), and an expansion from the grains' centre at the rate a/d, where a
+//! is the root mean square of z among grains and d the mean diameter. The end of a pile that is L diameters long then
+//! moves by
 //!
 //! > f = b + L a.
 //!
-//! **The reported error** is the larger of √S (in m/s) and f. If no contact has a shortfall, √S is a bound for a model
-//! of friction. Otherwise it is an estimate, which was tested (`scene::law_errors`) on 574 solves of all kinds, good
-//! and bad ones, whose velocities were off by more than 1e-6 √(g d). For 3.5 % of them the true error was larger than
+//! **The reported error** is the larger of √S (in m/s) and f. If no contact has a shortfall, √S is a bound for a convex
+//! friction model. Otherwise it is an estimate, which was tested (`scene::law_errors`) on 574 solves of all kinds, good
+//! and bad solves, whose velocities were off by more than 1e-6 √(g d). For 3.5 % of them the true error was larger than
 //! the estimate; in the median the estimate was 4.3 times the true error. Smaller errors are overestimated because S is
-//! a product of an error of impulses and an error of velocities: on a pile at rest an estimate of 1e-4 can stand for a
-//! true error of 1e-6.
+//! a product of an error of impulses and an error of velocities: for a pile at rest the estimate can be 1e-4 if the
+//! true error is 1e-6.
 //!
-//! **Coulomb's law** has no dual. There g is the bound μσ of the impulses themselves: S is 0 if and only if the law is
-//! solved. Impulses outside their cone add their distance from it, λ − λ_c, as |λ − λ_c||v| + (λ − λ_c)².
+//! **Coulomb's law** has no dual. For Coulomb's law g is the friction bound μσ of the present impulses: S is 0 if and
+//! only if the law is satisfied. An impulse λ outside its cone adds its distance from the nearest allowed λ_c, as
+//! λ − λ_c||v| + (λ − λ_c)².
 //!
-//! A wall that a force drives is one more body. Its mass counts in ‖V − V*‖²_M but not in the mean; w and v are
+//! A wall that a force drives is one more body. Its mass counts in ‖V − V*‖²_M but not in the mean. w and v are
 //! relative to the wall's present velocity, without the scaling by compliances that the natural map uses
 //! (`problem::walls`).
 
@@ -48,16 +51,17 @@ use crate::number::Parts;
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
-/// Minimum n·u of a contact with a fixed body for its shortfall to be ended by a motion along u. At smaller values the
-/// motion would be more than ten times as long as the shortfall.
+/// Minimum cosine n·u between the normal n of a contact with a fixed body and the mean normal u of all such contacts,
+/// at which a motion along u ends the contact's shortfall. If it was smaller, the motion could be more than ten times
+/// as long as the shortfall.
 const LEAST_ALONG: f64 = 0.1;
 
-/// Estimated error of the velocities, and its scale.
+/// Estimated error of the velocities of a step, and the scale that it is compared with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VelocityError {
     /// Estimated root mean square error over the grains with contacts, weighted by mass, m/s.
     pub told: f64,
-    /// √(g d + mean square of the velocities that contacts undo), d the mean diameter, m/s.
+    /// Scale of the error, m/s: √(g d + mean square of the velocities that contacts cancel), with the mean diameter d.
     pub scale: f64,
 }
 
@@ -68,8 +72,8 @@ impl VelocityError {
     }
 }
 
-/// The velocity error with respect to the law that a problem is solved for: its model of friction, or Coulomb's law. It
-/// is 0 if there are no contacts.
+/// Estimates the velocity error of a problem with respect to the friction model that it is solved under, which may be
+/// Coulomb's law. The error is 0 if there are no contacts.
 pub fn velocity_error<M: Model>(problem: &StepProblem<M>) -> VelocityError {
     let add = |sums: &mut ErrorSums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
         sums.add_by_model(problem, number, row, &motion);
@@ -81,16 +85,17 @@ pub fn velocity_error<M: Model>(problem: &StepProblem<M>) -> VelocityError {
     VelocityError { told: sums.error(problem), scale }
 }
 
-/// The sums that make up a velocity error.
+/// The sums over the rows that a velocity error is computed from.
 #[derive(Default)]
 pub(super) struct ErrorSums {
-    /// S, J.
+    /// The duality gap S, J.
     gap: f64,
-    /// Σ m_ij (v^free)² with v^free as in the residual, J.
+    /// Σ m_ij (v^free)², with v^free the contact velocities without contact impulses as in the residual, J.
     undone: f64,
-    /// Σ m_ij |λ|², J.
+    /// Σ m_ij |λ|², J, with λ the impulses divided by the effective masses.
     impulses: f64,
-    /// Σ (z/(n·u))² of contacts with fixed bodies and Σ z² of the others, (m/s)²; below, the number of each.
+    /// Sums of squared shortfalls, (m/s)²: Σ (z/(n·u))² of contacts with fixed bodies, and Σ z² of the other contacts.
+    /// `counts` has the number of contacts in each sum.
     lacks: [f64; 2],
     counts: [f64; 2],
 }
@@ -106,7 +111,7 @@ impl ErrorSums {
         }
     }
 
-    /// Adds a row under the model of friction that the problem is solved for.
+    /// Adds the contribution of a contact under the friction model that the problem is solved under.
     #[inline(always)]
     fn add_by_model<M: Model>(
         &mut self,
@@ -143,7 +148,7 @@ impl ErrorSums {
         self.add(problem, number, row, of_normal + rubbing + tangential * across, lacking);
     }
 
-    /// Adds a row under Coulomb's law.
+    /// Adds the contribution of a contact under Coulomb's law.
     #[inline(always)]
     pub(super) fn add_by_law<M: Model>(
         &mut self,
@@ -174,7 +179,8 @@ impl ErrorSums {
         self.add(problem, number, row, of_contact, lacking);
     }
 
-    /// Adds a row's contribution to S divided by its effective mass, (m/s)², and its shortfall z, m/s.
+    /// Adds a contact's contribution to the duality gap S, divided by its effective mass, (m/s)², and its shortfall z,
+    /// m/s.
     #[inline(always)]
     fn add<M: Model>(
         &mut self,
@@ -194,9 +200,10 @@ impl ErrorSums {
         self.counts[kind] += 1.0;
     }
 
-    /// The larger of √S over the root of the mass and of f, m/s; NaN if S is NaN.
+    /// Returns the velocity error, m/s: the larger of √S (S is the duality gap) divided by the root of the mass, and of
+    /// the speed f of the motion that ends all shortfalls. Returns NaN if S is NaN.
     pub(super) fn error<M: Model>(&self, problem: &StepProblem<M>) -> f64 {
-        // A gap within the rounding of the impulses counts as 0.
+        // A gap S within the rounding of the impulses counts as 0.
         let is_rounding = self.gap.abs() <= ROUNDING * ROUNDING * self.impulses;
         let squared = if is_rounding { 0.0 } else { self.gap / problem.touching_mass() };
         // Rounding may make a gap of 0 negative; NaN stays NaN.

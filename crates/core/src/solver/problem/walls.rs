@@ -1,31 +1,32 @@
 //! Moving surfaces, and walls that a force drives, in the contacts of a step.
 //!
-//! **Along the normal.** Relative to a surface of speed V a grain has v_n − V. So the law's v_n + ρ v_n^{n−1} becomes
-//! v_n − V + ρ (v_n^{n−1} − V⁻): only the term added to v_n changes, and methods need no change. V⁻ is the speed of the
-//! surface at the beginning of the step. A grain that rests on an accelerating surface has v_n^{n−1} = V⁻, so it does
-//! not bounce.
+//! **Along the normal.** Relative to a surface of speed V a grain has the normal velocity v_n − V. So the expression
+//! v_n + ρ v_n^{n−1} of the contact law becomes v_n − V + ρ (v_n^{n−1} − V⁻): only the term added to v_n changes, and
+//! methods need no change. V⁻ is the speed of the surface at the beginning of the step. A grain that rests on an
+//! accelerating surface has v_n^{n−1} = V⁻, so it does not bounce.
 //!
-//! **Along the tangent** the law's v_t becomes v_t − V_t, which the added term cannot express. A row against a fixed
-//! body stores V_t at the place where a pair stores its mass ratio g_i, which is 1 against a fixed body. The sweep
-//! subtracts a number of the row's own cache line, which changes no bit if V_t = 0.
+//! **Along the tangent** the law's v_t becomes v_t − V_t, which the added term cannot express. A row (the data of a
+//! contact) against a fixed body stores the surface speed V_t at the address where a pair of grains stores its mass
+//! ratio g_i, which is 1 against a fixed body. A sweep subtracts V_t, which is in the row's own cache line and changes
+//! no bit if it is 0.
 //!
-//! **Work.** The work of a contact is formed with the grain's own velocity (`problem::measures`), so it contains the
+//! **Work.** The work of a contact is computed with the grain's own velocity (`problem::measures`), so it contains the
 //! work of the surface on the grain, P_n V + P_t V_t. The rest is dissipated in the contact.
 //!
-//! **Driven walls.** A wall of mass M moves along a, |a| = 1, with speed V under a force F and a damping force c V.
-//! Each contact pushes it back by P·b with b = (a·n, a·t). With the damping taken at the end of the step
+//! **Driven walls.** A wall of mass M moves along the unit vector a with speed V under a force F and a damping force c
+//! V. Each contact pushes the wall back by P·b with b = (a·n, a·t). With the damping force taken at the end of the step
 //!
 //! > M (V − V⁻) = Δt (F − c V) − Σ P·b,  V = V_free − r Σ P·b,
 //! > r = 1/(M + cΔt),  V_free = r (M V⁻ + ΔtF).
 //!
 //! V is an unknown like the velocities of grains, so a wall that is lighter than its load does not begin to oscillate.
-//! Its load then passes only slowly from contact to contact, by M/m_i per sweep. In reduced impulses λ = P/m_i, and
-//! with κ = r m_i, a contact of grain i has
+//! But sweeps then pass the load of the wall only slowly from contact to contact, by M/m_i per sweep. In reduced
+//! impulses λ = P/m_i, and with κ = r m_i, a contact of grain i has
 //!
 //! > u_n = v_n − b_n V,  ∂u_n/∂λ_n = 1 + κ b_n²,  ∂u_t/∂λ_t = m_n/m_t + κ b_t²,
 //!
-//! and for every other contact of the wall V changes by −κ (b_n λ_n + b_t λ_t). V is copied into the rows once per
-//! sweep, so that every reader of the rows gets velocities relative to the present motion of the wall.
+//! and its impulses change the V of the wall's other contacts by −κ (b_n λ_n + b_t λ_t). V is copied into the rows once
+//! per sweep, so that every reader of the rows gets velocities relative to the present motion of the wall.
 
 use glam::DVec2;
 
@@ -33,36 +34,36 @@ use super::{Approach, Row, StepProblem};
 use crate::contact::{Contact, ContactList};
 use crate::solver::kinematics::Model;
 
-/// Marks a row whose wall is not driven.
+/// Marks a contact whose fixed body is not a driven wall.
 const NONE: u32 = u32::MAX;
 
 /// Motion of the surface of a fixed body at a contact.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
-    /// Velocity of the shape at the contact, m/s.
+    /// Velocity of the shape at the contact in the step, m/s: for a prescribed motion, the mean over the step.
     pub velocity: DVec2,
     /// Velocity of the shape at the contact at the beginning of the step, m/s.
     pub before: DVec2,
-    /// Additional speed along t of a surface that runs around its shape while the shape stays in place, m/s.
+    /// Additional speed along the tangent of a surface that runs around its shape while the shape does not move, m/s.
     pub round: f64,
     /// Angular velocity of the shape, or of a fixed disc whose surface runs around it, rad/s.
     pub spin: f64,
-    /// True if the shape is a half-space, for which a motion along its surface changes nothing.
+    /// True if the shape is a half-space, whose gaps do not change if it moves along its surface.
     pub is_half_space: bool,
     /// True if the shape moves only along its normal.
     pub is_pushed: bool,
-    /// The driven wall, if a force drives the shape.
+    /// The driven wall and its direction at the contact, if a force drives the shape.
     pub driven: Option<DrivenBy>,
 }
 
 impl Surface {
-    /// This surface for contacts without friction.
+    /// Returns this surface for contacts without friction, which have no speeds along the tangent.
     fn smooth(self) -> Self {
         let smooth = |by: DrivenBy| DrivenBy { along: [by.along[0], 0.0], ..by };
         Self { is_pushed: true, round: 0.0, driven: self.driven.map(smooth), ..self }
     }
 
-    /// Speeds along n and t, m/s.
+    /// Returns the speeds of the surface along the unit normal n and the tangent t, m/s.
     #[inline]
     pub(crate) fn along(&self, normal: DVec2) -> [f64; 2] {
         let tangential = if self.is_pushed { 0.0 } else { self.velocity.dot(normal.perp()) };
@@ -70,67 +71,68 @@ impl Surface {
     }
 }
 
-/// A wall that a force drives.
+/// A wall that a force drives, in a step's problem.
 #[derive(Clone, Copy, Debug)]
 pub struct DrivenWall {
-    /// Number of its motion in the list of motions.
+    /// Index of the wall's motion in the scene's list of motions.
     pub motion: usize,
-    /// r = 1/(M + cΔt), 1/kg.
+    /// Response r = 1/(M + cΔt) to an impulse, 1/kg, with the wall's mass M and damping coefficient c.
     pub response: f64,
-    /// V⁻, speed at the beginning of the step, m/s.
+    /// Speed V⁻ of the wall at the beginning of the step, m/s.
     pub before: f64,
-    /// V_free, speed at the end of the step if no contact acted, m/s.
+    /// Speed V_free that the wall would have at the end of the step if no contact acted, m/s.
     pub free: f64,
-    /// V, present speed, m/s.
+    /// Speed V of the wall with the present impulses, m/s.
     pub now: f64,
 }
 
 /// The driven wall of a contact, and its direction at the contact.
 #[derive(Clone, Copy, Debug)]
 pub struct DrivenBy {
-    /// Number of the wall.
+    /// Index of the wall in the list of driven walls.
     pub wall: u32,
-    /// b, the wall's direction along n and t.
+    /// Components b of the wall's direction along the contact's normal and tangent.
     pub along: [f64; 2],
 }
 
 impl DrivenBy {
-    /// P·b of an impulse along n and t, in the unit of the impulse.
+    /// Returns P·b, the impulse that a contact impulse with these components gives the wall, in the unit of the
+    /// impulse.
     #[inline(always)]
     pub(crate) fn part_along(&self, [normal, tangential]: [f64; 2]) -> f64 {
         self.along[0] * normal + self.along[1] * tangential
     }
 }
 
-/// A row against a driven wall.
+/// The data of a contact with a wall that a force drives.
 #[derive(Clone, Copy, Debug)]
 pub struct DrivenRow {
-    /// Number of the row among the rows against fixed bodies.
+    /// Number of the contact's row among the rows against fixed bodies.
     pub number: u32,
-    /// The wall and its direction.
+    /// The wall, and its direction at the contact.
     pub by: DrivenBy,
-    /// The row's `restitution_velocity` and `surface_speed` at V = 0, m/s.
+    /// Values of the row's `restitution_velocity` and `surface_speed` if the wall's speed V is 0, m/s.
     pub still: [f64; 2],
-    /// Speed of the wall along n at V = 0, m/s.
+    /// Speed of the wall's surface along the contact's normal if the wall's speed V is 0, m/s.
     pub speed: f64,
 }
 
-/// Moving surfaces of a problem. Memory is kept between steps.
+/// Moving surfaces of a step's problem. The memory is reused for the next step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MovingWalls {
-    /// Speed of the wall of each row against a fixed body along n, m/s; empty if no wall moves.
+    /// For each row against a fixed body, the speed of the body along the normal, m/s; empty if no fixed body moves.
     pub speeds: Vec<f64>,
-    /// The moving surface of each row against a fixed body, if it moves.
+    /// For each row against a fixed body, the body's moving surface, if it moves.
     surfaces: Vec<Option<Surface>>,
     /// Walls that a force drives.
     pub driven: Vec<DrivenWall>,
-    /// The rows against driven walls.
+    /// The contacts with driven walls.
     pub driven_rows: Vec<DrivenRow>,
-    /// Index of each row against a fixed body in `driven_rows`, or [`NONE`]; empty if no wall is driven.
+    /// For each row against a fixed body, its index in `driven_rows`, or [`NONE`]; empty if no wall is driven.
     driven_row_of: Vec<u32>,
 }
 
-/// The moving surfaces of a step.
+/// The moving surfaces of a step, as its contact problem needs them.
 pub struct MovingSurfaces<'a> {
     /// Walls that a force drives.
     pub driven: Vec<DrivenWall>,
@@ -139,7 +141,7 @@ pub struct MovingSurfaces<'a> {
 }
 
 impl MovingWalls {
-    /// Removes all surfaces, at the beginning of a step.
+    /// Removes all moving surfaces, at the beginning of a step.
     pub(super) fn clear(&mut self) {
         self.speeds.clear();
         self.surfaces.clear();
@@ -148,14 +150,15 @@ impl MovingWalls {
         self.driven_row_of.clear();
     }
 
-    /// The driven row with this number, if the wall of the row is driven.
+    /// Returns the data of the contact in row `number` if its fixed body is a driven wall.
     #[inline(always)]
     pub(crate) fn driven_row(&self, number: usize) -> Option<&DrivenRow> {
         self.driven_rows.get(*self.driven_row_of.get(number)? as usize)
     }
 
-    /// Records the next row against a fixed body: its driven wall, the wall's speed along n, and the row's
-    /// `restitution_velocity` and `surface_speed`, all at the speed at the beginning of the step, m/s.
+    /// Records the next row against a fixed body: its driven wall (if it has one), the wall's speed along the normal,
+    /// and the row's `restitution_velocity` and `surface_speed`, all in m/s at the wall's speed at the beginning of the
+    /// step.
     fn add_row(&mut self, by: Option<DrivenBy>, wall_speed: f64, [added, slide]: [f64; 2]) {
         if self.driven.is_empty() {
             return;
@@ -171,7 +174,7 @@ impl MovingWalls {
 }
 
 impl<M: Model> StepProblem<M> {
-    /// Adds moving surfaces to rows that have just been created.
+    /// Adds the speeds of moving surfaces to the rows against fixed bodies, which have just been created.
     pub(super) fn add_surfaces(
         &mut self,
         contacts: &ContactList,
@@ -182,7 +185,7 @@ impl<M: Model> StepProblem<M> {
         walls.driven.extend(surfaces.driven);
         for (number, (row, &index)) in rows.fixed.iter_mut().zip(&rows.contacts).enumerate() {
             let contact = &contacts.contacts()[index as usize];
-            // Without friction, sliding along a surface has no effect.
+            // Without friction, the speed of a surface along the tangent has no effect.
             let surface = (surfaces.of)(contact).map(|surface| match M::FRICTION {
                 true => surface,
                 false => surface.smooth(),
@@ -203,7 +206,7 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the normal of row `number`. Returns the speed of its wall along the new normal, m/s.
+    /// Sets the normal of row `number`. Returns the speed of the fixed body along the new normal, m/s.
     pub(crate) fn turn_row(&mut self, number: usize, normal: DVec2) -> f64 {
         let row = self.rows.get_mut(number);
         row.normal = M::sliding(M::normal(normal.to_array()), M::slide(row.normal));
@@ -214,13 +217,13 @@ impl<M: Model> StepProblem<M> {
         speed
     }
 
-    /// Speed of the wall of row `number` along n, m/s.
+    /// Returns the speed of the fixed body of the contact in row `number` along the normal, m/s; 0 if it does not move.
     #[inline(always)]
     pub fn wall_speed(&self, number: usize) -> f64 {
         self.walls.speeds.get(number).copied().unwrap_or(0.0)
     }
 
-    /// Speed of the wall of row `number` along n at the beginning of the step, m/s.
+    /// Returns the speed of the fixed body of row `number` along the normal at the beginning of the step, m/s.
     pub(crate) fn wall_speed_before(&self, number: usize) -> f64 {
         if self.gives_way(number) {
             return self.wall_speed(number);
@@ -230,7 +233,8 @@ impl<M: Model> StepProblem<M> {
         surface.before.dot(DVec2::new(x, y))
     }
 
-    /// Speeds along t of the surfaces behind all rows, m/s: 0 between grains; empty if no surface moves.
+    /// Returns the speed of the fixed body's surface along the tangent for each row, m/s: 0 for pairs of grains. The
+    /// list is empty if no surface moves.
     pub fn surface_speeds(&self) -> Vec<f64> {
         if !self.has_moving_walls() {
             return Vec::new();
@@ -238,13 +242,13 @@ impl<M: Model> StepProblem<M> {
         (0..self.rows.len()).map(|number| self.rows.surface_speed(number)).collect()
     }
 
-    /// Returns true if a surface may move.
+    /// Returns true if the problem may have moving surfaces.
     pub(crate) fn has_moving_walls(&self) -> bool {
         !self.walls.speeds.is_empty()
     }
 
-    /// Velocity of the fixed shape behind row `number`, m/s, as far as it changes the gap: of a half-space only the
-    /// part along `normal`.
+    /// Returns the part of the velocity of the fixed body of row `number` that changes the gap, m/s. For a half-space
+    /// this is the component along `normal`, for other shapes the whole velocity.
     pub(crate) fn shape_velocity(&self, number: usize, normal: DVec2) -> DVec2 {
         match self.walls.surfaces.get(number) {
             Some(Some(surface)) if !surface.is_half_space => surface.velocity,
@@ -252,12 +256,13 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Work that moving surfaces do through the rows' impulses, J, and its tangential part. Works formed from the rows'
-    /// velocities lack the tangential part, because these velocities are relative to the surfaces.
+    /// Returns the work that moving surfaces do through the rows' impulses, J, and the tangential part of this work.
+    /// Works computed from the rows' velocities lack the tangential part, because these velocities are relative to the
+    /// surfaces.
     pub(crate) fn surface_works(&self) -> [f64; 2] {
         let [whole, along_tangents] = self.surface_works_of(self, |number| number);
-        // Rows contain the final speed of a driven wall, but its work is that of its mean speed: Σ P·b ½(V − V⁻) is too
-        // much.
+        // The rows contain the final speed V of a driven wall, but the wall does work at its mean speed ½(V + V⁻). So
+        // the sum is too large by Σ P·b ½(V − V⁻).
         let surplus = |known: &DrivenRow| {
             let number = known.number as usize;
             let row = &self.rows.fixed[number];
@@ -272,8 +277,8 @@ impl<M: Model> StepProblem<M> {
         [whole - surplus, along_tangents]
     }
 
-    /// Works as in [`Self::surface_works`], of the rows of `part`, a part of this problem; `number_here` translates its
-    /// row numbers to those of this problem.
+    /// Returns the works as [`Self::surface_works`] does, for the rows of `part`, a problem with a subset of the rows
+    /// of this problem. `number_here` translates the row numbers of `part` to row numbers of this problem.
     pub(crate) fn surface_works_of(
         &self,
         part: &Self,
@@ -295,7 +300,8 @@ impl<M: Model> StepProblem<M> {
         [whole, along_tangents]
     }
 
-    /// All rows, mutable, with the speeds of their walls along n, m/s: 0 if the wall does not move.
+    /// Iterates over mutable references to all rows, with the speeds of their fixed bodies along the normal, m/s: 0 if
+    /// there is no fixed body or if it does not move.
     pub(crate) fn rows_with_walls(&mut self) -> impl Iterator<Item = (&mut Row<M>, f64)> {
         let walls = self.walls.speeds.iter().copied().chain(std::iter::repeat(0.0));
         self.rows.iter_mut().zip(walls)
@@ -307,14 +313,14 @@ impl<M: Model> StepProblem<M> {
         !self.walls.driven.is_empty()
     }
 
-    /// Returns true if a force drives the wall of row `number`.
+    /// Returns true if the fixed body of the contact in row `number` is a driven wall.
     #[inline(always)]
     pub(crate) fn gives_way(&self, number: usize) -> bool {
         self.walls.driven_row(number).is_some()
     }
 
-    /// Lets row `number` close with up to `allowed`, m/s, relative to its wall, whose speed along n is `wall_speed`,
-    /// m/s.
+    /// Allows the bodies of the contact in row `number` to approach each other with up to `allowed`, m/s. `wall_speed`
+    /// is the speed of the fixed body along the normal, m/s.
     pub(crate) fn let_close(&mut self, number: usize, allowed: f64, wall_speed: f64) {
         self.rows.get_mut(number).restitution_velocity = allowed - wall_speed;
         let MovingWalls { driven_rows, driven_row_of, .. } = &mut self.walls;
@@ -324,7 +330,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Speed of the wall of row `number` along n at the beginning of the step, and its increase in the step, m/s.
+    /// Returns the speed of the fixed body of row `number` along the normal at the beginning of the step, and its
+    /// increase in the step, m/s.
     pub(crate) fn wall_speed_and_gain(&self, number: usize) -> [f64; 2] {
         let Some(known) = self.walls.driven_row(number) else {
             let before = self.wall_speed_before(number);
@@ -335,9 +342,10 @@ impl<M: Model> StepProblem<M> {
         [known.speed + along * wall.before, along * (wall.now - wall.before)]
     }
 
-    /// (v_n, v_t) of a row against a driven wall, divided by its compliance relative to that of a fixed wall,
-    /// restitution term included, m/s; `None` if the wall is not driven. The row's impulses change the result as much
-    /// as those of a row against a fixed body change its (v_n, v_t).
+    /// Scales the relative velocity (v_n, v_t) of row `number` to a fixed wall, m/s; `None` if the wall is not driven.
+    /// v_n, with its restitution term, is divided by 1 + κ b_n², and v_t by 1 + κ b_t² m_t/m_n, the row's compliances
+    /// relative to a fixed wall (κ and b: see the head of the file). So impulses of the row change the result as much
+    /// as they would change the relative velocity at a fixed wall.
     #[inline(always)]
     pub(super) fn own_part(
         &self,
@@ -353,8 +361,8 @@ impl<M: Model> StepProblem<M> {
         Some([(normal + added) / of_normal - added, tangential / of_tangential])
     }
 
-    /// Like [`Self::own_part`], with the wall at its contact-free velocity; (v_n, v_t) are relative to its present
-    /// velocity.
+    /// Scales a relative velocity like [`Self::own_part`], but for the wall at its speed without contact impulses. The
+    /// given (v_n, v_t) are relative to the wall's present speed.
     #[inline(always)]
     pub(super) fn free_part(
         &self,
@@ -368,7 +376,7 @@ impl<M: Model> StepProblem<M> {
         self.own_part(number, row, [normal + along[0] * slower, tangential + along[1] * slower])
     }
 
-    /// Sets driven walls to the velocities that the rows' impulses make, and updates the rows.
+    /// Sets driven walls to the speeds that follow from the rows' impulses, and updates the rows.
     pub(super) fn form_wall_velocities(&mut self) {
         for wall in &mut self.walls.driven {
             wall.now = wall.free;
@@ -383,7 +391,7 @@ impl<M: Model> StepProblem<M> {
         self.tell_of_walls();
     }
 
-    /// Sets driven walls to given velocities, one per wall, and updates the rows.
+    /// Sets driven walls to given speeds, one per wall, m/s, and updates the rows.
     pub(crate) fn set_wall_velocities(&mut self, velocities: impl Iterator<Item = f64>) {
         for (wall, velocity) in self.walls.driven.iter_mut().zip(velocities) {
             wall.now = velocity;
@@ -391,7 +399,7 @@ impl<M: Model> StepProblem<M> {
         self.tell_of_walls();
     }
 
-    /// Updates the rows to the present velocities of their walls.
+    /// Recomputes the terms of the rows that depend on the present speeds of driven walls.
     pub(crate) fn tell_of_walls(&mut self) {
         let MovingWalls { driven, driven_rows, speeds, .. } = &mut self.walls;
         for known in driven_rows {
@@ -403,7 +411,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Number of contacts of each row's wall times the row's κ (b_n² + b_t² m_t/m_n); `None` if its body is not driven.
+    /// For each row against a fixed body, computes κ (b_n² + b_t² m_t/m_n) times the number of contacts of its driven
+    /// wall; `None` if the body is not a driven wall.
     pub(crate) fn wall_compliances(&self) -> impl Iterator<Item = Option<f64>> {
         let MovingWalls { driven, driven_rows, .. } = &self.walls;
         let mut counts = vec![0.0; driven.len()];

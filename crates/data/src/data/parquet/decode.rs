@@ -15,15 +15,15 @@ use crate::data::table::{Table, Values};
 use crate::error::{Error, Result};
 use crate::input::open;
 
-/// The expected form of a file, for messages.
+/// Description of a valid Parquet file, for messages.
 const FORM: &str = "a Parquet file whose columns are flat, not compressed or by snappy";
 /// Largest number of rows that is read. A file with more rows is damaged or does not contain discs.
 const MOST_ROWS: i64 = 1 << 28;
-/// Length of the end of a file, bytes: the length of its footer and the mark of Parquet.
+/// Length of the last section of a Parquet file, bytes: the length of the footer (four bytes) and the mark `PAR1`.
 const MARK: u64 = 8;
-/// Number of bytes of a word that are read. All words for kinds of grains are shorter.
+/// Number of bytes of a word that are read; the rest is ignored. All words for kinds of grains are shorter.
 const MOST_OF_WORD: usize = 64;
-/// Rows that are decoded together.
+/// Number of rows that are decoded in one call.
 const ROWS_AT_ONCE: usize = 1 << 16;
 
 /// An open Parquet file.
@@ -33,10 +33,10 @@ pub(in crate::data) struct ParquetFile {
     reader: SerializedFileReader<File>,
 }
 
-/// A decoded column.
+/// Values of a decoded column.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::data) enum Decoded {
-    /// Numbers, whole or not; `None` for missing values.
+    /// Floating-point numbers; `None` for missing values.
     Numbers(Vec<Option<f64>>),
     Whole(Vec<Option<i64>>),
     Flags(Vec<Option<bool>>),
@@ -44,7 +44,7 @@ pub(in crate::data) enum Decoded {
 }
 
 impl ParquetFile {
-    /// Opens a file.
+    /// Opens a Parquet file and checks its footer.
     pub(in crate::data) fn open(path: &Path) -> Result<Self> {
         let file = open(path, FORM)?;
         let refuse = |said: String| Error::unread(path, said, FORM);
@@ -60,19 +60,19 @@ impl ParquetFile {
         Ok(Self { path: path.to_owned(), file, reader })
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub(in crate::data) fn rows(&self) -> usize {
-        // The number was checked when the file was opened.
+        // The number of rows was checked when the file was opened.
         self.reader.metadata().file_metadata().num_rows() as usize
     }
 
-    /// Names of the columns.
+    /// Returns the names of the columns.
     pub(in crate::data) fn names(&self) -> Vec<String> {
         let columns = self.reader.metadata().file_metadata().schema_descr().columns();
         columns.iter().map(|column| column.path().string()).collect()
     }
 
-    /// The column of that name.
+    /// Reads the column with the given name; `None` if the file has no such column.
     pub(in crate::data) fn column(&self, name: &str) -> Result<Option<Decoded>> {
         let Some(index) = self.names().iter().position(|there| there == name) else {
             return Ok(None);
@@ -115,7 +115,7 @@ impl ParquetFile {
         check_pages(&bytes)
     }
 
-    /// Reads the rows into an empty table. The table has all columns of the file.
+    /// Reads all rows into `table`, an empty table. The file must have every column of this table.
     pub(in crate::data) fn read_into(&self, table: &mut Table) -> Result<()> {
         for column in &mut table.columns {
             let refuse = || {
@@ -133,7 +133,7 @@ impl ParquetFile {
     }
 }
 
-/// Checks that the file ends with the length of its footer and the mark of Parquet.
+/// Checks the footer, which is at the end of the file before its length and the mark of Parquet.
 fn check_whole(file: &File) -> std::result::Result<(), String> {
     let read = |count: u64| -> std::io::Result<Vec<u8>> {
         let (mut file, mut bytes) = (file, Vec::new());
@@ -150,7 +150,7 @@ fn check_whole(file: &File) -> std::result::Result<(), String> {
     check_footer(&footer, bytes)
 }
 
-/// The message of the crate, shortened if it only repeats the kind of error.
+/// Returns the message of an error of the crate `parquet`, without the kind of error if that adds nothing.
 fn said(error: &ParquetError) -> String {
     match error {
         ParquetError::General(said) | ParquetError::NYI(said) | ParquetError::EOF(said) => {
@@ -188,12 +188,13 @@ impl Decoded {
                 all.extend(more);
                 Self::Words(all)
             }
-            // The schema is a tree, and groups are the inner nodes.
+            // Kinds cannot differ, because all row groups of a file have the same schema.
             (first, _) => first,
         }
     }
 
-    /// Converts to the kind of values that `like` has; `None` if the kinds differ.
+    /// Converts the values to the kind of `like`. Returns `None` if the kinds differ, or if a value is missing that may
+    /// not be missing.
     fn into_values(self, like: &Values) -> Option<Values> {
         match (self, like) {
             (Self::Numbers(values), Values::Numbers(_)) => {
@@ -241,7 +242,7 @@ fn decode(reader: ColumnReader, rows: usize) -> ParquetResult<Decoded> {
     })
 }
 
-/// The values of `rows` rows.
+/// Reads the values of `rows` rows of a column; `None` for missing values.
 fn all<T: DataType, Value>(
     mut reader: ColumnReaderImpl<T>,
     rows: usize,

@@ -1,8 +1,9 @@
-//! Checks a Parquet file before it is decoded, because the crate allocates memory and recurses as deep as the file
-//! tells it to. With these checks a file takes at most about 200 times its size in memory, or 256 MiB if it is small.
+//! Checks a Parquet file before the crate `parquet` decodes it. That crate allocates as much memory and recurses as
+//! deeply as the file says, so a damaged file could exhaust the memory or the stack. With these checks, decoding takes
+//! at most about 200 times the file's size in memory, or 256 MiB for a small file.
 //!
-//! References: Thrift's compact protocol (apache/thrift, doc/specs/thrift-compact-protocol.md), and Parquet's headers
-//! in that protocol (apache/parquet-format, parquet.thrift).
+//! References: Thrift's compact protocol (apache/thrift, doc/specs/thrift-compact-protocol.md), and the headers of
+//! Parquet in that protocol (apache/parquet-format, parquet.thrift).
 
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -11,21 +12,25 @@ use std::sync::Once;
 
 use crate::input::MOST_BYTES;
 
-/// Largest nesting depth of structures and lists. A valid file needs eight.
+/// Largest accepted nesting depth of structures and lists in a header. A valid file needs eight levels.
 const MOST_DEPTH: usize = 16;
-/// Largest accepted ratio of unpacked to packed size. Snappy at best writes 64 bytes as three.
+/// Largest accepted ratio of the unpacked to the packed size of a page. The compression Snappy writes at best 64 bytes
+/// as three.
 const MOST_EXPANSION: i64 = 32;
-/// Unpacked bytes of a page that are accepted whatever its packed size.
+/// Size of an unpacked page, bytes, up to which the page is always accepted, even if its packed size is very small.
 const SMALL_PAGE: i64 = 4096;
-/// Rows that are accepted even if the file has fewer bytes, because constant columns take little space.
+/// Number of rows up to which a file is always accepted, even if it has fewer bytes than rows, because columns with a
+/// constant value take little space.
 const FREE_ROWS: i64 = 1 << 20;
-/// Encodings that state the number of values before the values: by lengths, and by common prefixes.
+/// Parquet's numbers of two encodings that state a number of values before the values: `DELTA_LENGTH_BYTE_ARRAY`
+/// (stores lengths) and `DELTA_BYTE_ARRAY` (stores common prefixes). Both are refused, because that number is inside
+/// the page and cannot be checked here.
 const COUNTED: [i64; 2] = [6, 7];
 
-/// The error is the reason for refusing a file, as the rest of a sentence.
+/// Result of a check. The error is the reason for refusing a file, as the rest of a sentence after the file's name.
 type Checked<T> = Result<T, String>;
 
-/// A value, reduced to the properties that are checked.
+/// Value of a field in a header, reduced to the properties that are checked.
 enum FieldValue {
     Whole(i64),
     Text,
@@ -35,17 +40,17 @@ enum FieldValue {
     Other,
 }
 
-/// The type that a decoder expects for a field number, whatever type the file states. If the two differ, the decoder
-/// loses its position and misreads the rest.
+/// Type that the decoder expects for a field in a header, whatever type the file states. If the two types differ, the
+/// decoder loses its position and misreads all following bytes.
 enum FieldShape {
     Whole,
     Text,
     Switch,
-    /// A byte, or an eight-byte number.
+    /// A single byte, or a number of eight bytes.
     Plain,
     List(&'static FieldShape),
     Fields(&'static [(i64, FieldShape)]),
-    /// Occurs in no table of discs: keys and maps.
+    /// A field that is refused because no table of discs has it, such as encryption keys.
     Refused,
 }
 
@@ -161,8 +166,8 @@ const PAGE_HEADER: FieldShape = Fields(&[
 ]);
 
 impl FieldShape {
-    /// True if a value has this shape. A field that the decoder does not know may have any type, but may occur only
-    /// once.
+    /// True if a value has this type. In a structure, each field may occur only once. A field that the decoder does not
+    /// know may have any type.
     fn fits(&self, value: &FieldValue) -> bool {
         match (self, value) {
             (Whole, FieldValue::Whole(_))
@@ -193,7 +198,7 @@ impl FieldValue {
     }
 }
 
-/// A cursor over bytes.
+/// Reader of values in Thrift's compact protocol. It contains the bytes that are not read yet.
 struct Reader<'a>(&'a [u8]);
 
 impl Reader<'_> {
@@ -238,7 +243,7 @@ impl Reader<'_> {
                 return Err("has a header of kind 0".into());
             }
             id = if head >> 4 == 0 { self.whole()? } else { id.wrapping_add(i64::from(head >> 4)) };
-            // The type contains the value of a switch.
+            // A Boolean field has no bytes of its own: its type states whether it is true or false.
             let value =
                 if head & 15 < 3 { FieldValue::Switch } else { self.value(head & 15, below)? };
             fields.push((id, value));
@@ -274,19 +279,19 @@ impl Reader<'_> {
     }
 }
 
-/// The remaining nesting depth inside a structure or list.
+/// Returns the nesting depth that remains inside a structure or list. Fails if no depth remains.
 fn depth_below(depth: usize) -> Checked<usize> {
     depth.checked_sub(1).ok_or_else(|| format!("has headers nested deeper than {MOST_DEPTH}"))
 }
 
-/// Checks the footer of a file of `bytes` bytes.
+/// Checks the footer of a Parquet file, the metadata at its end. `bytes` is the size of the whole file, bytes.
 pub(super) fn check_footer(footer: &[u8], bytes: u64) -> Checked<()> {
     let footer = Reader(footer).structure(MOST_DEPTH)?;
     check_shape(&FOOTER, &footer)?;
     let Some(FieldValue::List(schema)) = footer.field(2) else {
         return Err("has no schema".into());
     };
-    // Number of children still to come, for each open group.
+    // For each open group of columns, the number of its members that have not been listed yet.
     let mut open: Vec<i64> = vec![1];
     for element in schema {
         while open.last() == Some(&0) {
@@ -322,7 +327,7 @@ fn check_shape(shape: &FieldShape, header: &FieldValue) -> Checked<()> {
     shape.fits(header).then_some(()).ok_or_else(refuse)
 }
 
-/// Checks all pages of a column; `bytes` is the column's part of the file.
+/// Checks all pages of a column. `bytes` is the section of the file with these pages.
 pub(super) fn check_pages(bytes: &[u8]) -> Checked<()> {
     let mut rest = Reader(bytes);
     while !rest.0.is_empty() {
@@ -349,7 +354,7 @@ pub(super) fn check_pages(bytes: &[u8]) -> Checked<()> {
 }
 
 thread_local! {
-    /// True while a panic of the crate is to be caught.
+    /// True while a panic of the crate `parquet` is to be caught without a message.
     static IS_CAUGHT: Cell<bool> = const { Cell::new(false) };
 }
 
@@ -365,7 +370,7 @@ pub(super) fn caught<T>(act: impl FnOnce() -> T) -> Checked<T> {
         }));
     });
     IS_CAUGHT.set(true);
-    // An interrupted result is dropped, so no inconsistent state can be seen.
+    // After a panic no result is returned, so no inconsistent state can be seen.
     let done = catch_unwind(AssertUnwindSafe(act));
     IS_CAUGHT.set(false);
     done.map_err(|_| "is damaged".to_owned())
@@ -377,7 +382,7 @@ mod tests {
 
     #[test]
     fn lists_within_lists_are_refused_before_the_stack_ends() {
-        // A field that is a list of one list of one list …
+        // A list that contains a list, and so on, to a depth of thousands.
         let footer = [0x19; 20_000];
         let said = check_footer(&footer, 20_000);
         assert_eq!(said, Err(format!("has headers nested deeper than {MOST_DEPTH}")));
@@ -385,7 +390,7 @@ mod tests {
 
     #[test]
     fn fields_that_nobody_knows_are_looked_at_once_each() {
-        // A structure of switches with distinct field numbers, from 100 on.
+        // The bytes of a structure of Boolean fields whose field numbers are distinct, from 100 on.
         let header = |fields: usize| [&[0x01, 200, 1][..], &vec![0x11_u8; fields]].concat();
         let secs = |fields: usize| {
             let footer = [&header(fields)[..], &[0]].concat();

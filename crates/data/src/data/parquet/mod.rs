@@ -1,4 +1,4 @@
-//! Recordings as Parquet: one folder per table, whose files are always complete.
+//! Writes recordings as Parquet files: one folder per table, whose files are complete at all times.
 
 mod decode;
 mod guard;
@@ -25,23 +25,24 @@ use crate::error::{Error, Result};
 use crate::output::PendingFile;
 use crate::sim::Observables;
 
-/// A part ends with the frame in which it reaches this size before compression, bytes. If it is larger, each frame of a
-/// small scene costs more, because the last part is rewritten with every frame. If it is smaller, there are more files.
+/// Size of a Parquet file before compression, bytes, at which the file ends after the current frame and the next file
+/// begins. If it is larger, each frame of a small scene costs more, because the last file is rewritten with every
+/// frame. If it is smaller, there are more files.
 const SIZE_OF_PART: usize = 256 << 10;
-/// Key of the metadata with units and meanings of the columns, as JSON.
+/// Key of the file's metadata with units and meanings of the columns, as JSON.
 const COLUMNS_KEY: &str = "columns";
 /// A column that changes in fewer than 1 in `FEW_CHANGES` rows is written as a dictionary and indices, which then take
 /// almost no space.
 const FEW_CHANGES: usize = 8;
 
-/// Writes Parquet.
+/// Writer of a recording as Parquet files.
 pub(super) struct Parquet {
     of_frames: Vec<GrowingParts>,
     steps: GrowingParts,
 }
 
 impl Parquet {
-    /// Starts a recording, or opens an existing one.
+    /// Starts a recording, or opens an existing recording.
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let start = |table| GrowingParts::start(folder, facts, table);
         let of_frames = empty_tables_of_frames().into_iter().map(start).collect::<Result<_>>()?;
@@ -76,23 +77,24 @@ impl Format for Parquet {
     }
 }
 
-/// A table in parts. The last part is rewritten with each frame until it is large enough, so that readers always find
-/// complete files.
+/// A table that is split into several files, its parts. The last part is rewritten with each frame until it is large
+/// enough, so that readers always find complete files.
 struct GrowingParts {
     folder: PathBuf,
     encoder: Encoder,
-    /// Number of the part that grows.
+    /// Number of the last part, which still grows.
     number: u64,
-    /// Rows of the growing part.
+    /// Rows of the last part.
     rows: Table,
-    /// True if some rows are not yet in the file.
+    /// True if some rows are not yet in the file of the last part.
     has_news: bool,
-    /// True if the file exists. A table has a file even without rows, so that readers find its columns.
+    /// True if the file of the last part exists. A table has a file even without rows, so that readers find its
+    /// columns.
     has_file: bool,
 }
 
 impl GrowingParts {
-    /// Starts without parts; `rows` is an empty table.
+    /// Starts a table without parts. `rows` is an empty table that defines the columns.
     fn start(folder: &Path, facts: &RunFacts, rows: Table) -> Result<Self> {
         let folder = folder.join(rows.name);
         make_folder(&folder)?;
@@ -100,7 +102,7 @@ impl GrowingParts {
         Ok(Self { folder, encoder, number: 0, rows, has_news: false, has_file: false })
     }
 
-    /// Adds rows, all to the same part.
+    /// Adds rows, all to the last part. Begins a new part if the last part has become large enough.
     fn add(&mut self, rows: &Table) -> Result<()> {
         self.rows.append(rows);
         self.has_news |= !rows.is_empty();
@@ -114,10 +116,10 @@ impl GrowingParts {
         Ok(())
     }
 
-    /// Writes the growing part.
+    /// Writes the file of the last part if there are rows to be written.
     ///
     /// # Errors
-    /// Names the file and the system's message; the old file remains.
+    /// The error names the file and gives the system's message. The old file remains.
     fn flush(&mut self) -> Result<()> {
         if !self.has_news && self.has_file {
             return Ok(());
@@ -132,10 +134,10 @@ impl GrowingParts {
         Ok(())
     }
 
-    /// Checks that there are `marked` rows up to a step.
+    /// Checks that the table has exactly `marked` rows up to the step `step`.
     fn check(&self, step: Option<u64>, marked: u64) -> Result<()> {
         let mut rows = 0;
-        // Rows are sorted by step, so all parts before the first match count completely.
+        // Rows are sorted by step. As soon as a part has a row up to `step`, all rows of the earlier parts count.
         for (_, path) in numbered_parts(&self.folder)?.into_iter().rev() {
             let part = ParquetFile::open(&path)?;
             let Some(Decoded::Whole(steps)) = (if rows == 0 { part.column(STEP)? } else { None })
@@ -149,11 +151,12 @@ impl GrowingParts {
         check_count(&self.folder, "rows", rows, marked)
     }
 
-    /// Drops the rows after a step, or all rows.
+    /// Removes the rows after the step `step`, or all rows if `step` is `None`.
     fn roll_back(&mut self, step: Option<u64>) -> Result<()> {
         self.rows.truncate(0);
         (self.number, self.has_news, self.has_file) = (0, false, false);
-        // Begins with the last part, so that the rest is complete whenever this is interrupted.
+        // The loop begins with the last part, so that the remaining parts are complete if the program is killed in
+        // between.
         for (number, path) in numbered_parts(&self.folder)?.into_iter().rev() {
             let mut rows = self.rows.clone();
             ParquetFile::open(&path)?.read_into(&mut rows)?;
@@ -176,14 +179,14 @@ impl GrowingParts {
     }
 }
 
-/// Writes tables with the same columns.
+/// Encoder of Parquet files for tables with the same columns.
 struct Encoder {
     schema: Arc<Type>,
     metadata: Vec<KeyValue>,
 }
 
 impl Encoder {
-    /// An encoder for tables with the columns of `table`.
+    /// Creates an encoder for tables with the columns of `table`.
     fn new(facts: &RunFacts, table: &Table) -> ParquetResult<Self> {
         let fields = table.columns.iter().map(|column| field(column).map(Arc::new));
         let fields = fields.collect::<ParquetResult<_>>()?;
@@ -197,7 +200,7 @@ impl Encoder {
         Ok(Self { schema: Arc::new(schema), metadata })
     }
 
-    /// The bytes of a file.
+    /// Returns the bytes of a Parquet file with the rows of `table`.
     fn encode(&self, table: &Table) -> ParquetResult<Vec<u8>> {
         let properties = WriterProperties::builder()
             .set_created_by(concat!("slump ", env!("CARGO_PKG_VERSION")).to_owned())
@@ -205,7 +208,7 @@ impl Encoder {
             .set_compression(Compression::SNAPPY)
             .set_dictionary_enabled(false)
             .set_statistics_enabled(EnabledStatistics::Chunk)
-            // A file is a single row group, which is always read as a whole.
+            // A file is a single row group, which is always read as a whole, so an offset index is of no use.
             .set_offset_index_disabled(true);
         let properties = table.columns.iter().fold(properties, packed);
         let mut bytes = Vec::with_capacity(table.size() + self.size_of_metadata());
@@ -213,7 +216,7 @@ impl Encoder {
         let mut file = SerializedFileWriter::new(&mut bytes, schema, Arc::new(properties.build()))?;
         let mut rows = file.next_row_group()?;
         for column in &table.columns {
-            // The table has as many columns as the schema, which was made from it.
+            // The table has as many columns as the schema, which was made from the table, so the loop never breaks.
             let Some(mut writer) = rows.next_column()? else { break };
             write(&mut writer, &column.values)?;
             writer.close()?;
@@ -247,7 +250,7 @@ fn field(column: &Column) -> ParquetResult<Type> {
     field.build()
 }
 
-/// Sets the encoding of a column.
+/// Adds the encoding of a column to the properties of a file.
 fn packed(properties: WriterPropertiesBuilder, column: &Column) -> WriterPropertiesBuilder {
     let path = ColumnPath::from(column.name);
     let few_changes = match &column.values {
@@ -259,8 +262,8 @@ fn packed(properties: WriterPropertiesBuilder, column: &Column) -> WriterPropert
         Values::Counts(_) => {
             return properties.set_column_encoding(path, Encoding::DELTA_BINARY_PACKED);
         }
-        // The alphabetically first and last word are of no use to readers, and comparing all words took a sixth of the
-        // time of a frame.
+        // Columns of words have no statistics: readers have no use for the alphabetically first and last word, and
+        // comparing all words took a sixth of the time of a frame.
         Values::Words { .. } => {
             let without = EnabledStatistics::None;
             return properties
@@ -297,7 +300,7 @@ fn write(writer: &mut SerializedColumnWriter<'_>, values: &Values) -> ParquetRes
     Ok(())
 }
 
-/// Definition levels: 1 for a row with a value, 0 without.
+/// Returns the definition levels of Parquet: 1 for a row with a value, 0 for a row without.
 fn levels<T>(values: &[Option<T>]) -> Vec<i16> {
     values.iter().map(|value| i16::from(value.is_some())).collect()
 }

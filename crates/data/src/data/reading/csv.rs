@@ -1,5 +1,5 @@
-//! Discs as CSV in SI units: the header `x,y,radius`, optionally `vx,vy,omega`, and other columns of a recording's
-//! grains. Lines that start with `#` are comments.
+//! Reads discs from CSV files in SI units. The header line is `x,y,radius`, optionally with `vx,vy,omega` and other
+//! columns of a recording's table of grains. Lines that start with `#` are comments.
 
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Read};
@@ -15,11 +15,11 @@ use crate::data::csv::COMMENT;
 use crate::error::{Error, Result};
 use crate::input::{BoundedLines, open};
 
-/// The expected form of a file of discs, for messages.
+/// Description of a valid file of discs, for messages.
 const FORM: &str = "a CSV of discs: a header line x,y,radius, with vx,vy,omega where they move, and as \
                     many numbers in each line below";
 
-/// Largest number of characters of a header in a message.
+/// Largest number of characters of a header line that a message shows.
 const MOST_SHOWN: usize = 80;
 
 /// Reads discs from the text of a CSV file; `path` is for messages.
@@ -30,12 +30,12 @@ pub fn parse_grains(text: &str, path: &Path) -> Result<RecordedGrains> {
     CsvFile { path, wanted: None, open: || Ok(text.as_bytes()) }.read()
 }
 
-/// Reads the moment of a step, or the last moment.
+/// Reads the discs of the step `step`, or of the last step in the file if `step` is `None`.
 pub(super) fn read(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
     CsvFile { path, wanted: step, open: || open(path, FORM) }.read()
 }
 
-/// A CSV file and the requested step.
+/// A CSV file of discs, and the requested step.
 struct CsvFile<'a, Open> {
     path: &'a Path,
     wanted: Option<u64>,
@@ -127,7 +127,7 @@ impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
         for ((number, place), name) in numbers.iter_mut().zip(places.numbers).zip(NUMBERS) {
             let Some(place) = place else { continue };
             let said = record.get(place).unwrap_or_default();
-            // Fixed discs have no mass.
+            // Fixed discs have neither mass nor density, so these fields may be empty.
             if OF_GRAINS.contains(&name) && said.is_empty() {
                 continue;
             }
@@ -154,8 +154,8 @@ impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
         Error::file(self.path, format!("{}: {reason}", self.line_at(byte_of(record))))
     }
 
-    /// The number of the line of the record that begins at or after this byte. The reader's own position is before the
-    /// blank lines and comments that it skipped.
+    /// Returns the number of a record's line in the file, as `line 3`. `byte` is the position of the record by the CSV
+    /// reader. It is before the blank lines and comments that the reader skipped, so these lines are skipped here, too.
     fn line_at(&self, byte: u64) -> String {
         let Ok(source) = (self.open)() else { return "a line".to_owned() };
         let mut start = 0;
@@ -172,7 +172,7 @@ impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
     }
 }
 
-/// Part of a message: a hint for repairing a header line that names none of the columns.
+/// Returns the end of a message: a hint for repairing a header line that names none of the needed columns.
 fn way_out(found: &[String]) -> &'static str {
     let all = |is_so: &dyn Fn(&str) -> bool| !found.is_empty() && found.iter().all(|it| is_so(it));
     if all(&|it| it.parse::<f64>().is_ok()) {

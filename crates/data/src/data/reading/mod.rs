@@ -1,4 +1,4 @@
-//! Reads grains from recordings and from lists of discs made elsewhere.
+//! Reads grains from recordings, and from lists of discs made by other programs.
 
 mod csv;
 #[cfg(feature = "data")]
@@ -23,18 +23,18 @@ use super::{lammps, vtk};
 use crate::error::{Error, Result};
 use crate::input::{BoundedLines, open};
 
-/// The expected form of a file, for messages.
+/// Description of a valid file, for messages.
 const FORM: &str = "a file of discs (CSV or Parquet), or a folder that --data wrote as either";
 /// First bytes of a Parquet file.
 const PARQUET: &[u8] = b"PAR1";
 /// First bytes of files that Slump writes but does not read, with the names of their formats.
 const WRITTEN_ALONE: [(&[u8], &str); 3] =
     [(b"ITEM:", "a LAMMPS dump"), (b"<?xml", "a file of VTK"), (b"<VTKFile", "a file of VTK")];
-/// Length of the longest of these beginnings, bytes.
+/// Number of bytes read from the beginning of a file to recognise its format. No known beginning is longer.
 const LONGEST_BEGINNING: u64 = 8;
 
-/// Reads the grains of a file, or of a recording's folder, as CSV or Parquet. If there are several moments, reads that
-/// of `step`, or the last one.
+/// Reads grains from a CSV or Parquet file, or from the folder of a recording. If the data have several moments, reads
+/// the moment of the step `step`, or the last moment if `step` is `None`.
 ///
 /// # Errors
 /// If the file cannot be read or is of another format, has no such step, or lacks a column, or if a row is not a disc;
@@ -45,7 +45,8 @@ pub fn read_grains(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
 }
 
 fn read_folder(folder: &Path, step: Option<u64>) -> Result<RecordedGrains> {
-    // A frame counts only once it has been written in every format.
+    // The last step is taken from the list of frames, because a frame counts only after it has been written in every
+    // format.
     let wanted = step.map_or_else(|| last_step(folder), |step| Ok(Some(step)));
     for parts_of in [&folder.join(empty_grains().name), folder] {
         let parts = numbered_parts(parts_of)?;
@@ -77,7 +78,7 @@ fn read_file(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
     if let Some((_, what)) = WRITTEN_ALONE.iter().find(|(start, _)| beginning.starts_with(start)) {
         return Err(Error::file(path, format!("is {what}, but must be {FORM}")));
     }
-    // The last frame of a growing table may be incomplete.
+    // The last frame of a growing table may be incomplete, so the last step is taken from the list of frames.
     let recording = path.parent().and_then(Path::parent);
     let wanted = match (step, recording) {
         (None, Some(recording)) => last_step(recording)?,
@@ -86,7 +87,7 @@ fn read_file(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
     csv::read(path, wanted)
 }
 
-/// The step of the last frame of the recording in a folder; `None` if it is unknown.
+/// Returns the step of the last frame of the recording in a folder; `None` if it is unknown.
 fn last_step(folder: &Path) -> Result<Option<u64>> {
     let path = folder.join(FRAMES);
     let Ok(file) = open(&path, FORM) else { return Ok(None) };
@@ -97,7 +98,7 @@ fn last_step(folder: &Path) -> Result<Option<u64>> {
     let mut last = None;
     for row in rows.records() {
         let row = row.map_err(|error| Error::unread(&path, error, "the frames of a recording"))?;
-        // A row that was cut short by a kill does not count.
+        // A row that was cut short because the program was killed does not count.
         last = row.get(0).filter(|_| row.len() == 3).and_then(|step| step.parse().ok()).or(last);
     }
     Ok(last)
@@ -113,9 +114,8 @@ fn read_parts(
     Err(Error::file(path, reason))
 }
 
-/// The discs in columns with the names of a recording: numbers and, if present, the counts `id` and the
-/// words `kind` and `material`.
-/// `what` is the name of the source in messages.
+/// Makes discs from columns with the names of a recording's table of grains: numbers and, if present, the counts `id`
+/// and the words `kind` and `material`. `what` is the name of the source in messages.
 ///
 /// ```
 /// use slump_data::data::{Values, grains_of};
@@ -130,7 +130,8 @@ fn read_parts(
 /// ```
 ///
 /// # Errors
-/// If a column is missing, unknown, of another length or of another type, or a row is not a disc; the message names it.
+/// If a column is missing, unknown, of another length or of another type, or if a row is not a disc. The message names
+/// the column or row.
 pub fn grains_of(what: &Path, columns: &[(String, Values)]) -> Result<RecordedGrains> {
     let names: Vec<String> = columns.iter().map(|(name, _)| name.clone()).collect();
     check_names(what, &names)?;

@@ -1,4 +1,4 @@
-//! Reads discs from Parquet.
+//! Reads discs from Parquet files.
 
 use std::path::{Path, PathBuf};
 
@@ -8,17 +8,20 @@ use super::rows::{
 use crate::data::parquet::{Decoded, ParquetFile};
 use crate::error::{Error, Result};
 
-/// Largest number of rows whose places can be distinguished.
+/// Largest number of rows in one file. A row of a table is identified by the index of its file times this number plus
+/// the index of the row.
 const MOST_ROWS: u64 = 1 << 32;
 
-/// Reads the moment of a step, or the last moment, from the parts of a table, in their order.
+/// Reads the discs of the step `step`, or of the last step if `step` is `None`, from the Parquet files of a table,
+/// which are in ascending order.
 pub(super) fn read_parts(
     path: &Path,
     parts: &[(u64, PathBuf)],
     step: Option<u64>,
 ) -> Result<RecordedGrains> {
     let (mut known, mut rows, mut wanted) = (Vec::new(), Vec::new(), step);
-    // The last moment is in the last part, and a requested moment is usually near it.
+    // The search begins with the last file, because the last moment is in that file and a requested moment is usually
+    // near it.
     for (index, (_, part)) in parts.iter().enumerate().rev() {
         let table = ParquetFile::open(part)?;
         check_names(part, &table.names())?;
@@ -26,7 +29,7 @@ pub(super) fn read_parts(
         wanted = wanted.or(steps.as_ref().and_then(|steps| steps.iter().copied().max()));
         let is_wanted = |row: &usize| match (&steps, wanted) {
             (Some(steps), Some(wanted)) => steps[*row] == wanted,
-            // A file without steps has a single moment.
+            // A file without the column `step` has a single moment.
             (None, _) => step.is_none(),
             (Some(_), None) => false,
         };
@@ -51,7 +54,7 @@ pub(super) fn read_parts(
 }
 
 impl ParquetFile {
-    /// A column of whole numbers ≥ 0, if it exists.
+    /// Returns a column of whole numbers ≥ 0; `None` if the file has no such column.
     fn whole(&self, name: &str) -> Result<Option<Vec<u64>>> {
         let allowed = "a whole number ≥ 0";
         let of = |(row, value): (usize, Option<i64>)| {

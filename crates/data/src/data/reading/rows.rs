@@ -1,4 +1,4 @@
-//! Rows of a file of discs, and their conversion to discs.
+//! Checks the rows of a file of discs and converts them to discs.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -10,39 +10,39 @@ use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::world::{Disc, Grain};
 
-/// Columns that every file of discs needs.
+/// Names of the columns that every file of discs needs.
 const NEEDED: [&str; 3] = ["x", "y", "radius"];
-/// The numeric columns that are read, mass and areal density last.
+/// Names of the numeric columns that are read. Mass and areal density are the last two.
 pub(super) const NUMBERS: [&str; 8] = ["x", "y", "radius", "vx", "vy", "omega", "mass", DENSITY];
-/// The areal density of a grain, kg/m²: a column that recordings do not have.
+/// Name of the column with the areal density of a grain, kg/m². Recordings do not have this column.
 const DENSITY: &str = "density";
-/// The numbers of [`NUMBERS`] that fixed discs do not have.
+/// Columns of [`NUMBERS`] that have no value for fixed discs.
 pub(super) const OF_GRAINS: [&str; 2] = ["mass", DENSITY];
-/// The defaults for missing columns. NaN means that a mass or density is not given.
+/// Default values of the columns [`NUMBERS`] if a file does not have them. NaN means that mass or density is not given.
 pub(super) const LEFT_OUT: [f64; NUMBERS.len()] =
     [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, f64::NAN, f64::NAN];
-/// Largest number of steps in a message.
+/// Largest number of steps that a message lists.
 const MOST_LISTED: usize = 8;
 
-/// The discs of one moment.
+/// Moving and fixed discs of one moment, read from a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordedGrains {
-    /// The discs that move, in the order of their ids if they have ids.
+    /// Discs that move, sorted by their ids if they have ids.
     pub grains: Vec<Grain>,
-    /// The discs that do not move.
+    /// Discs that do not move, sorted by their ids if they have ids.
     pub fixed_discs: Vec<Disc>,
-    /// Name of the material of each fixed disc, if the file gives one.
+    /// Name of the material of each fixed disc; `None` if the file names no material.
     pub disc_materials: Vec<Option<String>>,
 }
 
 impl RecordedGrains {
-    /// The numeric columns of discs. The columns `id` and `kind` are also read.
+    /// Names of the numeric columns that are read. The columns `id`, `kind` and `material` are also read.
     pub const NUMBERS: [&str; NUMBERS.len()] = NUMBERS;
 
-    /// Gives the fixed discs to a scene, with their materials.
+    /// Gives the fixed discs to a scene, with their materials. `path` is the file of the discs, for messages.
     ///
     /// # Errors
-    /// If the scene does not list the material of a disc. `path` is for messages.
+    /// If the scene does not list the material of a fixed disc.
     pub fn place_fixed_discs(self, scene: &mut Scene, path: &Path) -> Result<()> {
         for (number, name) in self.disc_materials.into_iter().enumerate() {
             let Some(name) = name else { continue };
@@ -59,26 +59,26 @@ impl RecordedGrains {
     }
 }
 
-/// One row of a file, before the checks.
+/// One row of a file of discs, before it is checked.
 #[derive(Debug)]
 pub(super) struct DiscRow {
-    /// The number of the row, as the reader of the file counts.
+    /// Number by which the reader of the file finds the row for a message, such as a byte position in a CSV file.
     pub place: u64,
     pub id: Option<u64>,
-    /// The word in the column `kind`. Without the column, the row is a grain.
+    /// Word in the column `kind`. If the file has no such column, the row is a grain.
     pub kind: Option<String>,
-    /// The word in the column `material`, unless it is empty.
+    /// Word in the column `material`; `None` if it is empty.
     pub material: Option<String>,
-    /// In the order of [`NUMBERS`].
+    /// Values of the columns [`NUMBERS`], in their order.
     pub numbers: [f64; NUMBERS.len()],
 }
 
-/// True if all columns are present that discs need.
+/// True if the names include all columns that discs need.
 pub(super) fn has_needed(names: &[String]) -> bool {
     NEEDED.iter().all(|needed| names.iter().any(|name| name == needed))
 }
 
-/// Refuses a file that lacks a column, or has an unknown one.
+/// Fails if a needed column is missing, or if a column is unknown.
 pub(super) fn check_names(path: &Path, names: &[String]) -> Result<()> {
     if !has_needed(names) {
         let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
@@ -91,19 +91,20 @@ pub(super) fn check_names(path: &Path, names: &[String]) -> Result<()> {
     Err(Error::file(path, reason))
 }
 
-/// The first name that is not a column of grains.
+/// Returns the first name that is not a column of a file of discs.
 pub(super) fn unknown_of(names: &[String]) -> Option<&String> {
     let known = empty_grains();
     names.iter().find(|name| known.column(name).is_none() && *name != DENSITY)
 }
 
-/// The names of all columns of grains.
+/// Returns the names of all columns that a file of discs may have.
 pub(super) fn known_names() -> String {
     let names = empty_grains().columns.into_iter().map(|column| column.name);
     names.chain([DENSITY]).collect::<Vec<_>>().join(", ")
 }
 
-/// Error for a file that has no frame of a step, only the steps `known`, in ascending order.
+/// Returns the error for a file that has no data of the requested step. `known` lists the steps of the file in
+/// ascending order.
 pub(super) fn no_such_step(path: &Path, step: u64, known: &[u64]) -> Error {
     let file = path.display();
     let allowed = match known {
@@ -120,7 +121,8 @@ pub(super) fn no_such_step(path: &Path, step: u64, known: &[u64]) -> Error {
     Error::value("initial-step", step, allowed)
 }
 
-/// Converts rows to discs. `place` gives the file of a row and its place in the file: `line 3`.
+/// Checks rows and converts them to discs. `place` returns the file of a row and its position in the file, such as
+/// `line 3`, for messages.
 pub(super) fn discs_of_rows(
     path: &Path,
     rows: Vec<DiscRow>,
@@ -143,7 +145,7 @@ pub(super) fn discs_of_rows(
             let (_, other) = place(other);
             return Err(refuse(format!("id is {id}, but must be another than in {other}")));
         }
-        // A lost grain may be anywhere and is not read.
+        // A lost grain may be at any position, so it is not read.
         if kind == KINDS[LOST] {
             continue;
         }
@@ -196,7 +198,7 @@ pub(super) fn discs_of_rows(
     Ok(RecordedGrains { grains: by_their_ids(grains), fixed_discs, disc_materials })
 }
 
-/// Sorts by ids; without ids, keeps the order.
+/// Sorts discs by their ids. Discs without ids keep their order.
 fn by_their_ids<T>(mut discs: Vec<(Option<u64>, T)>) -> Vec<T> {
     discs.sort_by_key(|(id, _)| *id);
     discs.into_iter().map(|(_, disc)| disc).collect()

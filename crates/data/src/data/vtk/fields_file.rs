@@ -1,8 +1,9 @@
-//! Smoothed fields as an image.
+//! Writes the smoothed fields of a frame as a VTK image.
 //!
-//! Frames of a recording are compared with each other, so they all use the same smoothing width, and a single grain
-//! that flies off must not make the images of all other grains coarser or larger. Width and region are therefore fixed
-//! by the first frame: the width is a mean diameter, and the fields cover the box around its grains with some margin.
+//! Frames of a recording are compared with each other, so all frames use the same smoothing width. A single grain that
+//! flies off must not make the images of all other grains coarser or larger. Width and region are therefore fixed by
+//! the first frame: the width is a mean diameter, and the fields cover the box around the grains of that frame with
+//! some margin.
 
 use std::path::Path;
 
@@ -16,16 +17,17 @@ use crate::granular::{Fields, box_of};
 use crate::output::{counted, note_line};
 use crate::sim::Moment;
 
-/// Margins on each side of the first frame's grains, in sides of their box. The largest margin is used that does not
-/// give too many cells. With less margin, grains that flow out of the box are soon left out. With more, a grain that
-/// flies off makes images larger for longer.
+/// Possible margins between the box around the first frame's grains and the limits of the fields, in lengths of the
+/// box's longer side. The largest margin that does not give too many cells is used. With less margin, grains that flow
+/// out of the box are soon left out. With more, a grain that flies off makes images larger for longer.
 const ROOM_IN_SIDES: [f64; 4] = [3.0, 1.0, 0.25, 0.0];
-/// Least length of a side for the margin, in mean diameters.
+/// Least side length of the box in the computation of the margin, in mean diameters.
 const LEAST_SIDE_IN_DIAMETERS: f64 = 10.0;
-/// Names of the numbers in a file that give the width and the region of the fields.
+/// Name of the number in a file that is the smoothing width, m.
 const WIDTH: &str = "smoothing_width";
+/// Names of the numbers in a file that are the lower left and the upper right corner of the region, m.
 const CORNERS: [&str; 4] = ["least_x", "least_y", "most_x", "most_y"];
-/// Name of the number of grains outside the region.
+/// Name of the number in a file that counts the grains outside the region of the fields.
 const LEFT_OUT: &str = "left_out_grains";
 
 /// Descriptions of the fields, for the array `columns` of the file.
@@ -51,8 +53,8 @@ pub(super) struct FieldsBox {
 }
 
 impl FieldsBox {
-    /// The region of a recording that begins with this moment. If smoothing over a mean diameter needs too many cells,
-    /// the width is doubled as often as necessary.
+    /// Chooses smoothing width and region of the fields for a recording. `moment` is its first frame. If smoothing over
+    /// a mean diameter needs too many cells, the width is doubled as often as necessary.
     fn of(moment: &Moment) -> Self {
         let grains = moment.grains.iter().filter(|grain| !grain.lost);
         let [low, high] = box_of(grains.map(|grain| grain.position));
@@ -71,7 +73,7 @@ impl FieldsBox {
         }
     }
 
-    /// The region that a file states.
+    /// Reads smoothing width and region from a file of the recording; `None` if the file does not state them.
     pub(super) fn of_file(path: &Path) -> Option<Self> {
         let head = head_of(path).ok()?;
         let number = |name: &str| number_in(&head, name)?.parse::<f64>().ok();
@@ -80,10 +82,10 @@ impl FieldsBox {
         Some(Self { width: number(WIDTH)?, corners, has_told: false })
     }
 
-    /// Number of grains outside the region.
+    /// Returns the number of grains outside the region of the fields.
     fn left_out(&self, moment: &Moment) -> u64 {
         let [least, most] = self.corners;
-        // Along a periodic axis, all grains are inside.
+        // Along a periodic axis, all grains are inside the region.
         let [along_x, along_y] = moment.surroundings.periodic.unwrap_or_default().periods();
         let is_out = |at: DVec2| {
             (along_x.is_none() && !(least.x..=most.x).contains(&at.x))
@@ -94,7 +96,8 @@ impl FieldsBox {
     }
 }
 
-/// The fields of a frame. If the region is not yet known, it is chosen from this frame.
+/// Returns the file with the fields of a frame. If smoothing width and region are not yet known, they are chosen from
+/// this frame.
 pub(super) fn fields_file(
     frame: &Frame,
     facts: &RunFacts,

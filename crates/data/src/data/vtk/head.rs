@@ -1,4 +1,4 @@
-//! The numbers in the head of a file: step and time of its frame, and the facts about the run.
+//! Writes and reads the first arrays of a VTK file: step and time of its frame, and the facts about the run.
 
 use std::fs::File;
 use std::io::Read;
@@ -9,25 +9,25 @@ use crate::column_spec::STEP;
 use crate::data::format::{Frame, RunFacts};
 use crate::error::{Error, Result};
 
-/// Name of the time, s, which VTK's readers look for.
+/// Name of the array with the simulated time, s. VTK's readers look for this name.
 const TIME: &str = "TimeValue";
-/// Length of the beginning of a file that contains its numbers, bytes.
+/// Number of bytes at the beginning of a file that contain its step and time.
 const LONGEST_HEAD: u64 = 4096;
 
-/// The lines of a file that contain its numbers.
+/// Returns the beginning of a file, whose lines contain its step, its time and other single numbers.
 pub(super) fn head_of(path: &Path) -> std::io::Result<String> {
     let mut head = Vec::new();
     File::open(path)?.take(LONGEST_HEAD).read_to_end(&mut head)?;
     Ok(String::from_utf8_lossy(&head).into_owned())
 }
 
-/// The number of that name.
+/// Returns the text of the number with the given name in the beginning of a file.
 pub(super) fn number_in<'a>(head: &'a str, name: &str) -> Option<&'a str> {
     let (_, rest) = head.split_once(&format!("Name=\"{name}\""))?;
     Some(rest.split_once('>')?.1.split_once('<')?.0)
 }
 
-/// Step and time, s, of the frame in a file.
+/// Returns step and simulated time (s) of the frame in a file.
 pub(super) fn moment_of(path: &Path) -> Result<(u64, f64)> {
     let head = head_of(path).map_err(|error| Error::file(path, error))?;
     let step = number_in(&head, STEP).and_then(|number| number.parse().ok());
@@ -37,14 +37,14 @@ pub(super) fn moment_of(path: &Path) -> Result<(u64, f64)> {
     })
 }
 
-/// Adds step and time of a frame.
+/// Adds step and simulated time (s) of a frame to a file.
 pub(super) fn add_moment(file: &mut VtkFile, frame: &Frame) {
     let observables = &frame.moment.observables;
     file.add_number(STEP, observables.step as i64);
     file.add_number(TIME, observables.time_secs);
 }
 
-/// Adds the facts of the run.
+/// Adds the facts about the run to a file.
 pub(super) fn add_facts(file: &mut VtkFile, facts: &RunFacts) {
     let facts = facts.facts.iter().map(|(name, said)| format!("{name}: {said}"));
     file.add_words("about", facts);

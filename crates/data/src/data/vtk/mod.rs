@@ -1,14 +1,14 @@
-//! Files for ParaView and other readers of VTK: `vtk/grains.pvd` and `vtk/contacts.pvd`, each a series with one `.vtp`
-//! file per frame. Grains are points with a radius. Contacts are lines from centre to centre, or to the touched point
-//! of a boundary. `fields/fields.pvd`, a separate format, is a series of images (`.vti`) of smoothed fields on a grid
-//! ([`Fields`]).
+//! Writes recordings as files for ParaView and other readers of VTK. `vtk/grains.pvd` and `vtk/contacts.pvd` are series
+//! with one `.vtp` file per frame. Grains are points with a radius. Contacts are lines from centre to centre, or from
+//! the centre to the touched point of a boundary. `fields/fields.pvd`, a separate format, is a series of images
+//! (`.vti`) of smoothed fields on a grid ([`Fields`]).
 //!
 //! Arrays have the names of the tables' columns. Two columns that form a vector become one array (`velocity`, `normal`,
-//! `force` or `point`) whose components have the columns' names, because VTK's vectors are three-dimensional. Words
-//! become numbers, because readers cannot colour by words. Arrays for the whole file contain the words in the order of
-//! the numbers (`NAME_words`), the description and unit of each column (`columns`), and the description of the run
-//! (`about`). They also contain the measures of the whole pile (`pile_NAME`) and, with one value per wall, those of the
-//! walls (`wall_NAME`).
+//! `force` or `point`), because vectors of VTK have three components; the components have the names of the columns.
+//! Words become numbers, because readers cannot colour by words. Some arrays belong to the whole file. They contain the
+//! words in the order of their numbers (`NAME_words`), the description and unit of each column (`columns`), the
+//! description of the run (`about`), the measures of the whole pile (`pile_NAME`), and the values of each wall
+//! (`wall_NAME`).
 
 mod fields_file;
 mod head;
@@ -30,22 +30,22 @@ use crate::error::{Error, Result};
 use crate::output::PendingFile;
 use crate::sim::{ContactState, Moment, OtherBody};
 
-/// A folder of VTK files, which is a format.
+/// A format of recordings: a folder of VTK files.
 pub(super) struct VtkFolder {
     pub name: &'static str,
     kinds: &'static [VtkKind],
 }
 
-/// Files of one kind, one per frame.
+/// One kind of file in a folder of VTK files. Each frame has one file of this kind.
 struct VtkKind {
-    /// First part of their names.
+    /// Beginning of the names of these files.
     name: &'static str,
-    /// Ending of their names.
+    /// Ending of the names of these files.
     ending: &'static str,
     file: fn(&Frame, &RunFacts, &mut Option<FieldsBox>) -> Result<Vec<u8>>,
 }
 
-/// Grains and contacts.
+/// The format `vtk`: files of grains and files of contacts.
 pub(super) const BODIES: VtkFolder = VtkFolder {
     name: "vtk",
     kinds: &[
@@ -61,7 +61,7 @@ pub(super) const BODIES: VtkFolder = VtkFolder {
         },
     ],
 };
-/// Smoothed fields.
+/// The format `fields`: files of smoothed fields.
 pub(super) const FIELDS: VtkFolder = VtkFolder {
     name: "fields",
     kinds: &[VtkKind { name: "fields", ending: ".vti", file: fields_file }],
@@ -69,27 +69,28 @@ pub(super) const FIELDS: VtkFolder = VtkFolder {
 
 const ENDING_OF_SERIES: &str = ".pvd";
 
-/// Columns that are constant in each frame.
+/// Columns with the same value in all rows of a frame.
 const OF_FRAME: [&str; 2] = ["step", "time"];
-/// Prefix of the measures of the whole pile, because grains have arrays of the same names.
+/// Prefix of the names of arrays with measures of the whole pile, because grains have arrays of the same names.
 const PILE: &str = "pile_";
-/// Prefix of the columns of walls.
+/// Prefix of the names of arrays with the columns of the table of walls.
 const WALL: &str = "wall_";
-/// Vectors, and the columns that are their components.
+/// Names of arrays of vectors, and the columns that are the components of these vectors.
 const VECTORS: [(&str, [&str; 2]); 4] = [
     ("velocity", ["vx", "vy"]),
     ("normal", ["nx", "ny"]),
     ("point", ["x", "y"]),
     ("force", ["fx", "fy"]),
 ];
-/// Value of a flag that the contact law does not define.
+/// Number that stands for a flag which the contact law does not define.
 const NEITHER: i8 = -1;
 
-/// Length of a slot, bytes. It divides a page, so that no slot lies in two pages, and is enough for any time and name.
+/// Length of a slot, the space for one entry in a `.pvd` file, bytes. It divides the size of a memory page, so that no
+/// slot lies in two pages, and is enough for any time and file name.
 const SLOT: usize = 128;
-/// Length of the text ahead of the first slot, bytes.
+/// Length of the text ahead of the first slot in a `.pvd` file, bytes.
 const HEAD: usize = 256;
-/// Number of slots of a new file.
+/// Number of slots in a new `.pvd` file.
 const FIRST_SLOTS: usize = 32;
 
 const OPENING: &str = "<?xml version=\"1.0\"?>\n\
@@ -100,9 +101,9 @@ pub(super) struct Vtk {
     folder: PathBuf,
     kinds: &'static [VtkKind],
     facts: RunFacts,
-    /// One series for each kind; empty before the first frame of a new recording.
+    /// The `.pvd` file of each kind of file; empty before the first frame of a new recording.
     series: Vec<PvdSeries>,
-    /// Region of the fields, from the first frame on.
+    /// Smoothing width and region of the fields; known from the first frame on.
     of_fields: Option<FieldsBox>,
 }
 
@@ -114,7 +115,8 @@ impl Vtk {
         Ok(Self { folder, kinds, facts, series: Vec::new(), of_fields: None })
     }
 
-    /// Creates the series with the files of the first frames, which have these times, s.
+    /// Creates the `.pvd` file of each kind, with entries for the files of the first frames. `times` are the simulated
+    /// times of these frames, s.
     fn begin(&mut self, times: &[f64]) -> Result<()> {
         let series = self.kinds.iter().map(|kind| {
             let files = times.iter().zip(0..).map(|(&time, number)| (time, kind.file_name(number)));
@@ -129,7 +131,7 @@ impl Vtk {
 }
 
 impl VtkFolder {
-    /// True if a name is that of a file in this folder.
+    /// True if a file with this name belongs to the format.
     pub(super) fn has_named(&self, name: &str) -> bool {
         let is_series = |kind: &VtkKind| name.strip_prefix(kind.name) == Some(ENDING_OF_SERIES);
         self.kinds.iter().any(|kind| is_series(kind) || kind.number_of(name).is_some())
@@ -141,7 +143,7 @@ impl VtkKind {
         format!("{}_{number:06}{}", self.name, self.ending)
     }
 
-    /// The number in a file name, if the file is of this kind.
+    /// Returns the number of the frame in a file name, if the file is of this kind.
     fn number_of(&self, name: &str) -> Option<u64> {
         let digits = name.strip_prefix(self.name)?.strip_prefix('_')?.strip_suffix(self.ending)?;
         let are_digits = digits.len() >= 6 && digits.bytes().all(|byte| byte.is_ascii_digit());
@@ -198,7 +200,7 @@ impl Format for Vtk {
             times.push(time_secs);
         }
         if !times.is_empty() {
-            // The series that readers open are cut first.
+            // The `.pvd` files, which readers open, are shortened before the files that they list are removed.
             self.begin(&times)?;
         }
         let first = self.folder.join(self.kinds[0].file_name(0));
@@ -214,7 +216,7 @@ impl Format for Vtk {
     }
 }
 
-/// Grains as points, with the columns of their table.
+/// Returns the file of grains and fixed discs as points, with the columns of the table of grains.
 fn grains_file(frame: &Frame, facts: &RunFacts) -> Vec<u8> {
     let surroundings = &frame.moment.surroundings;
     let fixed = surroundings.fixed_discs.iter().map(|disc| disc.position);
@@ -226,7 +228,7 @@ fn grains_file(frame: &Frame, facts: &RunFacts) -> Vec<u8> {
     with_arrays(file, WALL, &frame.walls).finish("radius")
 }
 
-/// Contacts as lines, with the columns of their table.
+/// Returns the file of contacts as lines, with the columns of the table of contacts.
 fn contacts_file(frame: &Frame, facts: &RunFacts) -> Vec<u8> {
     let lines = frame.moment.contacts.iter().map(|contact| line(&frame.moment, contact));
     let ends: Vec<DVec2> = lines.flatten().collect();
@@ -235,7 +237,7 @@ fn contacts_file(frame: &Frame, facts: &RunFacts) -> Vec<u8> {
         .finish("normal_force")
 }
 
-/// True if a file is complete up to its last word.
+/// True if a file is complete, which means that it ends with the last bytes of every VTK file.
 fn is_whole(path: &Path) -> bool {
     let mut end = Vec::new();
     let read = File::open(path).and_then(|mut file| {
@@ -245,8 +247,8 @@ fn is_whole(path: &Path) -> bool {
     read.is_ok() && end == vtk_file::END.as_bytes()
 }
 
-/// The ends of a contact's line: the present centres, or the centre and the touched point of a boundary, which is the
-/// end of the branch vector.
+/// Returns the two ends of the line that represents a contact, m. These are the present centres of the two discs, or
+/// the centre of the grain and the touched point of a boundary, which is the end of the branch vector.
 fn line(moment: &Moment, contact: &ContactState) -> [DVec2; 2] {
     let from = moment.grains[contact.grain as usize].position;
     let periodic = moment.surroundings.periodic;
@@ -261,7 +263,8 @@ fn line(moment: &Moment, contact: &ContactState) -> [DVec2; 2] {
     [from, to]
 }
 
-/// Adds all columns of the table except the positions of its points.
+/// Adds step, time, description and all columns of a table to a file. The vector `placed_by` is left out, because it is
+/// the position of the file's points.
 fn file(
     mut file: VtkFile,
     frame: &Frame,
@@ -291,7 +294,7 @@ fn file(
     file
 }
 
-/// Adds the columns of a table whose rows are not points, with `prefix` before their names.
+/// Adds the columns of a table whose rows are not points of the file, with `prefix` before their names.
 fn with_arrays(mut file: VtkFile, prefix: &str, table: &Table) -> VtkFile {
     let columns = table.columns.iter().filter(|column| !OF_FRAME.contains(&column.name));
     for Column { name, values, .. } in columns {
@@ -307,14 +310,14 @@ fn with_arrays(mut file: VtkFile, prefix: &str, table: &Table) -> VtkFile {
             Values::Words { words, codes } => {
                 file.add_words(&name, codes.iter().map(|&code| &words[code as usize]));
             }
-            // Such tables have no flags.
+            // Tables of walls and measures have no flags.
             Values::Flags(_) => {}
         }
     }
     file
 }
 
-/// The values of a column that has a number in every row.
+/// Returns the values of a column that has a number in every row; no values for another column.
 fn numbers<'a>(table: &'a Table, name: &str) -> &'a [f64] {
     match table.column(name).map(|column| &column.values) {
         Some(Values::Numbers(numbers)) => numbers,
@@ -339,23 +342,23 @@ fn add(file: &mut VtkFile, Column { name, values, .. }: &Column) {
     }
 }
 
-/// A `.pvd` file, which lists the file of each time for ParaView.
+/// A `.pvd` file: the list from which ParaView knows the file of each simulated time.
 ///
-/// It grows by one frame at a time and must be complete whenever it is read or the program is killed. Entries are
-/// therefore slots of fixed length ahead of the closing tags, and free slots are blank. A new entry is one write within
-/// one page of memory, which a kill cannot cut. If no slot is free, the file is rewritten with twice as many, so the
-/// cost per frame stays constant on average.
+/// This list grows by one frame at a time, and must be complete whenever it is read or the program is killed. Entries
+/// are therefore slots of fixed length ahead of the closing tags, and free slots are blank. A new entry is written in
+/// one operation within one page of memory, which a kill cannot interrupt. If no slot is free, the file is rewritten
+/// with twice as many slots, so the cost per frame stays constant on average.
 struct PvdSeries {
     path: PathBuf,
     file: File,
-    /// Number of entries.
+    /// Number of entries: filled slots.
     count: usize,
     slots: usize,
 }
 
 impl PvdSeries {
-    /// A series of files in its own folder, each with its time, s. The result is the same as if the files had been
-    /// added one by one.
+    /// Creates the `.pvd` file `path` with an entry for each of the given files, which are in the same folder:
+    /// (simulated time in s, name). The result is the same as if the files had been added one by one.
     fn of(path: PathBuf, files: &[(f64, String)]) -> Result<Self> {
         let entries: Vec<u8> =
             files.iter().flat_map(|(time_secs, name)| entry(*time_secs, name)).collect();
@@ -366,7 +369,7 @@ impl PvdSeries {
         Self::write_anew(path, &entries, slots)
     }
 
-    /// Adds the file of a time, s. The file is in the folder of the series.
+    /// Adds an entry for the file of a simulated time, s. The file is in the folder of the `.pvd` file.
     fn add(&mut self, time_secs: f64, file: &str) -> Result<()> {
         if self.count == self.slots {
             let text = std::fs::read(&self.path).map_err(|error| Error::file(&self.path, error))?;
@@ -395,12 +398,12 @@ impl PvdSeries {
     }
 }
 
-/// A filled slot.
+/// Returns the text of a filled slot: the entry for the file of a simulated time, s.
 fn entry(time_secs: f64, file: &str) -> Vec<u8> {
     padded(&format!("<DataSet timestep=\"{time_secs:?}\" file=\"{file}\"/>"), SLOT)
 }
 
-/// A line of `length` bytes.
+/// Returns a text as a line of `length` bytes, filled with blanks.
 fn padded(text: &str, length: usize) -> Vec<u8> {
     let mut line = format!("{:1$}", text, length - 1).into_bytes();
     line.push(b'\n');

@@ -1,8 +1,10 @@
-//! One `.vtp` or `.vti` file: points with cells on them, or the cells of a grid, and named arrays, in VTK's XML formats for
-//! polygonal data and for images with raw appended arrays (K. Martin, W. Schroeder, B. Lorensen, *VTK File Formats*).
+//! Writes one `.vtp` or `.vti` file: points with cells on them, or the cells of a grid, and named arrays, in VTK's XML
+//! formats for polygonal data and for images with raw appended arrays (K. Martin, W. Schroeder, B. Lorensen, *VTK File
+//! Formats*).
 //!
-//! The XML states for each array its offset after the `_` of `AppendedData`. There, its length in bytes is a UInt64,
-//! followed by its values, all in little-endian order. Nothing is rounded.
+//! For each array the XML states an offset, counted from the character `_` of the section `AppendedData`. At this
+//! offset is the length of the array in bytes as a UInt64, followed by the values of the array. All numbers are
+//! little-endian and not rounded.
 
 use std::fmt::Write as _;
 
@@ -28,14 +30,14 @@ macro_rules! scalars {
 
 scalars! { f64, "Float64"; i64, "Int64"; i32, "Int32"; i8, "Int8"; }
 
-/// The cells of a file, all of one kind.
+/// Cells of a VTK file, which are all of one kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum VtkCells {
     Points,
     /// A line from each point with an even index to the next point.
     Lines,
-    /// An upright grid without explicit points: the corner of the cell with the index 0, the sides, m, and the first
-    /// and the last corner along both axes.
+    /// An axis-parallel grid without explicit points: the lower left corner of the cell with the index 0 (m), the width
+    /// and height of a cell (m), and the indices of the first and the last corner along both axes.
     Grid {
         origin: [f64; 2],
         sides: [f64; 2],
@@ -46,17 +48,17 @@ pub(super) enum VtkCells {
 pub(super) struct VtkFile {
     cells: VtkCells,
     points: usize,
-    /// XML of the arrays for the whole file, …
+    /// XML of the arrays for the whole file.
     of_file: String,
-    /// … of the arrays for each point, line or cell, …
+    /// XML of the arrays with a value for each point, line or cell.
     of_rows: String,
-    /// … and of the positions of the points.
+    /// XML of the positions of the points.
     of_points: String,
     appended: Vec<u8>,
 }
 
 impl VtkFile {
-    /// A file with these points, m, in the plane z = 0.
+    /// Creates a file with the given points (m) in the plane z = 0.
     pub(super) fn new(cells: VtkCells, points: impl ExactSizeIterator<Item = [f64; 2]>) -> Self {
         let mut file = Self {
             cells,
@@ -71,7 +73,7 @@ impl VtkFile {
         file
     }
 
-    /// Adds a number for the whole file. It is written into the XML, where people can read it.
+    /// Adds a number for the whole file. The number is written into the XML as text, which people can read.
     pub(super) fn add_number<N: Scalar + std::fmt::Debug>(&mut self, name: &str, number: N) {
         let _ = writeln!(
             self.of_file,
@@ -81,7 +83,7 @@ impl VtkFile {
         );
     }
 
-    /// Adds an array of numbers for the whole file. It may be empty, so it is not written as text.
+    /// Adds an array of numbers for the whole file. The array may be empty, so it is not written as text.
     pub(super) fn add_numbers<N: Scalar>(
         &mut self,
         name: &str,
@@ -97,7 +99,7 @@ impl VtkFile {
         );
     }
 
-    /// Adds words for the whole file.
+    /// Adds an array of words for the whole file.
     pub(super) fn add_words<Word: AsRef<str>>(
         &mut self,
         name: &str,
@@ -106,7 +108,7 @@ impl VtkFile {
         let count = words.len();
         let offset = self.append_bytes(|bytes| {
             for word in words {
-                // A 0 ends a word, so it is removed from the word itself.
+                // A zero byte ends a word, so zero bytes inside a word are removed.
                 bytes.extend(word.as_ref().bytes().filter(|&byte| byte != 0).chain([0]));
             }
         });
@@ -123,7 +125,7 @@ impl VtkFile {
         self.of_rows += &said;
     }
 
-    /// Adds an array of vectors in the same way; `parts` are the names of their first two components.
+    /// Adds an array with one vector per point, line or cell. `x` and `y` are the names of the first two components.
     pub(super) fn add_vectors(
         &mut self,
         name: &str,
@@ -134,7 +136,7 @@ impl VtkFile {
         self.of_rows += &said;
     }
 
-    /// The complete file. ParaView initially colours by `scalars`.
+    /// Returns the complete file. ParaView initially colours by the array with the name `scalars`.
     pub(super) fn finish(mut self, scalars: &str) -> Vec<u8> {
         let (cells, each) = match self.cells {
             VtkCells::Points => ("Verts", 1),
@@ -191,7 +193,7 @@ impl VtkFile {
         whole_file("ImageData", &body, appended)
     }
 
-    /// Appends an array and returns its XML. `parts` names the components if there are several.
+    /// Appends the values of an array and returns the array's XML. `parts` names the components if there are several.
     fn append<N: Scalar, const EACH: usize, const NAMED: usize>(
         &mut self,
         name: &str,
@@ -212,7 +214,7 @@ impl VtkFile {
         )
     }
 
-    /// Appends the bytes that `put` writes, after their length, and returns their offset.
+    /// Appends a length and then the bytes that `put` writes, which have this length. Returns the offset of the length.
     fn append_bytes(&mut self, put: impl FnOnce(&mut Vec<u8>)) -> usize {
         let offset = self.appended.len();
         let behind_length = offset + size_of::<u64>();
@@ -235,7 +237,7 @@ fn whole_file(kind: &str, body: &str, appended: &[u8]) -> Vec<u8> {
     [head.as_bytes(), appended, END.as_bytes()].concat()
 }
 
-/// A plane vector with z = 0, as VTK expects.
+/// Extends a plane vector by z = 0, because VTK expects three components.
 fn in_space([x, y]: [f64; 2]) -> [f64; 3] {
     [x, y, 0.0]
 }

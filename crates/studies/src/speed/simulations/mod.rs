@@ -1,9 +1,10 @@
-//! Speed against accuracy of whole simulations: the error of a pile's slump, and the simulated seconds per second.
-//! Steps use the restitution threshold at which nearly all of them have a solution.
+//! Charts speed against accuracy of whole simulations: the error of a pile's slump, and the simulated seconds per
+//! second of computing time. Steps use the restitution threshold at which nearly all of them have a solution.
 //!
 //! The difference to the reference *at the same Δt* is the error of the solver. The difference to the reference at the
 //! smallest Δt also includes the error of the time step. Piles are chaotic: two references, one of them solved ten
-//! times more tightly, differ by the *floor*, below which errors have no meaning. `range` has its own references.
+//! times more tightly, differ by the *floor*, below which errors have no meaning. Simulations with the stepper `range`
+//! have their own references.
 
 mod report;
 
@@ -27,23 +28,24 @@ use crate::states::States;
 use crate::statistics::{Mean, mean};
 use crate::world::ParameterChanges;
 
-/// Largest number of sweeps of a step, because a step without a solution would never end.
+/// Largest number of sweeps per step. Without this limit, a step that has no solution would never end.
 const MOST_SWEEPS: u32 = 5_000;
-/// Contacts slower than this, in units of g·Δt, do not bounce.
+/// Speed below which contacts do not bounce, in units of g·Δt, the speed that gravity adds in one step.
 const THRESHOLD: f64 = 2.0;
-/// Δt of the reference with the smallest error of the time step, s.
+/// Smallest time step of the reference runs, s. Its references have the smallest error due to the time step.
 const FINEST_SECS: f64 = 1e-4;
 const DURATION_SECS: f64 = 1.0;
-/// Method of the references, and their residuals. The second residual measures the floor.
+/// Solver method of the references, and the residuals to which it solves each step. References with the second residual
+/// only serve to measure the floor: the difference between two references, below which errors have no meaning.
 const REFERENCE: Method = Method::Newton;
 const TOLERANCES: [f64; 2] = [1e-8, 1e-9];
-/// Largest slump of a pile that holds.
+/// Slump below which a pile counts as stable.
 const HOLDS: f64 = 0.1;
-/// The law under which the floor is measured.
+/// Contact law under which the floor (the difference between two references) is measured.
 const FLOOR_LAW: Stepper = Stepper::Moreau;
-/// Steps between two checks of the clock.
+/// Number of steps between two checks of the elapsed time.
 const STEPS_PER_LOOK: u64 = 16;
-/// Disturbances average out within a run that takes longer than this, s.
+/// Computing time, s, above which a run is not repeated, because disturbances average out within the run.
 const LONG_ENOUGH_SECS: f64 = 2.0;
 const LEAST_ERROR: f64 = 1e-3;
 const GREY: Rgb = (130, 130, 130);
@@ -64,29 +66,29 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     }])
 }
 
-/// A variant with its budget, the accuracy to which it solves steps.
+/// A solver variant with its effort: the accuracy to which it solves steps, or its number of sweeps or substeps.
 struct BudgetedVariant {
     charted: Change,
-    /// Law of the reference solutions for this variant.
+    /// Contact law of the references for this variant.
     law: Stepper,
-    /// Change named after the budget.
+    /// Change of the settings that sets the effort, named after the effort.
     change: Change,
 }
 
-/// The simulations: piles of the paper's 138 grains.
+/// Plan of the simulations, which are piles of 138 grains as in the paper.
 struct SimulationPlan {
     time_steps_secs: Vec<f64>,
-    /// (Bond, seed) of each pile.
+    /// Bond number and seed of each pile.
     piles: Vec<(f64, u64)>,
     budgeted: Vec<BudgetedVariant>,
     laws: Vec<Stepper>,
     repeats: u32,
-    /// Limit of wall time per simulated second, s.
+    /// Largest computing time per simulated second, s.
     limit_secs: f64,
 }
 
 impl SimulationPlan {
-    /// The law `range` is represented by one good method.
+    /// Returns the plan of a quick or full pass. Only Newton's method represents the contact law `range`.
     fn new(effort: Effort) -> Self {
         let laws: &[Stepper] = effort.pick(&[Stepper::Moreau], &[Stepper::Moreau, Stepper::Range]);
         Self {
@@ -162,8 +164,8 @@ fn budgeted(laws: &[Stepper], effort: Effort) -> Vec<BudgetedVariant> {
     budgeted
 }
 
-/// (Bond, seed) of each pile of 138 grains. Every Bond number occurs with several seeds, and every seed with several
-/// Bond numbers.
+/// Returns the Bond number and the seed of each pile of 138 grains. Every Bond number occurs with several seeds, and
+/// every seed with several Bond numbers.
 fn piles(effort: Effort) -> Vec<(f64, u64)> {
     let shared = NewPile::default().seed;
     if effort == Effort::Quick {
@@ -177,24 +179,24 @@ fn piles(effort: Effort) -> Vec<(f64, u64)> {
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct TimedRun {
-    /// The reason if it did not reach its end, in words.
+    /// Reason why the run did not reach its end, in words; `None` if it did.
     failed: Option<String>,
-    /// Least time of the repeats, s.
+    /// Shortest computing time among the repeats, s.
     least_secs: f64,
     simulated_secs: f64,
     steps: u64,
     unconverged_steps: u64,
-    /// Δy_G at the end.
+    /// Slump Δy_G at the end: the drop of the mean height, divided by the first mean height.
     #[serde(with = "number")]
     slump: f64,
-    /// Mean over the steps, in diameters.
+    /// Mean overlap over the steps, in diameters.
     #[serde(with = "number")]
     mean_overlap: f64,
 }
 
-/// Runs a scene to its end, `repeats` times for the least time, unless it takes more than `limit_secs` of wall time. A
-/// run that takes longer than [`LONG_ENOUGH_SECS`] is not repeated. A state that is no longer finite counts as a
-/// result, not as an error.
+/// Runs a scene to its end `repeats` times, and returns the shortest computing time. A run that takes more than
+/// `limit_secs` is stopped and counts as failed. A run that takes longer than [`LONG_ENOUGH_SECS`] is not repeated. A
+/// state that is no longer finite is a result, not an error.
 fn timed_run(scene: &Scene, repeats: u32, limit_secs: f64) -> Result<TimedRun> {
     let mut run = timed_once(scene, limit_secs)?;
     for _ in 1..repeats {
@@ -240,17 +242,18 @@ fn timed_once(scene: &Scene, limit_secs: f64) -> Result<TimedRun> {
 struct ReferenceCase {
     law: Stepper,
     time_step_secs: f64,
-    /// Index in `SimulationPlan::piles`.
+    /// Number of the pile: its index in `SimulationPlan::piles`.
     pile: usize,
-    /// Index in [`TOLERANCES`].
+    /// Number of the tolerance: its index in [`TOLERANCES`].
     tolerance: usize,
 }
 
-/// The references, including those that measure the floor.
+/// All reference runs. Some of them only serve to measure the floor: the difference between two references.
 struct References(Vec<(ReferenceCase, TimedRun)>);
 
 impl References {
-    /// All references of a plan. The floor is only measured at the charted Δt.
+    /// Returns all reference runs of a plan. The floor (the difference between two references) is only measured at the
+    /// charted time steps.
     fn cases(plan: &SimulationPlan) -> Vec<ReferenceCase> {
         let mut cases = Vec::new();
         for &law in &plan.laws {
@@ -289,12 +292,14 @@ impl References {
         Ok(Self(cases.iter().zip(runs).map(|(case, run)| (case.setup, run.result)).collect()))
     }
 
-    /// Slump of a reference. The plan has one for every law, Δt and pile, and at the smallest Δt.
+    /// Returns the slump of a reference run. There is a reference for every contact law, time step and pile of the
+    /// plan, and for the smallest time step.
     fn slump(&self, wanted: ReferenceCase) -> f64 {
         self.0.iter().find(|(case, _)| *case == wanted).map_or(f64::NAN, |(_, run)| run.slump)
     }
 
-    /// The floor: mean difference between two references over all piles and the charted Δt.
+    /// Returns the floor: the mean difference of the slump between two references with different tolerances, over all
+    /// piles and the charted time steps.
     fn floor(&self, plan: &SimulationPlan) -> f64 {
         let mut differences = Vec::new();
         for &time_step_secs in &plan.time_steps_secs {
@@ -307,24 +312,25 @@ impl References {
         mean(&differences).mean
     }
 
-    /// Number of unsolved steps, and of all steps.
+    /// Returns the number of unsolved steps of the references, and the number of all their steps.
     fn unsolved(&self) -> [u64; 2] {
         let sum = |number: fn(&TimedRun) -> u64| self.0.iter().map(|(_, run)| number(run)).sum();
         [sum(|run| run.unconverged_steps), sum(|run| run.steps)]
     }
 }
 
-/// Results of one variant with one budget at one Δt.
+/// Results of one variant with one effort at one time step: a point of the chart.
 struct SimulatedPoint<'a> {
     variant: &'a BudgetedVariant,
     time_step_secs: f64,
-    /// The completed runs, pile by pile.
+    /// Completed runs, one per pile, in the order of the piles.
     runs: Vec<TimedRun>,
     failed: Option<String>,
     speed: f64,
-    /// Mean |slump − reference| at the same Δt, and at the smallest.
+    /// Mean of |slump − slump of the reference|, with the reference at the same time step, and at the smallest time
+    /// step.
     errors: [Mean; 2],
-    /// Fraction of piles with the same outcome (holds or not) as the reference at the same Δt.
+    /// Fraction of piles with the same outcome (stable or not) as the reference at the same time step.
     verdicts: f64,
 }
 

@@ -1,12 +1,13 @@
-//! The chart, text and table of simulations.
+//! Makes the chart, the text and the table of whole simulations.
 
 use super::*;
 use crate::harness::ReportTable;
 
-/// Least number of piles for which intervals are shown.
+/// Least number of piles for which confidence intervals are shown.
 const TELLING: usize = 8;
 
-/// Charts the smallest error of each family for its cost: relative to the same Δt, and to the smallest Δt.
+/// Charts the smallest error that each family of methods reaches for its cost: relative to the reference at the same
+/// time step, and relative to the reference at the smallest time step.
 pub(super) fn sheet(
     bench: &Bench,
     plan: &SimulationPlan,
@@ -70,7 +71,7 @@ fn with_errors(
         let name = "two references from each other";
         chart.layers.push(Layer::quiet(name, line, GREY, Look::Dashes(2)));
     }
-    // Errors below the floor are not distinguished.
+    // Errors below the floor, the difference between two references, count as equal.
     let least = floor.unwrap_or(0.0).max(LEAST_ERROR);
     for family in Family::ALL {
         let is_its = |point: &&SimulatedPoint| point.variant.charted.family() == family;
@@ -83,7 +84,7 @@ fn with_errors(
             .map(|index| {
                 let Mean { mean, low, high, .. } = good[index].errors[panel];
                 let inside = |error: f64| error.clamp(LEAST_ERROR, 1.0);
-                // With few piles, an interval would be as wide as the chart.
+                // With few piles, a confidence interval would be as wide as the chart.
                 let is_told = plan.piles.len() >= TELLING;
                 let interval = is_told.then(|| (inside(low), inside(high)));
                 Point { x: cost(good[index]), y: inside(mean), interval }

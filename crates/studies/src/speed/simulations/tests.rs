@@ -1,8 +1,8 @@
-//! Tests of plans and references.
+//! Tests the plans and the references of whole simulations.
 
 use super::*;
 
-/// References for each pile and tolerance, with distinct slumps.
+/// Returns made-up references for each pile and tolerance, with distinct slumps.
 fn made_up(plan: &SimulationPlan) -> References {
     let reference = |case: ReferenceCase| {
         let ReferenceCase { time_step_secs, pile, tolerance, .. } = case;

@@ -1,18 +1,21 @@
-//! Solution of a step under the law `range` (`contact::range`).
+//! Solution of a step with bonds, under the law `range` (`contact::range`).
 //!
-//! A bond's bound depends on two quantities of the solution: the speed v at which the bond opens after the shocks of
-//! the step, and its load J. So a step is solved several times, always with the same solver and the same rows.
+//! The largest impulse of a bond (its bound) depends on two quantities of the solution: the speed v at which the bond
+//! opens after the shocks of the step, and the load J, the change of this speed by all other forces in the step. So a
+//! step is solved several times, always with the same solver and the same rows.
 //!
-//! 1. **Shocks** (`range::shocks`), in which a bond has no effect because its force is finite, give v.
-//! 2. **The step** is solved from the velocities after the shocks, with gravity. Each bond may pull with up to C₀Δt.
-//! 3. **Breaks.** The solution gives the loads. Bonds that would open by δ_c before the end of the step get the
-//!    impulse of their remaining time, and the step is solved again, starting from the present solution, until no
-//!    bond's bound decreases. Bounds never increase, so this ends.
+//! 1. **Shocks** (`range::shocks`) give v. Bonds have no effect in a shock, because their force is finite.
+//! 2. **The step** is solved from the velocities after the shocks, with gravity. Each bond may pull with the impulse
+//!    C₀Δt at most.
+//! 3. **Breaks.** The solution gives the loads. A bond that would open by the debonding distance δ_c before the end of
+//!    the step breaks, and gets the impulse of the time until then as its bound. The step is solved again, starting
+//!    from the present solution, until no bound decreases any more. Bounds never increase, so this process ends.
 //!
-//! **Restless bonds.** A broken bond loads the next one, and a step transmits a load by one bond only; a long step
-//! also gives only the mean of a load. So a step checks for bonds that would break if they were half as strong, and a
-//! long step with such bonds is rejected (`range`). Resting grains are not restless, whatever load their bonds carry:
-//! if nothing moves by more than a fraction of δ_c, the mean of a load is the load.
+//! **Restless bonds.** A broken bond loads the next bond, but a step transmits a load by one bond only, and a long step
+//! only gives the mean of a load. So a step looks for bonds that would break at half their strength. Such bonds are
+//! called restless, and a long step with restless bonds is rejected (`range`). Bonds between resting grains are not
+//! restless, whatever load they carry: if no grain moves by more than a small fraction of δ_c, loads are constant and
+//! equal their means.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,21 +27,21 @@ use crate::sim::steppers::range::step_numbers::StepNumbers;
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{Model, RowVelocities, SolveReport, StepProblem, for_each_row, solve};
 
-/// Number of solutions of a step after which bounds stay unchanged. Few bonds still need a lower bound then, and the
-/// next step examines them again.
+/// Number of solutions of a step after which the bounds of bonds no longer change. By then only few bonds still need a
+/// smaller bound, and the next step examines them again.
 const MOST_ROUNDS: u32 = 8;
 
-/// Relative strength at which a bond that would break counts as restless.
+/// Fraction of its strength at which a bond that would break counts as restless.
 const STRENGTH_OF_RESTLESS_BONDS: f64 = 0.5;
 
-/// Largest motion of resting grains in a step, in δ_c. If larger, a slow increase of a load is missed; if smaller,
-/// motion within the solver's tolerance counts as motion.
+/// Largest motion of resting grains in a step, in debonding distances δ_c. With a larger value, the slow increase of a
+/// load is missed; with a smaller value, errors within the solver's tolerance count as motion.
 const STANDING_IN_DEBONDING_DISTANCES: f64 = 1e-3;
 
-/// Relative decrease of a bound that requires another solution.
+/// Relative decrease of a bond's bound that requires another solution of the step.
 const FALL: f64 = 1e-6;
 
-/// Data that the law keeps from one step to the next.
+/// Data that the stepper `range` keeps from one step to the next.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::sim) struct RangeMemory {
@@ -48,14 +51,14 @@ pub(in crate::sim) struct RangeMemory {
     lowered: Vec<(usize, f64)>,
     /// True if bonds were about to break in the last step.
     pub restless: bool,
-    /// The longest step, s, that is not too long for the bonds that were about to break, if the last step was too
-    /// long.
+    /// Longest step, s, that is short enough for bonds that were about to break; `None` if the last step was short
+    /// enough.
     #[serde(skip)]
     pub longest_step_secs: Option<f64>,
 }
 
-/// Solves a prepared problem and updates the bonds. Returns the results of shocks, solves and bonds before the grains
-/// move. If a bond breaks although none may, returns only the work of the solves.
+/// Solves a prepared problem, with shocks and bonds, and updates the bonds. Returns the results before the grains move.
+/// If `may_break` is false and a bond is about to break, returns only the report of the solves, as an error.
 pub(super) fn solve_range<M: Model>(
     stage: &mut Stage<'_, M>,
     remembered: &mut RangeMemory,
@@ -91,23 +94,23 @@ pub(super) fn solve_range<M: Model>(
     Ok(result)
 }
 
-/// Opening of a bond in a step, or in the part of a step after the shock that closed the bond.
+/// Opening of a bond in a step or, if a shock closed the bond, in the rest of the step after that shock.
 struct BondOpening {
-    /// Fraction of the step.
+    /// Fraction of the step that this opening covers: 1, or less if a shock closed the bond within the step.
     part: f64,
-    /// True if a shock closed the bond.
+    /// True if a shock closed the bond in this step.
     is_closed: bool,
-    /// Speed v at the beginning, m/s.
+    /// Opening speed v at the beginning, m/s.
     speed: f64,
-    /// Load J, m/s.
+    /// Load J: change of the opening speed by all forces except the bond's own, m/s.
     load: f64,
-    /// The bond's own impulse, m/s.
+    /// Impulse of the bond itself, divided by the effective mass, m/s.
     impulse: f64,
 }
 
 impl BondOpening {
-    /// The opening of a row's bond. Other forces are constant over the step, so a part of the step has that part of
-    /// their impulse.
+    /// Computes the opening of the bond of row `number`. All other forces are constant over the step, so their impulse
+    /// in a fraction of the step is that fraction of their whole impulse.
     fn of<M: Model>(
         problem: &StepProblem<M>,
         number: usize,
@@ -129,13 +132,14 @@ impl BondOpening {
         }
     }
 
-    /// Mean opening speed (v + v^n)/2, m/s.
+    /// Returns the mean opening speed (v + v^n)/2, m/s: v at the beginning and v^n at the end.
     fn opening_speed(&self) -> f64 {
         self.speed + 0.5 * (self.load + self.impulse)
     }
 }
 
-/// Updates the bonds, one per contact, after a solved step.
+/// Updates the stretch and the state of all bonds after a solved step, and returns their energies. `bonds` contains one
+/// bond per contact.
 fn update_bonds<M: Model>(
     problem: &StepProblem<M>,
     bonds: &mut [Bond],
@@ -174,17 +178,17 @@ fn update_bonds<M: Model>(
     energies
 }
 
-/// Inputs for the bounds of a step.
+/// Inputs for the bounds of the bonds in a step.
 struct BondLimits<'a> {
-    /// One per contact.
+    /// Bonds, one per contact.
     bonds: &'a [Bond],
     shocks: &'a Shocks,
     numbers: StepNumbers,
 }
 
 impl BondLimits<'_> {
-    /// True if bonds are about to break in a solved step. `fastest` is the speed (m/s) of the fastest grain or wall
-    /// at its beginning.
+    /// True if bonds are about to break in a solved step. `fastest` is the speed of the fastest grain or wall at the
+    /// beginning of the step, m/s. `lowered` is work space.
     fn is_restless<M: Model>(
         &self,
         problem: &StepProblem<M>,
@@ -199,7 +203,7 @@ impl BondLimits<'_> {
         !lowered.is_empty()
     }
 
-    /// True if nothing moved when the step began, and no pair separates or slides in it.
+    /// True if no grain or wall moves at the beginning of the step, and no pair separates or slides at its end.
     fn stands<M: Model>(&self, problem: &StepProblem<M>, fastest: f64) -> bool {
         let StepNumbers { time_step_secs, debonding_distance, .. } = self.numbers;
         let still = STANDING_IN_DEBONDING_DISTANCES * debonding_distance / time_step_secs;
@@ -210,8 +214,8 @@ impl BondLimits<'_> {
         speed <= still
     }
 
-    /// Finds rows whose bounds (m/s) must decrease: bonds that would break before the end of the step with `strength`
-    /// times their own strength.
+    /// Finds the bonds that would break before the end of the step with `strength` times their own strength. Fills
+    /// `lowered` with their rows and their new bounds (m/s).
     fn lowered<M: Model>(
         &self,
         problem: &StepProblem<M>,
@@ -242,7 +246,7 @@ impl BondLimits<'_> {
     }
 }
 
-/// Lowers the bounds of bonds that break before the end of the step.
+/// Applies the new bounds of bonds that break before the end of the step.
 fn shorten<M: Model>(problem: &mut StepProblem<M>, lowered: &[(usize, f64)]) {
     for &(number, bound) in lowered {
         let before = std::mem::replace(&mut problem.rows.captures[number], bound);

@@ -1,16 +1,18 @@
-//! A step under the law `range` (`contact::range`): contacts are found ahead, the step is solved with its bonds
-//! (`range::bonds`), in substeps if bonds break or grains move far, and overlaps are pushed out.
+//! Stepper `range`: a step under the contact law `range` (`contact::range`). Pairs that may meet become contacts before
+//! they touch. The step is solved with its bonds (`range::bonds`), in substeps if bonds break or grains move far. Then
+//! overlaps are pushed out.
 //!
-//! **Substeps** have two reasons.
+//! **Substeps** are needed for two reasons.
 //!
-//! * A step is long compared with the time √(2δ_c m_ij/C₀) of a break, and bonds are restless. A pile at rest, or
-//!   without restless bonds, is stepped at full length. If bonds were restless in the step before, as a whole or in any
-//!   of its pieces, or if bonded pairs circle fast ([`circling_looks_like_a_shock`]), the next step is divided without
-//!   a trial as a whole. If sixteen substeps are too long for a break, the step reports this, with the longest step
-//!   that would not be (`sim::alarm`).
-//! * Grains move far. A contact's normal is that of the beginning of the step, so the constraint
-//!   v_n + gap/Δt ≥ 0 stops a grain that would have passed another one. Without cohesion, when this is the only reason
-//!   for substeps, a pile would otherwise slump too little at a large Δt.
+//! * The step is long compared with the time √(2δ_c m_ij/C₀) in which a bond breaks (debonding distance δ_c, cohesion
+//!   force C₀), and bonds are restless, that is about to break (`range::bonds`). A pile at rest, or without restless
+//!   bonds, is solved in one full step. The next step is divided without first trying a full step if bonds were
+//!   restless in the previous step, undivided or in any of its substeps, or if bonded pairs circle fast
+//!   ([`circling_looks_like_a_shock`]). If even sixteen substeps are too long for a break, the step reports this with
+//!   the longest step that would suffice (`sim::alarm`).
+//! * Grains move far. A contact keeps its normal from the beginning of the step, so the constraint v_n + gap/Δt ≥ 0
+//!   also stops a grain that would have passed another grain. In piles without cohesion, this is the only reason for
+//!   substeps; without them such a pile would slump too little at a large Δt.
 
 mod bonds;
 mod shocks;
@@ -30,22 +32,25 @@ use crate::sim::steppers::range::bonds::solve_range;
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{Approach, Model, SolveReport};
 
-/// Search distances, in diameters. Pairs within the first distance that a step could close are contacts; pairs that
-/// would meet within the step are contacts up to the second distance.
+/// Upper limits of two search distances, in mean diameters. A pair becomes a contact if its gap would fall below the
+/// first distance within the step and is now below the second distance.
 const AHEAD_IN_DIAMETERS: [f64; 2] = [0.25, 2.0];
 
-/// Longest substep with restless bonds, in times of a break. If larger, weakly bonded piles hold at a large Δt,
-/// because a load is transmitted by one bond per step; if smaller, it costs more.
+/// Longest substep while bonds are restless, in units of the time in which a bond breaks. With a larger value, weakly
+/// bonded piles do not fall at a large Δt, because a load is transmitted by one bond per step; a smaller value costs
+/// more.
 const SUBSTEP_IN_BOND_TIMES: f64 = 0.4;
 
-/// Largest motion of a grain in a substep, in diameters, unless this needs too many substeps. If larger, a pile
-/// slumps too little at a large Δt; if smaller, it costs more.
+/// Longest motion of a grain in a substep, in mean diameters, unless this needs more than [`MOST_SUBSTEPS`] substeps.
+/// With a larger value a pile slumps too little at a large Δt; a smaller value costs more.
 const MOST_TRAVEL: f64 = 0.1;
 
-/// Limit for the substeps. With more, the step would no longer be comparable to the one asked for.
+/// Largest number of substeps. With more substeps, a step would no longer be comparable to a step of the requested
+/// length.
 const MOST_SUBSTEPS: f64 = 16.0;
 
-/// Look-ahead of a step that has begun. The speed of the fastest grain bounds what any grain may reach.
+/// Returns the search distances of a step that has begun. They assume that no grain becomes faster than the fastest
+/// grain or wall, except by gravity and body forces.
 fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     let world = &state.world;
     let travel = travel(state, time_step_secs);
@@ -55,24 +60,25 @@ fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     LookAhead { time_step_secs, distance, reach, in_touch: InTouch::Bonded }
 }
 
-/// Largest possible motion of a grain in a step that has begun, m.
+/// Returns an upper bound for the motion of a grain in a step that has begun, m.
 fn travel(state: &State, time_step_secs: f64) -> f64 {
     (state.fastest() + 2.0 * state.largest_acceleration() * time_step_secs) * time_step_secs
 }
 
-/// Division of a step into substeps.
+/// Decision on how a step is divided into substeps.
 struct StepCut {
     substeps: u32,
-    /// True if bonded pairs circle so fast that the step cannot be taken as a whole.
+    /// True if bonded pairs circle so fast that an undivided step would separate them.
     circling: bool,
-    /// True if the step is first tried as a whole.
+    /// True if the step is first tried undivided.
     whole_first: bool,
-    /// The longest step (s) whose substeps resolve a break, if this step is longer.
+    /// Longest step (s) whose substeps are short enough for a bond that breaks; `None` if this step is not longer.
     longest_step_secs: Option<f64>,
 }
 
 impl StepCut {
-    /// The division of a step that has begun. `restless` tells if bonds were restless at the end of the last step.
+    /// Decides how a step that has begun is divided. `restless` is true if bonds were about to break in the previous
+    /// step.
     fn of(state: &State, settings: &Settings, restless: bool) -> Self {
         let State { world, .. } = state;
         let parameters = &settings.parameters;
@@ -96,7 +102,7 @@ impl StepCut {
     }
 }
 
-/// Takes a step, as a whole or in substeps (see the module).
+/// Takes a step, undivided or in substeps. The head of this file explains when a step is divided.
 pub(super) fn advance<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -111,7 +117,7 @@ pub(super) fn advance<M: Model>(
     if whole_first {
         match try_step(stage, settings, memory, substeps == 1) {
             Ok(result) => return result,
-            // Of a rejected step only the work of the solves counts.
+            // A rejected step contributes only the sweeps of its solves to the result.
             Err(given_up) => result.report = result.report.after(given_up),
         }
     }
@@ -127,7 +133,7 @@ pub(super) fn advance<M: Model>(
     result
 }
 
-/// Sets up the first problem that is solved with the loads of the step, after its shocks.
+/// Sets up the first problem of a step that is solved with gravity and bonds, after its shocks.
 pub(super) fn set_up<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -141,8 +147,8 @@ pub(super) fn set_up<M: Model>(
     shocks::pass(stage, &mut memory.shocks, &first);
 }
 
-/// Detects the contacts and sets up the problem of a step. A gap must not close by more than itself; bounces are part
-/// of the shocks.
+/// Detects the contacts and sets up the contact problem of a step. The problem lets a gap close by no more than its
+/// size; bounces are computed with the shocks.
 pub(super) fn prepare<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     let time_step_secs = settings.parameters.time_step_secs;
     let touch = TOUCH_IN_DIAMETERS * stage.world().mean_diameter;
@@ -151,8 +157,8 @@ pub(super) fn prepare<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     stage.prepare_ahead(settings, ahead, rebound);
 }
 
-/// Solves the prepared problem with its bonds and moves the grains. Fails, with the work of the solves, if a bond
-/// breaks although none may.
+/// Solves the prepared problem with its bonds and moves the grains. If `may_break` is false and a bond is about to
+/// break, returns the report of the solves as an error and moves no grain.
 fn try_step<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -167,10 +173,12 @@ fn try_step<M: Model>(
     Ok(result)
 }
 
-/// Passes over the contacts after a step. Each pass moves an overlap on by at least one layer of grains.
+/// Number of passes over the contacts that separate overlapping grains after a step. Each pass moves an overlap at
+/// least one layer of grains further.
 const PASSES: u32 = 8;
 
-/// Separates overlapping grains by a few passes, because bonds do not need overlap.
+/// Separates overlapping grains by a few passes over the contacts. Overlap is not needed, because bonds exist without
+/// it.
 pub(super) fn separate<M: Model>(state: &mut State) {
     let State { world, contacts, candidates, .. } = state;
     let allowed = TOUCH_IN_DIAMETERS * world.mean_diameter;
@@ -181,23 +189,24 @@ pub(super) fn separate<M: Model>(state: &mut State) {
     }
 }
 
-/// Largest effect of turning in a step, as a fraction of the escape speed. If larger, circling pairs separate too
-/// early; if smaller, steps are divided in vain.
+/// Largest opening speed that the turning of a bonded pair may cause in a step, divided by the escape speed of the
+/// bond. With a larger value, circling pairs separate too early; with a smaller value, steps are divided in vain.
 const MOST_OF_ESCAPE_SPEED: f64 = 0.5;
 
-/// True if a bonded pair circles so fast that a step of this length would treat the turn of its normal as a shock.
-/// `pull` is C₀/m_ij, m/s², and `distance` is δ_c, m.
+/// True if a bonded pair circles so fast that a step of this length would treat the rotation of the contact normal as a
+/// shock. `pull` is the cohesion force divided by the effective mass, C₀/m_ij, m/s², and `distance` is the debonding
+/// distance δ_c, m.
 ///
-/// **Why such pairs need substeps.** A step takes a contact's normal from its beginning. Two grains that circle each
-/// other at a distance L with v_t turn it by v_tΔt/L in a step, and at the beginning of the next step they
-/// separate with
+/// **Why such pairs need substeps.** A step takes the contact normal from its beginning. If two grains circle each
+/// other with the tangential velocity v_t, with their centres at the distance L, the normal turns by v_tΔt/L in a step.
+/// At the beginning of the next step the grains separate with the speed
 ///
 /// > v = v_t²Δt/L
 ///
-/// along the new normal. This is the load v_t²/L of the circular motion, spread evenly over the step, but it looks
-/// like a shock that has thrown them apart, and a bond only stops a shock below its escape speed √(2C₀δ_c/m_ij). So a
-/// pair that its bond would hold separates if the step is long. In substeps v decreases with Δt, and the escape speed
-/// does not.
+/// along the new normal. In reality, the circular motion is a load v_t²/L on the bond, spread evenly over the step. But
+/// in the next step the speed v looks like the result of a shock, and a bond only stops a shock below its escape speed
+/// √(2C₀δ_c/m_ij). So in a long step a pair separates although its bond would hold it. In substeps v decreases with Δt,
+/// and the escape speed stays the same.
 pub(super) fn circling_looks_like_a_shock(
     state: &State,
     time_step_secs: f64,
@@ -221,7 +230,7 @@ pub(super) fn circling_looks_like_a_shock(
                 let velocity = surface.map_or(DVec2::ZERO, |surface| surface.velocity);
                 (velocity, fixed_discs[disc].radius)
             }
-            // A straight feature has the same normal everywhere.
+            // A straight wall has the same normal everywhere, so a grain cannot circle it.
             Other::Feature(_) => return false,
         };
         let tangential = (grains.velocities[grain] - velocity).perp_dot(contact.normal);

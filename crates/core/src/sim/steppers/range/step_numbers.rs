@@ -1,24 +1,24 @@
-//! Parameters of a step under the law `range`.
+//! Numbers that the shocks and bonds of a step under the law `range` need.
 
 use crate::contact::range::TOUCH_IN_DIAMETERS;
 use crate::sim::settings::Settings;
 use crate::world::{Parameters, World};
 
-/// Parameters of a step that its shocks and bonds need.
+/// Numbers that the shocks and bonds of a step need: parameters, time step and lengths in metres.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StepNumbers {
     pub parameters: Parameters,
     pub time_step_secs: f64,
-    /// δ_c, m.
+    /// Debonding distance δ_c, m: the stretch at which a bond breaks.
     pub debonding_distance: f64,
-    /// Gaps below this count as zero, m.
+    /// Touch tolerance, m: smaller gaps count as zero.
     pub touch: f64,
-    /// g, m/s².
+    /// Gravitational acceleration g, m/s².
     gravity_magnitude: f64,
 }
 
 impl StepNumbers {
-    /// The parameters of a step with these settings.
+    /// Computes the numbers of a step with these settings.
     pub(super) fn of(world: &World, settings: &Settings) -> Self {
         let parameters = settings.parameters;
         Self {
@@ -30,7 +30,8 @@ impl StepNumbers {
         }
     }
 
-    /// ρ u, m/s, of a contact that closes with u, or 0 below the threshold.
+    /// Returns the term ρ u of the law for a contact that closes with the velocity u (`closing`, below 0), m/s; 0 below
+    /// the restitution threshold.
     pub(super) fn rebound(&self, closing: f64) -> f64 {
         self.parameters.restitution_velocity(closing, self.gravity_magnitude)
     }

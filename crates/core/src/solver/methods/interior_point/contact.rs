@@ -1,46 +1,49 @@
-//! A contact in the interior point method, and its part in a Newton step.
+//! A contact in the interior point method, and its contribution to a Newton step.
 //!
-//! A model of friction allows impulses p = (σ, λ) with G p + h ≥ 0. The rows of G are (1, 0) for σ ≥ 0 and (κ, ±1) for
-//! the two sides of friction; κ = μ if the bound grows with σ, and κ = 0 if the bound is lagged. With slacks
-//! x = G p + h and multipliers y, the solution satisfies
+//! A friction model allows impulses p = (σ, λ), shifted normal and tangential, with G p + h ≥ 0. The rows of G are
+//! (1, 0) for σ ≥ 0, and (κ, ±1) for the two bounds of friction; κ = μ if the friction bound grows with σ, and κ = 0 if
+//! it is fixed during the solve. With slacks x = G p + h and multipliers y, the solution satisfies
 //!
 //! > (w, v) = Aᵀy,  x ≥ 0, y ≥ 0, x_k y_k = 0,
 //!
-//! where w includes the term added to v_n. A = G, except in Coulomb's law, where the sides of friction do not push
-//! along the normal. With h now the change of (v_n, v_t) and D = diag(y/x), a Newton step for x_k y_k = e_k gives for
-//! each contact
+//! where w is the normal velocity with the term that the law adds, and v the tangential velocity. A = G, except in
+//! Coulomb's law, where the multipliers of friction have no component along the normal. With δu the change of
+//! (v_n, v_t) in the step, and D = diag(y/x), a Newton step towards the products x_k y_k = e_k satisfies for each
+//! contact
 //!
-//! > S δp = b − h,  S = AᵀD G + ε,  b = Aᵀ(e/x) − (w, v),
+//! > S δp = b − δu,  S = AᵀD G + ε,  b = Aᵀ(e/x) − (w, v),
 //! > δx = G δp,  δy = e/x − y − D δx,
 //!
 //! with a small compliance ε that keeps S regular. ε changes the path but not its end. On the cone, the two slacks can
 //! replace p as variables, and S is diagonal in them.
 //!
-//! Slacks are separate variables with their own start values and steps. If they were recomputed from the impulses, or
-//! updated by a difference of two changes, a small slack would be only rounding error. For the same reason velocity and
-//! change are subtracted from the push one after the other.
+//! Slacks are separate variables with their own initial values and steps. If they were recomputed from the impulses, or
+//! updated by a difference of two changes, a small slack would be only rounding error. For the same reason the velocity
+//! (w, v) and its change δu are subtracted from e/x one after the other.
 
 use crate::contact::law;
 
-/// Number of slacks of a contact: one for σ ≥ 0, and two for the sides of friction.
+/// Number of slacks of a contact: one for σ ≥ 0, and two for the bounds of friction.
 pub(super) const PAIRS: usize = 3;
 
-/// The set of impulses that a model of friction allows.
+/// The set of impulses (σ, λ) that a friction model allows a contact.
 pub(super) trait Shape {
-    /// Index range of its slacks.
+    /// Index of the first slack that a contact of this shape has; `END` is the index after the last. Slack 0 belongs to
+    /// σ ≥ 0.
     const FIRST: usize;
     const END: usize;
     /// True if the two slacks of friction replace the impulses as variables.
     const CONE: bool;
-    /// True if the sides of friction push only along the tangent although the bound grows with σ, as in Coulomb's law,
-    /// whose problem is not convex.
+    /// True if the multipliers of friction act only along the tangent although the friction bound grows with σ, as in
+    /// Coulomb's law, whose problem is not convex.
     const LEANS: bool = false;
-    /// ε, relative to the compliance of a contact of free bodies. If it were smaller, rounding in the factorisation
-    /// would cancel the gain; if it were larger, impulses that only balance each other would move too little in a step.
+    /// Regularisation ε, relative to the compliance of a contact of free bodies. If it were smaller, rounding in the
+    /// factorisation would cancel the gain. If it were larger, impulses that only balance each other would change too
+    /// little in a step.
     const COMPLIANCE: f64 = 1e-11;
 }
 
-/// 0 ≤ σ.
+/// Allowed impulses of a contact without friction: σ ≥ 0.
 pub(super) enum HalfLine {}
 
 impl Shape for HalfLine {
@@ -49,7 +52,8 @@ impl Shape for HalfLine {
     const CONE: bool = false;
 }
 
-/// 0 ≤ σ, |λ| ≤ g with a lagged g: `tresca`.
+/// Allowed impulses of the friction model `tresca`: σ ≥ 0 and |λ| ≤ g with a friction bound g that is fixed during a
+/// solve.
 pub(super) enum Strip {}
 
 impl Shape for Strip {
@@ -58,7 +62,8 @@ impl Shape for Strip {
     const CONE: bool = false;
 }
 
-/// |λ| ≤ μσ, with a lagged term added to v_n: `associated` and `desaxce`.
+/// Allowed impulses of the friction models `associated` and `desaxce`: |λ| ≤ μσ. A term that is fixed during a solve is
+/// added to v_n.
 pub(super) enum Cone {}
 
 impl Shape for Cone {
@@ -67,7 +72,7 @@ impl Shape for Cone {
     const CONE: bool = true;
 }
 
-/// 0 ≤ σ, |λ| ≤ μσ, the sides of friction pushing only along the tangent: Coulomb's law.
+/// Allowed impulses of Coulomb's law: σ ≥ 0 and |λ| ≤ μσ. The multipliers of friction act only along the tangent.
 pub(super) enum Leaning {}
 
 impl Shape for Leaning {
@@ -75,27 +80,28 @@ impl Shape for Leaning {
     const END: usize = 3;
     const CONE: bool = false;
     const LEANS: bool = true;
-    // The unsymmetric factorisation inverts its diagonal blocks, which loses digits.
+    // ε is larger because the unsymmetric factorisation inverts its diagonal blocks, which loses digits.
     const COMPLIANCE: f64 = 1e-8;
 }
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PathContact {
-    /// (σ, λ), m/s.
+    /// Shifted normal impulse σ and tangential impulse λ, m/s.
     pub impulse: [f64; 2],
-    /// x, m/s.
+    /// Slacks x of the constraints σ ≥ 0 and of the two bounds of friction, m/s.
     pub slack: [f64; PAIRS],
-    /// y, m/s.
+    /// Multipliers y of the constraints, m/s.
     pub multiplier: [f64; PAIRS],
-    /// The lagged bound g, m/s.
+    /// Friction bound g, which is fixed during a solve, m/s.
     pub bound: f64,
-    /// The lagged term added to w, m/s.
+    /// Term of the friction model that is added to w and is fixed during a solve, m/s.
     pub lag: f64,
-    /// (w, v) at the present impulses, m/s.
+    /// Normal velocity w with the term that the law adds, and tangential velocity v, at the present impulses, m/s.
     pub velocity: [f64; 2],
-    /// ε.
+    /// Regularisation ε of this contact.
     pub compliance: f64,
-    /// Change of an impulse, or of a slack on the cone, per velocity along it: the inverse of S in that direction.
+    /// For each impulse component, or slack on the cone: its change per velocity along it, the inverse of S in that
+    /// direction.
     pub mobility: [f64; PAIRS],
 }
 
@@ -106,22 +112,24 @@ pub(super) struct PathStep {
     pub multiplier: [f64; PAIRS],
 }
 
-/// Numbers common to all contacts.
+/// Numbers that are the same for all contacts of a solve.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContactNumbers {
-    /// κ.
+    /// Slope κ of the friction bound: μ if the bound grows with σ, and 0 if it is fixed during a solve.
     pub slope: f64,
-    /// m_n/m_t.
+    /// Ratio m_n/m_t of the effective masses along normal and tangent.
     pub tangential_compliance: f64,
 }
 
 impl ContactNumbers {
-    /// Compliance of a contact of free bodies along a slack of the cone, in which p moves by (1/κ, ±1)/2.
+    /// Returns the compliance of a contact of free bodies along a slack of the cone, the direction (1/κ, ±1)/2 of the
+    /// impulses.
     fn along_slack(&self) -> f64 {
         0.25 * (1.0 / (self.slope * self.slope) + self.tangential_compliance)
     }
 
-    /// The component of (v_n, v_t) along a variable of the shape: a slack of the cone, or else a component of p.
+    /// Returns the component of (v_n, v_t) along a variable of the shape: along a slack if the shape is a cone,
+    /// otherwise along a component of the impulses p.
     #[inline(always)]
     fn along<S: Shape>(&self, pair: usize, [normal, tangential]: [f64; 2]) -> f64 {
         match (S::CONE, pair) {
@@ -134,13 +142,13 @@ impl ContactNumbers {
 }
 
 impl PathContact {
-    /// End of this contact's index range: if the friction bound is 0, the sides of friction have no slacks.
+    /// Returns the index after this contact's last slack: if the friction bound is 0, there are no slacks of friction.
     #[inline(always)]
     pub(super) fn end<S: Shape>(&self) -> usize {
         if !S::CONE && !S::LEANS && self.bound == 0.0 { 1 } else { S::END }
     }
 
-    /// Computes the mobilities from slacks, multipliers and ε.
+    /// Computes the mobilities of the contact from its slacks, multipliers and regularisation ε.
     #[inline(always)]
     pub(super) fn stiffen<S: Shape>(&mut self, numbers: ContactNumbers) {
         let ratio = |pair: usize| self.multiplier[pair] / self.slack[pair];
@@ -156,7 +164,7 @@ impl PathContact {
         };
     }
 
-    /// S⁻¹.
+    /// Returns S⁻¹, the change of the impulses (σ, λ) per change of −(v_n, v_t).
     #[inline(always)]
     pub(super) fn stiffness<S: Shape>(&self, numbers: ContactNumbers) -> [[f64; 2]; 2] {
         let [normal, one, other] = self.mobility;
@@ -171,14 +179,16 @@ impl PathContact {
         }
     }
 
-    /// μ(y/x − y/x) of the two sides: the coupling from a change of σ to the tangent.
+    /// Returns μ (y₁/x₁ − y₂/x₂), with the slacks x and multipliers y of the two bounds of friction: the coupling from
+    /// a change of σ to the tangent.
     #[inline(always)]
     fn lean(&self, numbers: ContactNumbers) -> f64 {
         let ratio = |pair: usize| self.multiplier[pair] / self.slack[pair];
         numbers.slope * (ratio(1) - ratio(2))
     }
 
-    /// δp and δx of a step to `targets`, if (v_n, v_t) change by `change`.
+    /// Returns the changes δp of the impulses and δx of the slacks in a step to the products `targets`, if (v_n, v_t)
+    /// change by `change`, m/s.
     #[inline(always)]
     fn answer<S: Shape>(
         &self,
@@ -215,7 +225,7 @@ impl PathContact {
         ([normal, tangential], [normal, tangential, -tangential])
     }
 
-    /// S⁻¹b.
+    /// Returns S⁻¹b, the change of the impulses in a step if the velocities do not change, m/s.
     #[inline(always)]
     pub(super) fn load<S: Shape>(
         &self,
@@ -225,7 +235,7 @@ impl PathContact {
         self.answer::<S>(numbers, targets, [0.0; 2]).0
     }
 
-    /// The step that belongs to a change of (v_n, v_t).
+    /// Returns the step of impulses, slacks and multipliers that belongs to a change of (v_n, v_t), m/s.
     #[inline(always)]
     pub(super) fn direction<S: Shape>(
         &self,
@@ -242,7 +252,7 @@ impl PathContact {
         direction
     }
 
-    /// The longest step length, up to 1, that keeps all slacks and multipliers non-negative.
+    /// Returns the longest step length, up to 1, that keeps all slacks and multipliers non-negative.
     #[inline(always)]
     pub(super) fn longest<S: Shape>(&self, direction: &PathStep) -> f64 {
         let mut longest: f64 = 1.0;
@@ -259,7 +269,7 @@ impl PathContact {
         longest
     }
 
-    /// Takes a step of length `share`.
+    /// Adds a step, multiplied by the step length `share`, to impulses, slacks and multipliers.
     #[inline(always)]
     pub(super) fn advance<S: Shape>(&mut self, direction: &PathStep, share: f64) {
         for (value, change) in self.impulse.iter_mut().zip(direction.impulse) {
@@ -271,13 +281,13 @@ impl PathContact {
         }
     }
 
-    /// Places a contact on the path at x·y = `centre` (m²/s²), near the point that the natural map leads to; `trial` is
-    /// (σ − w, λ − v m_t/m_n).
+    /// Moves the contact to the point of the path with the products x·y = `centre` ((m/s)²) that is near the result of
+    /// the natural map. `trial` is (σ − w, λ − v m_t/m_n), m/s.
     ///
     /// With τ = `centre`: σ and its multiplier u must have the difference σ − u of the trial and the product τ, which
-    /// gives a quadratic equation. With a lagged bound g, the smaller slack x and the larger slack 2g − x must make the
-    /// velocity τ/x − τ/(2g − x). The second term is neglected, which again leaves a quadratic equation. On the cone
-    /// the slacks of the nearest point and their multipliers are moved off 0 in the same way.
+    /// gives a quadratic equation. With a fixed friction bound g, the smaller slack x and the larger slack 2g − x must
+    /// result in the velocity τ/x − τ/(2g − x). The second term is neglected, which again leaves a quadratic equation.
+    /// On the cone the slacks of the nearest point and their multipliers are moved away from 0 in the same way.
     pub(super) fn centre<S: Shape>(
         &mut self,
         numbers: ContactNumbers,
@@ -309,7 +319,7 @@ impl PathContact {
     fn centre_on_cone(&mut self, numbers: ContactNumbers, trial: [f64; 2], centre: f64) {
         let ContactNumbers { slope, tangential_compliance, .. } = numbers;
         let nearest = law::nearest_on_cone(slope, tangential_compliance, trial);
-        // (w, v) at the nearest point, and the multipliers that make them.
+        // (w, v) at the nearest point of the cone, and the multipliers that belong to them.
         let normal_velocity = nearest[0] - trial[0];
         let velocity = tangential_compliance * (nearest[1] - trial[1]);
         let together = (normal_velocity / slope).max(velocity.abs());
@@ -325,7 +335,7 @@ impl PathContact {
     }
 }
 
-/// The positive x with x − c/x = d.
+/// Returns the positive solution x of x − c/x = d, with c = `product` and d = `difference`.
 #[inline(always)]
 fn positive_root(difference: f64, product: f64) -> f64 {
     let root = (difference * difference + 4.0 * product).sqrt();

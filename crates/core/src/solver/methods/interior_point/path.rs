@@ -1,12 +1,13 @@
-//! Steps along the path, and the loops that follow it.
+//! Newton steps along the path of the interior point method, and the loops that follow the path.
 //!
-//! A step consists of a predictor, a corrector, and further corrections of products that would be far from their
-//! target. The path of a convex model leads to its solution.
+//! A step consists of a predictor, a corrector, and further corrections of products (slack times multiplier) that would
+//! be far from their target. The path of a convex friction model leads to its solution.
 //!
-//! The path of Coulomb's law may turn back. There a Newton step becomes very long, and only a tiny part of it is
-//! feasible. The contacts that limit the step, and the others of their bodies, then get a larger regularisation ε for a
-//! while, so that their impulses move little in a step. This leads around a fold in one part of the pile while the rest
-//! makes progress. If the path does not lead to a solution, sweeps between two starts move away from it.
+//! The path of Coulomb's law may turn back. At such a fold a Newton step becomes very long, and only a tiny fraction of
+//! it is feasible. The contacts that limit the step, and the other contacts of their bodies, then get a larger
+//! regularisation ε for a while, so that their impulses change little in a step. This leads around a fold in one region
+//! of the pile while the rest makes progress. If the path does not lead to a solution, sweeps before the next start
+//! move away from it.
 
 use super::contact::{PAIRS, PathContact, PathStep, Shape};
 use super::point::{InteriorPoint, PathWorkspace, SWEEPS_FIRST};
@@ -16,55 +17,57 @@ use crate::solver::methods::stopping::SolveReport;
 use crate::solver::onlooker::{SolveProgress, is_ended};
 use crate::solver::problem::{natural_map, velocity_error};
 
-/// Minimum and maximum centring parameter: target product of a step divided by the present mean product.
+/// Minimum and maximum centring parameter: the target of the products in a step divided by their present mean.
 const AIMS: [f64; 2] = [1e-6, 1.0];
-/// Fraction of the longest feasible step that is taken, so that all variables stay off the boundary.
+/// Fraction of the longest feasible step that is taken, so that slacks and multipliers stay positive.
 const OFF_BORDER: f64 = 0.999;
-/// Second-order products of a predictor step are limited to this many times the mean product.
+/// Largest second-order product of a predictor step, relative to the mean product of slacks and multipliers.
 const MOST_SECOND_ORDER: f64 = 1e3;
-/// Maximum number of further corrections of a step that is shorter than [`LONG_ENOUGH`].
+/// Maximum number of corrections of a step after its corrector. Only steps shorter than [`LONG_ENOUGH`] are corrected.
 const CORRECTIONS: u32 = 3;
 const LONG_ENOUGH: f64 = 0.98;
-/// Products outside this range, relative to the target, are corrected.
+/// Minimum and maximum product of slack and multiplier, relative to the target, outside which a product is corrected.
 const NEAR_AIM: [f64; 2] = [0.1, 10.0];
-/// Minimum gain in step length that a correction must bring.
+/// Minimum increase of the step length by a correction, below which the correction is dropped.
 const WORTH_A_SOLVE: f64 = 0.02;
 
-/// A start ends after this many factorisations without a smaller natural map.
+/// Number of factorisations without a smaller residual after which a start on the path ends.
 const PATIENCE: u32 = 15;
-/// Proximal multipliers are to finish the solve if the natural map is below this but not yet small enough. They are not
+/// Residual of the natural map, dimensionless, below which proximal multipliers are to finish the solve. They are not
 /// used on cones, where the path does not slow down.
 const POLISH_FROM: f64 = 1e-6;
-/// If proximal multipliers fail, they are tried again below this fraction of the natural map at which they failed.
+/// Proximal multipliers that have failed are tried again when the residual is below this fraction of its value at the
+/// failure.
 const POLISH_AGAIN: f64 = 0.1;
-/// The result of the path is kept if its velocity error is below this fraction of the error after [`SWEEPS_INSTEAD`]
-/// sweeps. If the fraction were larger, huge impulses would count as a solution of a problem that has none.
+/// Largest ratio of the path's velocity error to the velocity error after [`SWEEPS_INSTEAD`] sweeps, at which the
+/// result of the path is kept. With a larger ratio, huge impulses would count as a solution of a problem that has no
+/// solution.
 const FAR_NEARER: f64 = 1e-2;
-/// Sweeps whose result is used if the path finds no solution.
+/// Number of sweeps whose result is used if the path finds no solution.
 const SWEEPS_INSTEAD: u32 = 100;
-/// Number of starts, each further back on the path.
+/// Maximum number of starts on the path of a convex model, each further from the end of the path.
 const STARTS: u32 = 4;
 
-/// Number of starts on the path of Coulomb's law before another method takes over.
+/// Maximum number of starts on the path of Coulomb's law before another method continues.
 const FOLDED_STARTS: u32 = 4;
-/// Sweeps between two starts.
+/// Number of sweeps between two starts on the path of Coulomb's law.
 const SWEEPS_BETWEEN: u32 = 30;
-/// A start ends after this many factorisations that have not halved the natural map.
+/// Number of factorisations that have not halved the residual, after which a start on the path of Coulomb's law ends.
 const FOLDED_PATIENCE: u32 = 8;
-/// A start also ends after this many consecutive steps that are shorter than [`SHORT_STEP`].
+/// Number of consecutive steps shorter than [`SHORT_STEP`] after which a start also ends.
 const SHORT_STEPS: u32 = 3;
 const SHORT_STEP: f64 = 0.05;
-/// If a step is shorter than this, the contacts that limit it are regularised more.
+/// Step length below which the contacts that limit the step get a larger regularisation ε.
 const LONG_STEP: f64 = 0.3;
-/// Bounds of ε of a contact that limits a step.
+/// Minimum and maximum regularisation ε of a contact that limits a step.
 const SOFT: [f64; 2] = [1e-3, 1.0];
-/// Factor by which ε of such a contact grows per step.
+/// Factor by which the regularisation ε of a contact that limits a step grows per step.
 const SOFTENING: f64 = 30.0;
-/// Factor by which ε of all other contacts falls per step.
+/// Factor by which the regularisation ε of all other contacts falls per step.
 const HARDENING: f64 = 0.5;
 
 impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
-    /// Takes a step along the path. Returns the step length and the natural map after the step.
+    /// Takes a step along the path. Returns the step length and the residual of the natural map after the step.
     pub(super) fn advance(&mut self) -> (f64, f64) {
         let share = self.newton_step();
         self.report.factorisations += 1;
@@ -76,7 +79,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         (share, left)
     }
 
-    /// Takes a step. Returns its length as a fraction of the full Newton step.
+    /// Takes a Newton step with predictor and corrections. Returns its length as a fraction of the full Newton step.
     pub(super) fn newton_step(&mut self) -> f64 {
         self.assemble();
         let mean = self.mean_product();
@@ -86,7 +89,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         let affine_share = self.find_step();
         let left = self.mean_product_after(affine_share);
         let [least, most] = AIMS;
-        // `max` replaces NaN by the limit; `clamp` would keep NaN.
+        // `max` and `min` replace NaN by a limit; `clamp` would keep NaN.
         let aim = (left / mean).powi(5).max(least).min(most) * mean;
         let most_second_order = MOST_SECOND_ORDER * mean;
         let PathWorkspace { contacts, targets, step, .. } = &mut *self.workspace;
@@ -114,7 +117,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         share
     }
 
-    /// Mean of the products x y.
+    /// Returns the mean of the products of slacks and multipliers, (m/s)².
     pub(super) fn mean_product(&self) -> f64 {
         self.mean_product_after(0.0)
     }
@@ -134,8 +137,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         sum / pairs as f64
     }
 
-    /// Corrects the targets of products that a longer step would leave far from `aim`. Returns the new step length, or
-    /// `None` if the correction gains too little.
+    /// Corrects the targets of products that a longer step would move far from `aim`, (m/s)². `share` is the present
+    /// step length. Returns the new step length, or `None` if the correction gains too little.
     fn corrected(&mut self, share: f64, aim: f64) -> Option<f64> {
         let longer = (1.5 * share + 0.2).min(1.0);
         let [least, most] = NEAR_AIM.map(|factor| factor * aim);
@@ -157,7 +160,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         None
     }
 
-    /// Updates the contacts to the present velocities, and assembles and factorises the system of their steps.
+    /// Updates the contacts to the present velocities, and assembles and factorises the linear system of the step.
     fn assemble(&mut self) {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, system, contacts, .. } = &mut **workspace;
@@ -171,7 +174,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         system.assemble::<M, S>(problem, graph, answers);
     }
 
-    /// Finds the step to the targets with the present factors. Returns the longest feasible step length.
+    /// Computes the step to the target products with the present factors. Returns the longest feasible step length.
     fn find_step(&mut self) -> f64 {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, system, vector, contacts, targets, step, .. } = &mut **workspace;
@@ -193,7 +196,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         share
     }
 
-    /// Follows the path to its end. If rounding prevents that, starts again further back on the path.
+    /// Follows the path of a convex model to its end. If rounding prevents that, starts again further from the end of
+    /// the path.
     pub(super) fn solve_convex(mut self) -> SolveReport {
         if self.settles_in(SWEEPS_FIRST) {
             return self.report;
@@ -219,7 +223,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
                     self.take_impulses();
                     polish_from = POLISH_AGAIN * left;
                 }
-                // NaN compares false, so it counts as no progress.
+                // NaN compares false, so a residual of NaN counts as no progress.
                 since_best = if left < best { 0 } else { since_best + 1 };
                 best = best.min(left);
                 if left.is_nan() {
@@ -233,9 +237,9 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         }
         self.go_back();
         let of_path = velocity_error(self.problem).told;
-        // If no velocities satisfy all contacts at once, impulses grow without bound along the path, and the result of
-        // sweeps is used. If the path came much nearer to a solution than sweeps do, its result is kept: then the
-        // tolerance was below what rounding allows.
+        // If no velocities satisfy all contacts at once, impulses grow without bound along the path. Then the result of
+        // sweeps is used. If the path came much nearer to a solution than sweeps do, the result of the path is kept:
+        // the tolerance was smaller than rounding allows.
         self.problem.write_impulses(self.workspace.first.iter().copied());
         if !self.settles_in(SWEEPS_INSTEAD)
             && of_path < FAR_NEARER * velocity_error(self.problem).told
@@ -246,14 +250,14 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         self.report
     }
 
-    /// Returns true if the limit of sweeps and factorisations is reached, or if an onlooker ends the solve.
+    /// Returns true if the maximum number of sweeps and factorisations is reached, or if an onlooker ends the solve.
     pub(super) fn is_spent(&self) -> bool {
         let sweeps = self.report.sweeps + self.report.factorisations;
         sweeps >= self.settings.max_sweeps || is_ended(SolveProgress { sweeps, residual: None })
     }
 
-    /// Follows the path of Coulomb's law as far as possible. If it does not reach the end, the impulses with the
-    /// smallest natural map remain.
+    /// Follows the path of Coulomb's law as far as possible. If the end is not reached, the problem keeps the impulses
+    /// with the smallest residual.
     pub(super) fn follow_path(mut self) -> SolveReport {
         if self.settles_in(SWEEPS_FIRST) {
             return self.report;
@@ -294,7 +298,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         false
     }
 
-    /// Increases ε of contacts at the bodies that limited a step of length `share`, and decreases ε of all others.
+    /// Increases the regularisation ε of the contacts of bodies that limited a step of length `share`, and decreases ε
+    /// of all other contacts.
     fn soften(&mut self, share: f64) {
         let Self { problem, workspace, .. } = self;
         let PathWorkspace { contacts, step, stopped, .. } = &mut **workspace;
@@ -325,7 +330,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
     }
 }
 
-/// The targets of a contact's slacks, with the index of each slack.
+/// Iterates over the target products of a contact, with the index of the slack that each belongs to.
 #[inline(always)]
 fn pairs<'a, S: Shape>(
     contact: &PathContact,

@@ -1,4 +1,5 @@
-//! The interior point of a solve: its start, its size limits, and the tests that end it.
+//! The state of a solve by the interior point method: its start, the largest allowed impulses, and the tests that end
+//! it.
 
 use std::marker::PhantomData;
 
@@ -14,60 +15,60 @@ use crate::solver::methods::stopping::SolveReport;
 use crate::solver::problem::{StepProblem, natural_map, velocity_error};
 use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 
-/// Sweeps before the first factorisation: many steps of a pile at rest need no more.
+/// Number of sweeps before the first factorisation: many steps of a pile at rest need no more.
 pub(super) const SWEEPS_FIRST: u32 = 4;
-/// Sweeps are tried if the measure of the stopping test is within this many times the tolerance.
+/// Sweeps are tried if the quantity that the stopping test limits is at most this many times the tolerance.
 const SWEEPS_FROM: f64 = 10.0;
-/// Maximum growth of impulses relative to the impulses and velocities at the start of a solve. From a cold start on a
-/// pile of 100 layers they grow by 10⁴.
+/// Largest allowed impulse, relative to the impulses and velocities at the start of a solve. From a cold start on a
+/// pile of 100 layers, impulses grow by a factor of 10⁴.
 const LARGEST_IMPULSE: f64 = 1e7;
-/// Sweeps that finish a solve.
+/// Number of sweeps that may finish a solve.
 const SWEEPS_LAST: u32 = 2;
 
-/// Product of slack and multiplier at the start, divided by the mean square of the change that the natural map would
-/// make. If it were smaller, contacts that change their state would be freed slowly; if it were larger, a warm start
-/// would be lost.
+/// Product of slack and multiplier at the first start, divided by the mean square of the change that the natural map
+/// would make to the impulses. If it were smaller, contacts would change between open, stick and slip only slowly; if
+/// it were larger, a warm start would be lost.
 const CENTRE: f64 = 1e3;
-/// Factor of this product from one start to the next.
+/// Factor of the product of slack and multiplier from one start to the next.
 const FURTHER_UP: f64 = 1e3;
-/// Friction bounds below this fraction of the root mean square change count as 0, because there is no room between
-/// them.
+/// Friction bounds below this fraction of the root mean square change of the impulses count as 0, because there is no
+/// room between them.
 const LEAST_BOUND: f64 = 1e-10;
 
-/// Work memory for bodies with `D` degrees of freedom.
+/// Work memory of a solve whose bodies have `D` degrees of freedom.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PathWorkspace<const D: usize> {
     pub graph: ContactGraph,
     pub system: StepMatrix<D>,
-    /// A right-hand side, then the change of the velocities, by place in the elimination order.
+    /// Right-hand side of the linear system in elimination order, then its solution, the change of the velocities.
     pub vector: Vec<[f64; D]>,
-    /// The contacts of the rows. The next three vectors are by row, too.
+    /// The contacts of the rows. The next three vectors also have one entry per row.
     pub contacts: Vec<PathContact>,
     pub targets: Vec<[f64; PAIRS]>,
     pub step: Vec<PathStep>,
     pub other_step: Vec<PathStep>,
-    /// (σ, λ_t) of the rows at the smallest natural map so far.
+    /// Impulses (σ, λ_t) of the rows with the smallest residual so far, m/s.
     pub best: Vec<[f64; 2]>,
-    /// (σ, λ_t) of the rows at the start of the solve.
+    /// Impulses (σ, λ_t) of the rows at the start of the solve, m/s.
     pub first: Vec<[f64; 2]>,
-    /// The contacts of the proximal multipliers, by row.
+    /// The contacts of the rows in the proximal multiplier method.
     pub near: Vec<ProximalContact>,
-    /// M(V − V_free) of the proximal multipliers, by place, kg m/s.
+    /// Momenta M(V − V_free) of the bodies in the proximal multiplier method, in elimination order, kg m/s.
     pub momenta: Vec<[f64; D]>,
-    /// Bodies with a contact that limited the last step.
+    /// True for each body with a contact that limited the last step.
     pub stopped: Vec<bool>,
 }
 
-/// The state of a solve by the interior point.
+/// The state of a solve by the interior point method.
 pub(super) struct InteriorPoint<'a, M: Model, S, const D: usize> {
     pub problem: &'a mut StepProblem<M>,
     pub settings: &'a SolverSettings,
     pub workspace: &'a mut PathWorkspace<D>,
     pub numbers: ContactNumbers,
     pub report: SolveReport,
-    /// σ beyond this, m/s, cannot be part of a solution.
+    /// Largest shifted normal impulse σ that a solution may have, m/s.
     pub largest_impulse: f64,
-    /// The smallest natural map so far; `workspace.best` has its impulses.
+    /// The smallest residual of the natural map so far; `workspace.best` has its impulses.
     pub best: f64,
     pub shape: PhantomData<S>,
 }
@@ -94,13 +95,14 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         }
     }
 
-    /// Makes up to `sweeps` sweeps. Returns true if the stopping test is met.
+    /// Performs up to `sweeps` sweeps. Returns true if the stopping test is met.
     pub(super) fn settles_in(&mut self, sweeps: u32) -> bool {
         let sweeps = sweeps.min(self.settings.max_sweeps - self.report.sweeps);
         settles_in(self.problem, self.settings, sweeps, &mut self.report)
     }
 
-    /// Returns true if the measure of the stopping test is within `times` the tolerance; `left` is the natural map.
+    /// Returns true if the quantity that the stopping test limits is at most `times` the tolerance. `left` is the
+    /// residual of the natural map.
     pub(super) fn is_within(&self, left: f64, times: f64) -> bool {
         let tolerance = times * self.settings.tolerance;
         match self.settings.stop {
@@ -109,8 +111,8 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         }
     }
 
-    /// Lets sweeps end the solve if the solution is near enough: they put impulses exactly on their bounds. If they do
-    /// not end the solve, returns to the present point.
+    /// Performs sweeps that may end the solve, if the solution is near enough: sweeps set impulses exactly to their
+    /// bounds. If the sweeps do not end the solve, returns to the present point of the path.
     pub(super) fn finishes(&mut self, left: f64) -> bool {
         if !self.is_within(left, SWEEPS_FROM) || !self.is_bounded() {
             return false;
@@ -122,7 +124,8 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         finished
     }
 
-    /// Gives the rows the impulses of the present point, and the bodies the resulting velocities.
+    /// Sets the impulses of the rows to the present point of the path, and the bodies to the velocities that follow
+    /// from them.
     pub(super) fn take_impulses(&mut self) {
         let contacts = &self.workspace.contacts;
         self.problem.write_impulses(contacts.iter().map(|contact| contact.impulse));
@@ -141,19 +144,19 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         self.keep(natural_map(self.problem));
     }
 
-    /// Returns true if the impulses have a size that a solution may have. On a path that does not lead to a solution
+    /// Returns true if no impulse is larger than a solution may have. On a path that does not lead to a solution
     /// impulses grow, and all changes become small relative to them.
     pub(super) fn is_bounded(&self) -> bool {
         let contacts = &self.workspace.contacts;
         contacts.iter().all(|contact| contact.impulse[0] <= self.largest_impulse)
     }
 
-    /// Tests the rows' impulses in the same way as [`Self::is_bounded`].
+    /// Tests the impulses of the rows in the same way as [`Self::is_bounded`] tests the impulses of the path.
     pub(super) fn has_bounded_rows(&self) -> bool {
         self.problem.rows().all(|(_, row)| row.shifted_impulse <= self.largest_impulse)
     }
 
-    /// Keeps the rows' impulses, whose natural map is `left`, as the best so far.
+    /// Records the impulses of the rows, whose residual is `left`, as the best impulses so far.
     pub(super) fn keep(&mut self, left: f64) {
         self.best = left;
         self.problem.rows.read_impulses(&mut self.workspace.best);
@@ -163,7 +166,9 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         self.problem.write_impulses(self.workspace.best.iter().copied());
     }
 
-    /// Moves to the point of the path that is nearest to the result of the natural map.
+    /// Moves to the point of the path that is nearest to the result of one update of the natural map. `starts_before`
+    /// is the number of earlier starts of this solve, each of which moves the next start further from the end of the
+    /// path.
     pub(super) fn start(&mut self, starts_before: u32) {
         let Self { problem, workspace, numbers, .. } = self;
         let opening_lags = problem.friction.model != FrictionModel::Tresca && S::CONE;
@@ -188,7 +193,7 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
                 };
                 squares += (row.tangential_impulse - law::coulomb(trial[1], allowed)).powi(2);
             }
-            // `velocity` contains the trial until the velocity is computed.
+            // `velocity` temporarily contains the trial impulses.
             contacts.push(PathContact {
                 bound,
                 lag: extra,

@@ -1,8 +1,10 @@
-//! Proximal multipliers with semi-smooth Newton and exact line search. They finish a solve if the interior point's
-//! steps become short, and are tried if its path does not lead to a solution.
+//! Proximal multipliers with a semi-smooth Newton method and exact line search. They finish a solve if the steps of the
+//! interior point become short, and are tried if its path does not lead to a solution.
 //!
 //! Let p be the present impulses, (w, v) the velocities of a contact, R = diag(1, m_n/m_t), ε a compliance, Π the
-//! projection on the allowed impulses in the metric R, and y = p − R⁻¹(w, v)/ε. Then
+//! projection on the allowed impulses in the metric R, and y = p − R⁻¹(w, v)/ε. With the velocities V of the bodies,
+//! their inertias M and their velocities V_free without contacts, the map H from V to contact velocities, and the
+//! effective masses m of the contacts,
 //!
 //! > F(V) = ½‖V − V_free‖²_M + Σ (m ε/2) (‖y‖²_R − ‖y − Π(y)‖²_R)
 //!
@@ -11,10 +13,10 @@
 //! > ∇F = M(V − V_free) − Σ Hᵀ m Π(y),  M + Σ (m/ε) Hᵀ J R⁻¹ H,
 //!
 //! J the derivative of Π. The Hessian is positive definite, with the blocks of the interior point's systems. At the
-//! minimum of F, V agrees with the impulses Π(y), and p ← Π(y) brings the impulses nearer to the solution (R. T.
-//! Rockafellar, 1976; with Newton's method inside X. Li, D. Sun, K.-C. Toh, 2018; for contacts A. Castro and others,
-//! 2022). F is quadratic as long as the pieces of Π stay the same, so a full step within one piece reaches the minimum.
-//! Along a line F′ is piecewise linear and rising; its root is found by Newton's method.
+//! minimum of F, V agrees with the impulses Π(y), and the update p ← Π(y) brings the impulses nearer to the solution
+//! (R. T. Rockafellar, 1976; with Newton's method inside X. Li, D. Sun, K.-C. Toh, 2018; for contacts A. Castro and
+//! others, 2022). F is quadratic as long as the pieces of Π stay the same, so a full step within one piece reaches the
+//! minimum. Along a line F′ is piecewise linear and rising; its root is found by Newton's method.
 //!
 //! V is not recomputed from the impulses: each step adds its changes to the velocities of contacts and to
 //! M(V − V_free), because a small ε magnifies rounding errors.
@@ -26,31 +28,33 @@ use super::system::{all_inertias, for_each_change, push_all};
 use crate::solver::kinematics::Model;
 use crate::solver::problem::natural_map;
 
-/// Initial ε of a solve from far away; below, of a solve that finishes the interior point's.
+/// Initial compliance ε of a solve that starts far from a solution. `CLOSE` is for a solve that finishes the path.
 const FAR: f64 = 0.1;
 const CLOSE: f64 = 1e-5;
-/// Minimum ε; with a smaller ε rounding would cost more than is gained.
+/// Minimum compliance ε. With a smaller ε, rounding errors would cost more than is gained.
 const LEAST: f64 = 1e-10;
-/// Factor of ε from one minimum to the next.
+/// Factor of the compliance ε from one minimum of F to the next.
 const FACTOR: f64 = 0.1;
-/// A solve from far away ends after this many factorisations that have not halved the natural map.
+/// Number of factorisations that have not halved the residual, after which a solve ends that started far from a
+/// solution.
 const PATIENCE: u32 = 40;
-/// Maximum number of factorisations of a solve that finishes the interior point's.
+/// Maximum number of factorisations of a solve that finishes the path of the interior point.
 const FEW: u32 = 16;
-/// ε is reduced when ∇F·M⁻¹∇F has fallen to this fraction of its value at the beginning with this ε.
+/// Ratio of the squared gradient norm ∇F·M⁻¹∇F to its first value at the present compliance ε, at which ε is reduced.
 const NEAR_MINIMUM: f64 = 1e-4;
-/// Maximum number of evaluations of F′ on a line.
+/// Maximum number of evaluations of the derivative F′ in a line search.
 const TRIALS: u32 = 40;
-/// F′ counts as 0 below this fraction of its value at the beginning of the line.
+/// Ratio of the derivative F′ to its value at the beginning of a line search, at or below which F′ counts as 0.
 const ROOT: f64 = 1e-9;
 
 impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
-    /// Continues from the impulses of the present point, which is near a solution. Returns true if that ends the solve.
+    /// Continues from the present impulses of the path, which are near a solution. Returns true if the problem is then
+    /// solved.
     pub(super) fn polish(&mut self) -> bool {
         self.approach(CLOSE, FEW, FEW)
     }
 
-    /// Starts from the impulses with the smallest natural map so far. Returns true if that ends the solve.
+    /// Starts from the impulses with the smallest residual so far. Returns true if the problem is then solved.
     pub(super) fn solve_from_far(&mut self) -> bool {
         let PathWorkspace { contacts, best, .. } = &mut *self.workspace;
         for (contact, &impulse) in contacts.iter_mut().zip(&*best) {
@@ -102,7 +106,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         }
     }
 
-    /// Sets impulses and velocities from the contacts of the interior point.
+    /// Sets impulses and velocities of the proximal multipliers from the contacts of the path.
     fn begin_near(&mut self) {
         let numbers = self.numbers;
         let PathWorkspace { near, contacts, .. } = &mut *self.workspace;
@@ -125,13 +129,14 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         push_all(problem, &graph.elimination, impulses, momenta);
     }
 
-    /// Gives the rows impulses, and the bodies the resulting velocities.
+    /// Sets the impulses of the rows to `impulse` of each contact, and recomputes the velocities of the bodies.
     fn take_near(&mut self, impulse: impl Fn(&ProximalContact) -> [f64; 2]) {
         let Self { problem, workspace, .. } = self;
         problem.write_impulses(workspace.near.iter().map(impulse));
     }
 
-    /// Gives the rows the impulses Π(y). Returns the natural map there.
+    /// Sets the impulses of the rows to the allowed impulses Π(y). Returns the residual of the natural map at these
+    /// impulses.
     fn take_allowed(&mut self, compliance: f64) -> f64 {
         let numbers = self.numbers;
         self.take_near(|contact| {
@@ -140,7 +145,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         natural_map(self.problem)
     }
 
-    /// Writes −∇F to the right-hand side. Returns ∇F·M⁻¹∇F, J.
+    /// Writes −∇F to the right-hand side of the linear system. Returns the squared norm ∇F·M⁻¹∇F of the gradient, J.
     fn gradient(&mut self, compliance: f64) -> f64 {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, vector, near, momenta, .. } = &mut **workspace;
@@ -160,7 +165,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         squared
     }
 
-    /// Takes a Newton step with the present gradient.
+    /// Takes a Newton step of F with the present gradient, with the length that the line search finds.
     fn step_near(&mut self, compliance: f64) {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, system, vector, near, .. } = &mut **workspace;
@@ -190,7 +195,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         }
     }
 
-    /// The step length at which F is least.
+    /// Returns the step length at which F has its minimum along the Newton step.
     fn least_on_line(&self, compliance: f64) -> f64 {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, vector, near, momenta, .. } = &**workspace;
@@ -202,7 +207,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
                 at_start += momenta[axis] * change[axis];
             }
         }
-        // F′ and F″ at step length `share`.
+        // Derivatives F′ and F″ along the Newton step at step length `share`.
         let slopes = |share: f64| {
             let mut slopes = [at_start + share * of_masses, of_masses];
             for ((_, row), contact) in problem.rows().zip(near) {

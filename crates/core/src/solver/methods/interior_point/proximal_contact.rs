@@ -1,33 +1,34 @@
-//! A contact in the proximal multiplier method (symbols as in `proximal`).
+//! A contact in the proximal multiplier method. The symbols are explained in `proximal`.
 
 use super::contact::{ContactNumbers, Shape};
 use crate::contact::law;
 use crate::solver::linear::Block;
 
-/// Impulses, velocities and friction bound of a contact.
+/// Impulses, velocities and friction bound of a contact in the proximal multiplier method.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ProximalContact {
-    /// p, m/s.
+    /// Impulses p: shifted normal and tangential impulse (σ, λ), m/s.
     pub impulse: [f64; 2],
-    /// (w, v), m/s.
+    /// Velocities (w, v): normal velocity with the term that the law adds, and tangential velocity, m/s.
     pub velocity: [f64; 2],
-    /// Change of (w, v) in a whole step, m/s.
+    /// Change of the velocities (w, v) in a Newton step of length 1, m/s.
     pub change: [f64; 2],
-    /// The lagged bound g, m/s.
+    /// Friction bound g, which is fixed during a solve, m/s.
     pub bound: f64,
 }
 
-/// A piece of Π on which its derivative J is constant.
+/// A region of trial impulses in which the derivative J of the projection Π is constant.
 #[derive(Clone, Copy)]
 pub(super) enum ProjectionPiece {
-    /// True if σ, and if λ, follows the trial.
+    /// For σ and for λ: true if the projected impulse follows the trial impulse, false if it stays at its bound.
     Free([bool; 2]),
-    /// An edge of the cone; the number is the sign of λ.
+    /// The projection is on an edge of the cone, given by the sign of λ.
     Edge(f64),
 }
 
 impl ProjectionPiece {
-    /// J R⁻¹/ε: on an edge with direction d it is d dᵀ/(ε dᵀR d).
+    /// Returns J R⁻¹/ε, with the metric R = diag(1, m_n/m_t) and the compliance ε. On an edge with direction d this is
+    /// d dᵀ/(ε dᵀR d).
     pub(super) fn stiffness(self, numbers: ContactNumbers, compliance: f64) -> Block<2> {
         let soft = numbers.tangential_compliance;
         match self {
@@ -45,7 +46,7 @@ impl ProjectionPiece {
 }
 
 impl ProximalContact {
-    /// y after a step of length `share`.
+    /// Returns the trial impulses y = p − R⁻¹(w, v)/ε after a step of length `share`, m/s.
     #[inline(always)]
     pub(super) fn trial(&self, numbers: ContactNumbers, compliance: f64, share: f64) -> [f64; 2] {
         let [normal, tangential] =
@@ -54,7 +55,7 @@ impl ProximalContact {
         [shifted - normal, across - tangential / numbers.tangential_compliance]
     }
 
-    /// Π of a trial.
+    /// Returns the projection Π of trial impulses on the allowed impulses, m/s.
     #[inline(always)]
     pub(super) fn allowed<S: Shape>(&self, numbers: ContactNumbers, trial: [f64; 2]) -> [f64; 2] {
         if S::CONE {
@@ -63,7 +64,7 @@ impl ProximalContact {
         [law::signorini(trial[0]), law::coulomb(trial[1], self.bound)]
     }
 
-    /// The piece of Π that contains a trial.
+    /// Returns the region of the projection Π that contains trial impulses.
     #[inline(always)]
     pub(super) fn piece<S: Shape>(
         &self,

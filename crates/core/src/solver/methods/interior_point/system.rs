@@ -1,7 +1,10 @@
-//! The linear system of a Newton step: M + Hᵀ m S⁻¹ H, symmetric except for Coulomb's law.
+//! The linear system of a Newton step, with the matrix M + Hᵀ m S⁻¹ H. The matrix is symmetric except for Coulomb's
+//! law.
 //!
-//! A driven wall is one more body, numbered after the grains: the first of its coordinates is its speed V with the
-//! inertia M + cΔt (`problem::walls`), and its other coordinates are not coupled to anything.
+//! M are the inertias of the bodies, H maps velocities of bodies to velocities of contacts, m are the effective masses,
+//! and S is defined in `contact`. A driven wall is one more body, numbered after the grains: the first of its
+//! coordinates is its speed V with the inertia M + cΔt (`problem::walls`), and its other coordinates are not coupled to
+//! anything.
 
 use super::contact::Shape;
 use crate::solver::kinematics::Model;
@@ -10,11 +13,11 @@ use crate::solver::linear::{
 };
 use crate::solver::problem::{DrivenBy, Row, StepProblem};
 
-/// The matrix, replaced by its factors.
+/// The matrix of a Newton step, which is replaced by its factors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StepMatrix<const D: usize> {
     symmetric: SymmetricBlockMatrix<D>,
-    /// Used if the shape leans.
+    /// The matrix under Coulomb's law, for which it is not symmetric.
     unsymmetric: BlockMatrix<D>,
 }
 
@@ -61,7 +64,8 @@ impl<const D: usize> StepMatrix<D> {
         }
     }
 
-    /// Solves with the factors: `vector` (by place) is the right-hand side and becomes the solution.
+    /// Solves the linear system with the factors. `vector`, in elimination order, is the right-hand side on entry and
+    /// the solution on return.
     pub(super) fn solve<S: Shape>(&self, elimination: &Elimination, vector: &mut [[f64; D]]) {
         if S::LEANS {
             self.unsymmetric.solve(elimination, vector);
@@ -80,10 +84,11 @@ impl<const D: usize> StepMatrix<D> {
     }
 }
 
-/// Gradients of v_n and v_t of a row with respect to a body's velocity.
+/// Gradients of a contact's normal and tangential velocity (v_n, v_t) by a body's velocity.
 type Gradients<const D: usize> = [[f64; D]; 2];
 
-/// The gradients of i, and, if the second body (grain or driven wall) can move, its number and gradients.
+/// Returns the gradients of grain i. If the other body of the contact can move (grain or driven wall), also returns its
+/// number and gradients.
 #[inline(always)]
 fn bodies_of<M: Model, const D: usize>(
     problem: &StepProblem<M>,
@@ -102,7 +107,8 @@ fn bodies_of<M: Model, const D: usize>(
     (on_i, problem.walls.driven_row(number).map(|known| of_wall(known.by)))
 }
 
-/// Adds Hᵀ m p to `momenta` (by place), kg m/s; `impulses` are (σ, λ) of each row, m/s.
+/// Adds the momentum changes Hᵀ m p, kg m/s, to `momenta`, which are in elimination order. `impulses` are the impulses
+/// (σ, λ) of each contact, m/s.
 #[inline(always)]
 pub(super) fn push_all<M: Model, const D: usize>(
     problem: &StepProblem<M>,
@@ -120,7 +126,8 @@ pub(super) fn push_all<M: Model, const D: usize>(
     }
 }
 
-/// Visits the rows, with their numbers, and the changes of (v_n, v_t) for `changes` of the velocities (by place).
+/// Calls `visit` for each contact with its row number and the change of (v_n, v_t), m/s, that follows from `changes`,
+/// the changes of the bodies' velocities in elimination order.
 #[inline(always)]
 pub(super) fn for_each_change<M: Model, const D: usize>(
     problem: &StepProblem<M>,
@@ -151,7 +158,7 @@ fn relative<const D: usize>(velocity: &[f64; D], on: &Gradients<D>) -> [f64; 2] 
     on.map(|gradient| (0..D).map(|axis| gradient[axis] * velocity[axis]).sum())
 }
 
-/// The inertias of grains and driven walls by place, kg.
+/// Iterates over the inertias of grains and driven walls in elimination order, kg.
 pub(super) fn all_inertias<M: Model, const D: usize>(
     problem: &StepProblem<M>,
     elimination: &Elimination,
@@ -166,13 +173,13 @@ pub(super) fn all_inertias<M: Model, const D: usize>(
     })
 }
 
-/// m S⁻¹, kg.
+/// Returns m S⁻¹, kg: the effective mass of a contact times the 2×2 matrix `answer`.
 #[inline(always)]
 fn heavy(mass: f64, answer: Block<2>) -> Block<2> {
     answer.map(|row| row.map(|entry| mass * entry))
 }
 
-/// m Hᵀ S⁻¹ H for two bodies, kg.
+/// Returns the block m H₁ᵀ S⁻¹ H₂, kg, of a contact for two bodies with the gradients H₁ = `one` and H₂ = `other`.
 #[inline(always)]
 fn stiffness<const D: usize>(
     [[nn, nt], [tn, tt]]: &Block<2>,

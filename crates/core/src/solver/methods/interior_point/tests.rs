@@ -1,5 +1,5 @@
-//! Tests with random contact problems that have a solution: proximal multipliers, which finish a solve or replace the
-//! path, find the same velocities as the path.
+//! Tests of the interior point with random contact problems that have a solution: proximal multipliers, which finish a
+//! solve or replace the path, find the same velocities as the path.
 
 use super::*;
 use crate::contact::ContactLaw;
@@ -9,7 +9,7 @@ use crate::solver::{Line, Plane, SmoothPlane, SpinningPlane, StopTest};
 
 const FRICTION: f64 = 0.6;
 
-/// A problem in which no contact forces anything to move, so that a solution exists.
+/// Returns a problem that has a solution, because bodies at rest violate no contact.
 fn problem<M: Model>(seed: u64, model: FrictionModel) -> StepProblem<M> {
     let law = ContactLaw::new(FRICTION, 0.1, FrictionCone::Shifted);
     let mut problem = random_problem::<M>(seed, law, 40, 90, 6, 0.0..0.3);
@@ -22,7 +22,8 @@ fn problem<M: Model>(seed: u64, model: FrictionModel) -> StepProblem<M> {
     problem
 }
 
-/// Velocities found by the path and by proximal multipliers alone, and the factorisations of the latter.
+/// Returns the velocities found by the path and by proximal multipliers without the path, and the number of
+/// factorisations of the proximal multipliers.
 fn both_ways<M: Model, S: Shape, const D: usize>(
     seed: u64,
     model: FrictionModel,

@@ -1,8 +1,8 @@
-//! Contacts side by side: a block contains four contacts that share no grain, one per lane, as a structure of arrays.
+//! Blocks of contacts: a block contains four contacts that share no grain, one per SIMD lane, as a structure of arrays.
 //!
-//! All four are solved at once with the arithmetic of one contact (`methods::sweep`), in the vector registers that the
-//! processor has. The result is bitwise the same as one contact after the other. If a colour does not fill a block, the
-//! idle lanes act on a placeholder body and change nothing.
+//! All four contacts are solved at once with the arithmetic of one contact (`methods::sweep`), in the vector registers
+//! of the processor. The result is bitwise the same as one contact after the other. If a colour does not fill a block,
+//! the idle lanes act on a placeholder body and change nothing.
 
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x4};
 
@@ -11,23 +11,23 @@ use crate::solver::kinematics::Model;
 use crate::solver::methods::sweep::{ImpulseChange, Local};
 use crate::solver::problem::{Row, errors, project_by_coulomb, squared_impulse};
 
-/// Contacts per block: the numbers in a register of AVX2. Wider blocks would leave more lanes idle.
+/// Number of contacts per block: the number of f64 in a register of AVX2. Wider blocks would leave more lanes idle.
 pub(super) const LANES: usize = 4;
 
-/// The velocity of a body as blocks store it, one entry per degree of freedom; further entries are not used. It never
-/// straddles two cache lines.
+/// The velocity of a body as blocks store it, one entry per degree of freedom; further entries are not used. The
+/// alignment keeps it within one cache line.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
 pub(super) struct BodySlot([f64; LANES]);
 
 impl BodySlot {
-    /// Creates the slot of a body.
+    /// Creates the slot that stores the velocity of a body.
     pub(super) fn of<M: Model>(body: &M::Body<f64>) -> Self {
         let [x, y, spin] = M::coordinates(body);
         Self([x, y, spin, 0.0])
     }
 
-    /// Copies the velocity to a body.
+    /// Copies the velocity from the slot to a body.
     pub(super) fn store<M: Model>(&self, body: &mut M::Body<f64>) {
         let [x, y, spin, _] = self.0;
         M::set(body, [x, y, spin]);
@@ -40,7 +40,7 @@ impl BodySlot {
 pub(super) struct ContactBlock {
     i: [u32; LANES],
     j: [u32; LANES],
-    /// g_i of pairs; speed of the surface along t of contacts with fixed bodies, m/s.
+    /// Mass ratio g_i of contacts between grains; surface speed along the tangent of contacts with fixed bodies, m/s.
     share_or_speed: [f64; LANES],
     normal: [[f64; LANES]; 2],
     shifted_impulse: [f64; LANES],
@@ -50,8 +50,8 @@ pub(super) struct ContactBlock {
 }
 
 impl ContactBlock {
-    /// Creates the block of up to four rows, each with the slots of its grains and its g_i or surface speed. Idle lanes
-    /// use the first slot.
+    /// Creates the block of up to four rows, each given with the slots of its grains and its mass ratio g_i or surface
+    /// speed. Idle lanes use the first slot.
     pub(super) fn of<'a, M: Model>(
         rows: impl Iterator<Item = (&'a Row<M>, [u32; 2], f64)>,
     ) -> Self {
@@ -77,7 +77,7 @@ impl ContactBlock {
         block
     }
 
-    /// Copies the impulses to the rows of the block.
+    /// Copies the impulses from the block to its rows.
     pub(super) fn store<'a, M: Model>(&self, rows: impl Iterator<Item = &'a mut Row<M>>) {
         for (lane, row) in rows.enumerate() {
             row.shifted_impulse = self.shifted_impulse[lane];
@@ -87,7 +87,7 @@ impl ContactBlock {
         }
     }
 
-    /// Σ P² of the contacts, (N·s)², given their capture speeds.
+    /// Returns the sum of the squared impulses Σ P² of the block's contacts, (N·s)², given their capture speeds, m/s.
     #[inline(always)]
     pub(super) fn squared_impulses(&self, captures: [f64; LANES]) -> f64 {
         sum(std::array::from_fn(|lane| {
@@ -121,7 +121,7 @@ impl ContactBlock {
     }
 }
 
-/// Loads bodies, one per lane.
+/// Loads the velocities of four bodies, one per SIMD lane.
 #[inline(always)]
 fn gather<S: Simd, M: Model>(
     simd: S,
@@ -133,8 +133,8 @@ fn gather<S: Simd, M: Model>(
     M::from_coordinates([x, y, spin])
 }
 
-/// Transposes four vectors. Slots are read and written whole, in one access each: reading single numbers would have to
-/// wait for the whole slot that the previous block has written.
+/// Transposes four vectors. Slots are read and written whole, in one access each: a read of a single number would have
+/// to wait until the previous block has written the whole slot.
 #[inline(always)]
 fn transposed<S: Simd>([a, b, c, d]: [f64x4<S>; LANES]) -> [f64x4<S>; LANES] {
     let (ac, bd) = (a.zip_low(c), b.zip_low(d));
@@ -142,7 +142,7 @@ fn transposed<S: Simd>([a, b, c, d]: [f64x4<S>; LANES]) -> [f64x4<S>; LANES] {
     [ac.zip_low(bd), ac.zip_high(bd), other_ac.zip_low(other_bd), other_ac.zip_high(other_bd)]
 }
 
-/// Stores gathered bodies.
+/// Stores the velocities of four bodies, one per SIMD lane, in their slots.
 #[inline(always)]
 fn scatter<S: Simd, M: Model>(
     slots: &mut [BodySlot],
@@ -156,14 +156,15 @@ fn scatter<S: Simd, M: Model>(
     }
 }
 
-/// Blocks of a tile, or of the contacts between tiles; blocks of contacts with fixed bodies come first.
+/// Blocks of the contacts of a tile, or of the contacts between tiles. Blocks of contacts with fixed bodies come first.
 pub(super) struct Blocks<'a> {
     pub all: &'a mut [ContactBlock],
     /// Number of blocks of contacts with fixed bodies.
     pub fixed: usize,
 }
 
-/// Solves blocks one after the other: first contacts with fixed bodies, then contacts between grains.
+/// Solves blocks one after the other: first contacts with fixed bodies, then contacts between grains. Returns the
+/// change of the impulses if `MEASURE` is set.
 #[inline(always)]
 pub(super) fn solve_blocks<S: Simd, M: Model, const MEASURE: bool>(
     simd: S,
@@ -200,7 +201,8 @@ pub(super) fn solve_blocks<S: Simd, M: Model, const MEASURE: bool>(
     ImpulseChange { squared: sum(squared.to_array()), absolute: sum(absolute.to_array()) }
 }
 
-/// Σ (e_n² + e_t²) of the common residual (`problem::residual`), (N·s)².
+/// Returns the squared numerator of the residual (`problem::residual`), Σ (e_n² + e_t²) over the contacts of blocks,
+/// (N·s)².
 #[inline(always)]
 pub(super) fn squared_error<S: Simd, M: Model>(
     simd: S,
@@ -227,7 +229,7 @@ pub(super) fn squared_error<S: Simd, M: Model>(
     sum(sum_of_lanes.to_array())
 }
 
-/// The sum over all lanes.
+/// Returns the sum over all SIMD lanes.
 #[inline(always)]
 pub(super) fn sum([a, b, c, d]: [f64; LANES]) -> f64 {
     (a + b) + (c + d)

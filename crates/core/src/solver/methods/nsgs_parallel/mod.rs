@@ -1,9 +1,10 @@
 //! Gauss–Seidel by tiles and colours, on several threads and with vector registers.
 //!
-//! Contacts of different tiles share no grain, and neither do contacts of one colour (`problem::order`), so they do not
-//! affect each other. Tiles can be solved at the same time, and the contacts of a colour side by side (`block`), with
-//! bitwise the same result. Contacts between tiles are solved after all tiles, by one thread: about a twentieth of a
-//! dense pile. Sums over a sweep are formed tile by tile in a fixed order, whatever the number of threads.
+//! A *tile* is a group of contacts near each other, and a *colour* a group of contacts that share no grain
+//! (`problem::order`). Contacts of different tiles share no grain, either. So tiles can be solved at the same time, and
+//! the contacts of a colour four at a time (`block`), with bitwise the same result as one after the other. Contacts
+//! between tiles are solved after all tiles, by one thread: about a twentieth of the contacts of a dense pile. Sums
+//! over a sweep are computed tile by tile in a fixed order, so they do not depend on the number of threads.
 
 mod block;
 #[cfg(test)]
@@ -25,22 +26,22 @@ use crate::solver::problem::{
 use crate::solver::settings::SolverSettings;
 use crate::threads;
 
-/// Number of blocks from which tiles are distributed over threads: 60 µs of work per sweep. With half as many blocks
-/// two threads were slower than one.
+/// Number of blocks of four contacts from which tiles are distributed over threads: 60 µs of work per sweep. With half
+/// as many blocks two threads were slower than one thread.
 const WORTH_THREADS: usize = 4096;
 
-/// Memory that is kept between steps.
+/// Memory that is reused for the next step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BlockMemory {
     layout: TileLayout,
-    /// Change of the impulses of each tile.
+    /// Change of the impulses of each tile's contacts in a sweep.
     changes: Vec<ImpulseChange>,
-    /// Sum of each tile: of squared errors or of squared impulses.
+    /// For each tile, a sum over its contacts: of squared errors or of squared impulses, (N·s)².
     sums: Vec<f64>,
 }
 
 impl BlockMemory {
-    /// Sums `add_up` of blocks and their slots: tile by tile, then the blocks between tiles.
+    /// Returns the sum of `add_up` over all blocks: tile by tile, then the blocks between tiles.
     fn sum(
         &mut self,
         threads: bool,
@@ -52,7 +53,7 @@ impl BlockMemory {
     }
 }
 
-/// Solves a prepared problem by sweeps.
+/// Solves a prepared problem by Gauss–Seidel sweeps over tiles and colours.
 pub(super) fn solve<M: Model>(
     problem: &mut StepProblem<M>,
     memory: &mut BlockMemory,
@@ -61,7 +62,7 @@ pub(super) fn solve<M: Model>(
     solve_at::<M>(Level::new(), problem, memory, settings)
 }
 
-/// Solves with the vector instructions of `level`.
+/// Solves a prepared problem with the vector instructions of `level`.
 fn solve_at<M: Model>(
     level: Level,
     problem: &mut StepProblem<M>,
@@ -77,11 +78,11 @@ fn solve_at<M: Model>(
 /// A problem whose tiles and colours are valid: all grains of its rows exist, and no two tiles and no two contacts of a
 /// colour share a grain.
 ///
-/// Until [`Tiled::store`] the present impulses are in the blocks and the present velocities in the slots, not in the
-/// problem.
+/// Until [`Tiled::store`] is called, the present impulses and velocities are in the blocks and in their slots for
+/// bodies, and the problem has old ones.
 struct Tiled<'a, M: Model> {
     level: Level,
-    /// True if there are several tiles, several threads, and enough work for them.
+    /// True if there are several tiles, several threads, and enough work for several threads.
     threads: bool,
     law: ContactLaw,
     problem: &'a mut StepProblem<M>,
@@ -90,7 +91,7 @@ struct Tiled<'a, M: Model> {
 }
 
 impl<'a, M: Model> Tiled<'a, M> {
-    /// Lays out a problem. Returns `None` if its tiles or colours are not valid.
+    /// Arranges the contacts of a problem in blocks. Returns `None` if the problem's tiles or colours are not valid.
     fn new(
         level: Level,
         problem: &'a mut StepProblem<M>,
@@ -131,7 +132,7 @@ impl<'a, M: Model> Tiled<'a, M> {
         report
     }
 
-    /// One pass over all contacts.
+    /// Performs one sweep over all contacts. Returns the change of the impulses if `MEASURE` is set.
     fn sweep<const MEASURE: bool>(&mut self) -> ImpulseChange {
         let Self { level, threads, law, memory, .. } = self;
         let (level, law) = (*level, &*law);
@@ -143,13 +144,13 @@ impl<'a, M: Model> Tiled<'a, M> {
         change
     }
 
-    /// The common residual.
+    /// Returns the residual of the present impulses under Coulomb's law, dimensionless.
     fn residual(&mut self) -> f64 {
         let squared_scale =
             *self.squared_scale.get_or_insert_with(|| squared_residual_scale(self.problem));
         let squared_error = self.squared_error();
         if squared_scale == 0.0 {
-            // The rows are needed to recognise an error that is only rounding.
+            // The rows need the present impulses, to recognise an error that is only rounding.
             self.store();
         }
         residual_of(self.problem, [squared_error, squared_scale])
@@ -163,7 +164,7 @@ impl<'a, M: Model> Tiled<'a, M> {
         )
     }
 
-    /// Σ P², (N·s)².
+    /// Returns the sum of the squared impulses of all contacts, Σ P², (N·s)².
     fn squared_impulses(&mut self) -> f64 {
         let captures = &self.problem.rows.captures;
         let capture_speed = self.law.capture_speed();
@@ -183,7 +184,7 @@ impl<'a, M: Model> Tiled<'a, M> {
         blocks.iter().zip(places).map(of_block).sum()
     }
 
-    /// Copies impulses and velocities back to rows and bodies.
+    /// Copies the impulses from the blocks to the rows, and the velocities from the slots to the bodies.
     fn store(&mut self) {
         self.memory.layout.store::<M>(self.problem);
     }
@@ -193,7 +194,8 @@ fn blocks_of(tiles: &[ContactTile]) -> usize {
     tiles.iter().map(|tile| tile.blocks).sum()
 }
 
-/// Calls `visit` for each tile with its blocks and slots, on several threads if `threads` is set.
+/// Calls `visit` for each tile with its blocks of contacts and its slots of bodies, on several threads if `threads` is
+/// set.
 fn for_each_tile<T: Send>(
     threads: bool,
     tiles: &[ContactTile],
@@ -222,66 +224,66 @@ fn for_each_tile<T: Send>(
     }
 }
 
-/// Marks a slot without a grain, and a grain without a slot.
+/// Marks a slot that has no grain, and a grain that has no slot.
 const NOBODY: u32 = u32::MAX;
 
-/// The part of the layout that one thread works on: contacts whose grains are in no other tile.
+/// A tile: contacts whose grains are in no other tile, so that one thread can solve them.
 #[derive(Clone, Copy, Debug, Default)]
 struct ContactTile {
-    /// Number of blocks.
+    /// Number of blocks (of four contacts each) in the tile.
     blocks: usize,
-    /// Number of blocks of contacts with fixed bodies; they come first.
+    /// Number of the tile's blocks whose contacts are with fixed bodies; these blocks come first.
     fixed: usize,
-    /// Number of slots.
+    /// Number of slots, one per grain of the tile and one for idle lanes.
     slots: usize,
 }
 
-/// State of a grain while blocks are created.
+/// Slot, tile and last colour of a grain while blocks are created.
 #[derive(Clone, Copy, Debug)]
 struct GrainMark {
     slot: u32,
-    /// Number of its tile, from 1; 0 between tiles.
+    /// Number of the grain's tile, from 1; 0 for the contacts between tiles.
     tile: u32,
-    /// The last colour with a contact of the grain.
+    /// The last colour that has a contact of the grain.
     colour: u32,
 }
 
 const UNSEEN: GrainMark = GrainMark { slot: NOBODY, tile: 0, colour: 0 };
 
-/// The tile that blocks are added to.
+/// The tile that blocks of contacts are being added to.
 #[derive(Clone, Copy)]
 struct BlockPlace {
-    /// Number of the tile, from 1; 0 between tiles.
+    /// Number of the tile, from 1; 0 for the contacts between tiles.
     tile: u32,
-    /// The slot that the tile's indices count from.
+    /// Index of the tile's first slot, from which the slot indices of its blocks count.
     first_slot: u32,
 }
 
-/// The rows of a problem in blocks. Memory is kept between steps.
+/// The contacts and bodies of a problem, arranged in blocks and slots. The memory is reused for the next step.
 #[derive(Clone, Debug, Default)]
 struct TileLayout {
     /// Tiles in the order of their blocks and slots.
     tiles: Vec<ContactTile>,
-    /// Blocks tile by tile, and within a tile colour by colour; their indices count within the tile's own slots. The
-    /// blocks between tiles come last; their indices count within all slots.
+    /// Blocks of contacts tile by tile, and within a tile colour by colour. Their slot indices count from the tile's
+    /// first slot. The blocks between tiles come last; their slot indices count from the first of all slots.
     blocks: Vec<ContactBlock>,
-    /// Number of blocks between tiles of contacts with fixed bodies.
+    /// Number of blocks between tiles whose contacts are with fixed bodies.
     fixed_between: usize,
-    /// Bodies tile by tile, in the order in which blocks first use them. The first slot of a tile is the placeholder
-    /// for idle lanes.
+    /// Velocities of the bodies tile by tile, in the order in which blocks first use them. The first slot of a tile is
+    /// a placeholder for idle lanes.
     slots: Vec<BodySlot>,
-    /// Row numbers of each block, as in the problem.
+    /// For each block, the range of its row numbers in the problem.
     places: Vec<Range<u32>>,
-    /// The grain of each slot.
+    /// For each slot, the index of its grain, or [`NOBODY`].
     grains: Vec<u32>,
     marks: Vec<GrainMark>,
     colours: u32,
 }
 
 impl TileLayout {
-    /// Calls `visit` for the blocks and slots of all tiles, on several threads if `threads` is set, and then for the
-    /// blocks between tiles. Stores the results of the tiles in `results` and returns the result of the blocks between
-    /// tiles.
+    /// Calls `visit` for each tile, with its blocks (four contacts each) and slots (velocities of bodies), on several
+    /// threads if `threads` is set. Then calls `visit` for the blocks between tiles. Stores the results of the tiles in
+    /// `results` and returns the result of the blocks between tiles.
     fn visit<T: Send>(
         &mut self,
         threads: bool,
@@ -294,8 +296,8 @@ impl TileLayout {
         visit(Blocks { all: between, fixed: *fixed_between }, slots)
     }
 
-    /// Lays out a problem. Returns `None` if a grain does not exist, or if two tiles or two contacts of a colour share
-    /// a grain.
+    /// Arranges the contacts of a problem in blocks. Returns `None` if a grain does not exist, or if two tiles or two
+    /// contacts of a colour share a grain.
     fn fill<M: Model>(&mut self, problem: &StepProblem<M>) -> Option<()> {
         self.tiles.clear();
         self.blocks.clear();
@@ -353,7 +355,8 @@ impl TileLayout {
         Some(fixed_blocks)
     }
 
-    /// Adds the blocks of a colour. `rows` are its rows with g_i or surface speed, numbered from `first`.
+    /// Adds the blocks of a colour. `rows` are the rows of the colour, numbered from `first`, each with its mass ratio
+    /// g_i (pairs of grains) or its surface speed (fixed bodies, m/s).
     fn add<'a, M: Model>(
         &mut self,
         rows: impl ExactSizeIterator<Item = (&'a Row<M>, f64)> + Clone,
@@ -391,7 +394,7 @@ impl TileLayout {
         Some(())
     }
 
-    /// Copies impulses and velocities back to rows and bodies.
+    /// Copies the impulses from the blocks to the rows, and the velocities from the slots to the bodies.
     fn store<M: Model>(&self, problem: &mut StepProblem<M>) {
         let ContactRows { fixed, pairs, .. } = &mut problem.rows;
         for (block, place) in self.blocks.iter().zip(&self.places) {

@@ -1,5 +1,5 @@
-//! Tests with random contact problems: with any vector registers and number of threads, the result is bitwise the same
-//! as for one contact after the other.
+//! Tests of Gauss–Seidel by tiles with random contact problems: for any vector registers and any number of threads the
+//! result is bitwise the same as for one contact after the other.
 
 use rayon::ThreadPoolBuilder;
 
@@ -12,7 +12,7 @@ use crate::solver::settings::StopTest;
 use crate::solver::{Line, Plane, SmoothPlane, SpinningPlane};
 use crate::world::FrictionCone::{self, Compressive, Shifted};
 
-/// Contacts between bodies with similar numbers, sorted by tiles and colours.
+/// Returns a problem of random contacts between bodies with similar numbers, sorted by tiles and colours.
 fn problem<M: Model>(
     seed: u64,
     bodies: usize,
@@ -26,7 +26,7 @@ fn problem<M: Model>(
     problem
 }
 
-/// The bits of all impulses, then of all velocities.
+/// Returns the bits of all impulses, then of all velocities.
 fn bits<M: Model>(problem: &StepProblem<M>) -> Vec<u64> {
     let impulses =
         problem.rows().flat_map(|(_, row)| [row.shifted_impulse, row.tangential_impulse]);
@@ -34,7 +34,7 @@ fn bits<M: Model>(problem: &StepProblem<M>) -> Vec<u64> {
     impulses.chain(velocities).map(f64::to_bits).collect()
 }
 
-/// Settings whose stopping test never ends a test's sweeps.
+/// Returns settings for exactly `max_sweeps` sweeps: their stopping test is never met.
 fn sweeps(max_sweeps: u32) -> SolverSettings {
     let stop = StopTest::ImpulsePerMass;
     SolverSettings { stop, tolerance: 0.0, max_sweeps, ..SolverSettings::SWEEPS }
@@ -104,7 +104,7 @@ fn where_nothing_would_move_the_residual_is_none_or_infinite() {
 fn same_bits_at_all_levels<M: Model>(cone: FrictionCone) {
     let mut seen = [0; LANES];
     for seed in 0..60 {
-        // Few contacts, so that every number of rows left over in a colour occurs.
+        // The number of contacts is small, so that some colours end with a block of only one, two or three contacts.
         let start = problem::<M>(seed, 40, 1 + 3 * seed as u32, cone);
         let settings = sweeps(1 + seed as u32 % 30);
         let mut expected = start.clone();
@@ -190,7 +190,7 @@ fn tiles_that_share_a_grain_are_swept_as_they_come() {
     let mut start = problem::<SpinningPlane>(6, 4000, 8000, Shifted);
     let ends = &start.order.groups[1];
     let of_second = ends.colours_of(1).next().expect("a colour").start;
-    // Gives the first contact of the second tile a grain of the first tile.
+    // The first contact of the second tile gets a grain of the first tile.
     start.rows.pairs[of_second].i = start.rows.pairs[0].i;
     let (mut expected, mut solved) = (start.clone(), start);
     nsgs::solve::<SpinningPlane>(&mut expected, &sweeps(5));

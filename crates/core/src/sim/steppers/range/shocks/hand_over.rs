@@ -1,4 +1,4 @@
-//! Results of shocks, passed on to the step.
+//! Passes the results of the shocks on to the contact problem of the step.
 
 use glam::DVec2;
 
@@ -9,31 +9,33 @@ use crate::sim::steppers::range::step_numbers::StepNumbers;
 use crate::solver::{Model, StepProblem};
 use crate::world::World;
 
-/// A bond that a shock closed.
+/// Bond that a shock closed within the step.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct ClosedBond {
-    /// The remaining fraction of the step.
+    /// Time from the shock to the end of the step, divided by the step length.
     pub part: f64,
-    /// Velocity that gravity had given the pair by then, m/s.
+    /// Velocity that gravity had given the pair by the time of the shock, m/s.
     pub gained: f64,
 }
 
 impl Shocks {
-    /// Makes a problem continue from its shocks. Bodies begin with v⁺. Each contact may close the gap that it would
-    /// have if its bodies had moved with their present velocities from the beginning.
+    /// Changes a problem so that it continues from its shocks. Bodies begin with their velocities after the shocks, v⁺.
+    /// Each contact may close the gap that the pair would have if its bodies had moved with their present velocities
+    /// since the beginning of the step.
     ///
-    /// **Grains that pass by.** The constraint on a gap uses the speed along the normal of the beginning, which stops
-    /// a grain that would have passed another one. If that would happen and the two do not meet, the constraint uses
-    /// the tangent of the gap at the end of the step. Then v⁺ itself satisfies every contact.
+    /// **Grains that pass by.** The constraint on a gap uses the speed along the normal at the beginning of the step,
+    /// so it stops a grain that would have passed another grain. If the constraint would act although the two grains do
+    /// not meet, it uses the tangent of the gap at the end of the step instead. Then v⁺ itself satisfies every contact.
     ///
-    /// **No contact has to open.** A pair that was struck at t opens from then on, as if from a gap of −t v_n⁺. If it
-    /// had to end the step without any overlap, its v_n would have to be above 0, while other contacts that hold it
-    /// may not allow that: v = 0 would no longer satisfy every contact, and a cluster with many struck contacts would
-    /// often not be solved. So only v_n ≥ 0 is required, and the remaining overlap, at most t v_n⁺, is pushed out
-    /// (`range::separate`).
+    /// **No contact has to open.** A pair that was struck at the time t opens from then on, as if from a gap of −t
+    /// v_n⁺. To end the step without any overlap, its v_n would have to be above 0, but other contacts that hold the
+    /// pair may not allow that. Then v = 0 would no longer satisfy every contact, and a cluster with many struck
+    /// contacts would often have no solution. So only v_n ≥ 0 is required, and the remaining overlap of at most t v_n⁺
+    /// is pushed out (`range::separate`).
     ///
-    /// **Gaps below the touch tolerance count as zero**, after a shock as before it. Slacks of the size of rounding
-    /// between touching grains would open or close a contact by less than the tolerance of a step.
+    /// **Gaps below the touch tolerance count as zero**, after a shock as before it. Otherwise gaps of the size of
+    /// rounding between touching grains would require contacts to open or close by less than the tolerance of the
+    /// solver.
     pub(super) fn hand_over<M: Model>(
         &mut self,
         problem: &mut StepProblem<M>,
@@ -69,8 +71,8 @@ impl Shocks {
         }
     }
 
-    /// Closing speed that a contact may have after the shocks, m/s, relative to a moving wall, and its new normal if
-    /// it has changed. `None` if nothing has changed.
+    /// Returns the closing speed that a contact may have after the shocks, m/s, relative to a moving wall, and its new
+    /// normal if the normal has changed. Returns `None` if neither has changed.
     fn closing_left<M: Model>(
         &self,
         at: &ShockInputs<'_, M>,
@@ -106,16 +108,16 @@ impl Shocks {
         (changes || normal.is_some()).then_some((allowed, normal))
     }
 
-    /// The capture speed, m/s, with which a row was prepared, and that of a pair for the rest of the step after a
-    /// shock has closed its bond. `None` if no shock has.
+    /// Returns the capture speed with which a row was prepared, and the capture speed for the rest of the step after a
+    /// shock has closed the pair's bond, m/s. Returns `None` if no shock has closed the bond.
     fn capture_left<M: Model>(&self, problem: &StepProblem<M>, number: usize) -> Option<[f64; 2]> {
         let before = *problem.rows.captures.get(number)?;
         let ClosedBond { part, .. } = self.closed(number)?;
         Some([before, part * problem.law.capture_speed()])
     }
 
-    /// The remaining step for the bond of a row, if a shock closed the bond. A pair that already touched and was
-    /// bonded keeps its bond unchanged.
+    /// Returns the rest of the step for the bond of a row, if a shock closed that bond. A pair that touched before the
+    /// shock and was bonded keeps its bond unchanged.
     pub(in super::super) fn closed(&self, number: usize) -> Option<ClosedBond> {
         let pair = self.pairs.get(number)?;
         let closes = pair.impulse > 0.0 && (pair.touch == Touch::Met || !pair.is_bonded);
@@ -125,15 +127,17 @@ impl Shocks {
         })
     }
 
-    /// True if the step's impulse on a row acts only in the time after a meeting. A pair that met at t and was not
-    /// struck since has no gap at t, so its gap at the end is (Δt − t) v^n, and −½a(Δt − t)² more if it falls.
+    /// True if the impulse of the step on a row acts only after a meeting. A pair that met at the time t, and whose
+    /// grains were not struck later, has the gap 0 at t. So its gap at the end of the step is (Δt − t) v^n, minus ½a(Δt
+    /// − t)² if its grain falls.
     fn acts_late(&self, number: usize, i: usize, j: Option<usize>) -> bool {
         let pair = &self.pairs[number];
         pair.touch == Touch::Met && pair.impulse > 0.0 && self.since(i, j) <= pair.struck_at
     }
 
-    /// Records a solved step. Its impulse λ on a pair that met at t moves grains only for the remaining time, and not
-    /// by Δt·λ. Also adds the impulses of shocks and step to the sums of the contacts.
+    /// Records the results of a solved step. The impulse λ of the step on a pair that met at the time t moves its
+    /// grains only for the rest of the step, and not by Δt·λ. Also adds the impulses of shocks and step to the sums of
+    /// the contacts.
     pub(in super::super) fn finish<M: Model>(
         &mut self,
         problem: &StepProblem<M>,
@@ -168,8 +172,8 @@ impl Shocks {
         }
     }
 
-    /// Moves grains by the part of their displacement in the step that their last velocity does not give, because of
-    /// shocks and falling.
+    /// Moves each grain by the part of its displacement in the step that its last velocity does not give, because of
+    /// shocks and free fall.
     pub(in super::super) fn shift(&self, world: &mut World) {
         let grains = &mut world.grains;
         for (index, body) in self.bodies.iter().enumerate() {

@@ -1,51 +1,55 @@
-//! The shocks of a step under the law `range`.
+//! Shocks (instantaneous collisions) of a step under the law `range`.
 //!
-//! Collisions are instantaneous: gravity and bonds have finite forces, and so no effect in zero time. So before the
-//! step proper, colliding grains are brought to the velocities after their collisions, without gravity and cohesion.
-//! A contact that closes with u bounces,
+//! Collisions are instantaneous, so gravity and bonds have no effect on them, because their forces are finite. So each
+//! step begins with its shocks: without gravity and cohesion, colliding grains get the velocities that they have after
+//! their collisions. A contact that closes with the normal velocity u⁻ bounces with the restitution ρ and ends with u⁺,
 //!
 //! > 0 ≤ P_n ⟂ u⁺ + ρ u⁻ ≥ 0.
 //!
-//! The step then continues from v⁺, without bounces.
+//! The step then continues from the velocities v⁺ after the shocks, without bounces.
 //!
-//! **A pair that meets within the step** bounces in it, with its full speed u at the meeting, along its normal at the
-//! meeting (`contact::approach`). If it were slowed down to close its gap, and bounced in the next step, it would
-//! have the restitution φρ, with φ the fraction of the step that the gap takes: any value from 0 to ρ. An impulse at
-//! the time t moves a grain only for the rest of the step,
+//! **A pair that meets within the step** bounces within this step, with its full speed u at the meeting, along its
+//! normal at the meeting (`contact::approach`). The alternative would be to slow the pair down so that it closes its
+//! gap in this step and bounces in the next step. Its restitution would then be φρ, where φ is the fraction of the step
+//! in which the gap closes: any value from 0 to ρ. An impulse at the time t changes a velocity by Δv and moves the
+//! grain only for the rest of the step,
 //!
 //! > x^n = x + Δt v^n − Σ t Δv,
 //!
-//! so that a grain has straight paths before and after, and meets others at its actual place. The sum is the `offset`
-//! of a grain. The bond of a meeting exists from t on.
+//! so that a grain has straight paths before and after the shock, and meets other grains at its actual place. The field
+//! `offset` of a grain is this sum −Σ t Δv. The bond of the pair exists from t on.
 //!
-//! **Sequence.** A pass takes the meetings that are the first of both their grains, because a grain deflected by
-//! another collision is not struck at its former place. The next pass examines the pairs of struck grains again.
-//! Contacts that touch at that time are struck together with the meeting, all at once, as under `moreau`: in a row of
-//! touching balls at rest all balls fly off together, while balls with gaps transmit the shock and only the last one
-//! flies off. Meetings at different times that reach the same touching grains are struck at the first of these times.
+//! **Sequence.** A pass takes the meetings that are the first for both grains, because a grain that another collision
+//! deflects first does not arrive at its predicted place. The next pass examines the pairs of struck grains again.
+//! Contacts that touch at the time of a meeting and are connected to it are struck together with it, all at once, as
+//! under `moreau`. So in a row of touching balls at rest all balls fly off together, while balls with gaps transmit the
+//! shock and only the last ball flies off. If several meetings at different times reach the same touching grains, all
+//! of them are computed at the first of these times.
 //!
-//! **Gravity.** An unsupported grain falls on the parabola x + v s + ½a s², however it is divided into steps: the
-//! excess of the displacement by the last velocity, Δt v^n − ½aΔt², is subtracted. If the grain meets a fixed body,
-//! u = v_n + a_n t, and it gets v⁺ such that with the gravity of the whole step it ends with the gravity since the
-//! meeting: v⁺ + a_n t = −ρu. The works are those at the speeds of the meeting. A supported grain counts as held, as
-//! far as is known before the step is solved, and has u = v_n.
+//! **Gravity.** An unsupported grain falls on the parabola x + v s + ½a s² (time s, acceleration a), into however many
+//! steps the fall is divided. The displacement by the last velocity alone would exceed the parabola by Δt v^n − ½aΔt²,
+//! so this excess is subtracted. If the grain meets a fixed body at the time t, the closing velocity is u = v_n + a_n
+//! t. The step adds the gravity of the whole step to v⁺, but only gravity after the meeting should count. So v⁺ is
+//! chosen such that v⁺ + a_n t = −ρu. Works are computed with the speeds at the meeting. A supported grain counts as
+//! held, as far as this is known before the step is solved, and has u = v_n.
 //!
-//! **Bonds.** A bond with stretch s returns C₀s until its pair meets: u² = v_n² + 2C₀s/m_ij.
+//! **Bonds.** A bond with the stretch s gives the energy C₀s back before its pair meets: u² = v_n² + 2C₀s/m_ij.
 //!
-//! **Why shocks are separate from the step.** If bounces were required together with v_n ≥ 0 of opening contacts, the
-//! problem might have no solution: two grains that rattle between others may each have to separate while neither can.
-//! On their own, v⁺ = −ρ v⁻ of all grains satisfies every contact of the shocks, and v = 0 every contact of the step.
-//! For this, opening contacts have their term too: they may close by ρ v_n⁻, and are struck by the next pass if they
-//! do.
+//! **Why shocks are separate from the step.** If a single problem required both bounces and v_n ≥ 0 of opening
+//! contacts, it might have no solution: two grains that rattle between other grains may both have to separate, but have
+//! no room. In separate problems, v⁺ = −ρ v⁻ of all grains satisfies every contact of the shocks, and v = 0 every
+//! contact of the step. For this, opening contacts have a term in the shocks, too: they may close by ρ v_n⁻, and are
+//! struck by the next pass if they do.
 //!
-//! **Walls driven by a force** take part in no shock: an impact would change the wall's speed, and so the times of
-//! all its later meetings. The step proper stops grains that reach such a wall, and the wall's unknown speed takes up
-//! their momentum. So momentum and energy balance, but nothing bounces off such a wall.
+//! **Walls driven by a force** take part in no shock, because an impact would change the speed of the wall, and so the
+//! times of all its later meetings. Instead the step itself stops grains that reach such a wall, and the wall's unknown
+//! speed takes up their momentum. So momentum and energy balance, but grains do not bounce off such a wall.
 //!
-//! **No energy is gained** by a pass without friction, for the reason given in `remedies::sequential_impacts`.
+//! **A pass without friction creates no energy**, for the reason given in `remedies::sequential_impacts`.
 //!
-//! **Tolerance.** The same as that of the step. With a larger tolerance, and the remaining approach left to the step,
-//! shocks cost less, but slump may then depend on Δt. A pair that shares its grains with no other is solved exactly.
+//! **Tolerance.** Shocks are solved to the tolerance of the step. With a larger tolerance the step would have to stop
+//! the remaining approach; shocks would cost less, but the slump might depend on Δt. A pair whose grains are in no
+//! other shock is solved exactly.
 
 mod hand_over;
 mod next_impacts;
@@ -65,28 +69,30 @@ use crate::solver::{
 };
 use crate::world::World;
 
-/// Limit for the passes. Contacts that still close are then stopped by the step. If smaller, restitution is lost when
-/// many grains meet in a step; if larger, a wedge of grains that bounces ever faster takes long.
+/// Largest number of passes in a step. Contacts that still close after the last pass are stopped by the step, without a
+/// bounce. With a smaller value, restitution is lost if many grains meet in a step; with a larger value, a wedge of
+/// grains that bounces ever faster costs much time.
 const MOST_PASSES: u32 = 24;
 
-/// Speed, relative to the fastest shock of the step, above which contacts that were struck and close again are struck
-/// once more. If smaller, clusters of touching grains need more passes; if larger, restitution is lost in them.
+/// Closing speed, divided by the fastest shock of the step, above which contacts of struck grains are struck again.
+/// With a smaller value, clusters of touching grains need more passes; with a larger value, restitution is lost in
+/// clusters.
 const LEAST_AGAIN: f64 = 1e-3;
 
-/// Approach speed, in steps of gravity, below which grains rest on bodies that they touch. If smaller, grains of a
-/// pile at rest would count as falling; if larger, a ball that has just come down would not have the speed of its
-/// fall.
+/// Speed of approach below which a grain rests on a body that it touches, in units of the speed that gravity adds in a
+/// step. With a smaller value, grains of a pile at rest would count as falling; with a larger value, a ball that has
+/// just come down would not have the speed of its fall.
 const RESTS_BELOW: f64 = 2.0;
 
-/// Meetings within this fraction of Δt happen at once, so that symmetric motions stay symmetric.
+/// Fraction of Δt within which meetings count as simultaneous, so that symmetric motions stay symmetric.
 const SAME_MOMENT: f64 = 1e-6;
 
-/// A time that is never reached.
+/// Stands for a time that is never reached.
 const NEVER: f64 = f64::INFINITY;
 
-/// Takes a prepared problem through the shocks of its step; afterwards its bodies begin with v⁺. Returns the results
-/// of the shocks, if there were any. Their `gravity_work` subtracts the work of gravity before meetings, because the
-/// step counts it again.
+/// Computes the shocks of a step. Afterwards the bodies of the problem begin with the velocities v⁺ after the shocks.
+/// Returns the works and reports of the shocks, or `None` without shocks. Their `gravity_work` contains, with a minus
+/// sign, the work of gravity before meetings, because the step counts this work again.
 pub(super) fn pass<M: Model>(
     stage: &mut Stage<'_, M>,
     shocks: &mut Shocks,
@@ -117,54 +123,55 @@ pub(super) fn pass<M: Model>(
     result
 }
 
-/// State of a pair during the shocks.
+/// State of a pair of bodies during the shocks.
 #[derive(Clone, Copy, Debug)]
 struct ShockPair {
     contact: Contact,
     is_bonded: bool,
-    /// Stretch of its bond, m.
+    /// Stretch of the pair's bond, m.
     stretch: f64,
-    /// Normal n, from j to i: at the beginning of the step, or at its last meeting.
+    /// Unit normal n, from j to i: at the beginning of the step, or at the last meeting of the pair.
     normal: DVec2,
-    /// The gap along n at the beginning of the step, m. For a pair that has met, the value that makes it close at the
-    /// meeting.
+    /// Gap along n at the beginning of the step, m. After a meeting: the value with which the gap is 0 at the time of
+    /// the meeting.
     gap: f64,
-    /// Change of the gap by offsets, m.
+    /// Change of the gap because shocks have changed the paths of the two grains, m.
     shift: f64,
-    /// Normal velocity v_n, relative to a moving wall, m/s.
+    /// Normal velocity v_n of the pair, relative to the wall if the other body is a moving wall, m/s.
     speed: f64,
-    /// Acceleration a_n of a grain that falls on a fixed body, m/s²; otherwise 0.
+    /// Acceleration a_n along n of a grain that falls on a fixed body, m/s²; 0 for other pairs.
     acceleration: f64,
     touch: Touch,
     next: NextImpact,
-    /// Its role in the present pass.
+    /// Role of the pair in the present pass.
     role: Role,
-    /// Total λ_n of its shocks, m/s.
+    /// Sum of the normal impulses of the pair's shocks, divided by the effective mass, m/s.
     impulse: f64,
-    /// Time of its last shock, s.
+    /// Time of the pair's last shock since the beginning of the step, s.
     struck_at: f64,
-    /// Velocity that gravity had given it by then, m/s.
+    /// Velocity that gravity had given the pair by the time of this shock, m/s.
     gained: f64,
 }
 
-/// State of contact of a pair.
+/// Whether and since when a pair touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Touch {
     Apart,
     FromStart,
-    /// The pair closed a gap within the step.
+    /// The pair met within the step: it closed a gap.
     Met,
 }
 
 /// Next impact of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum NextImpact {
-    /// To be found, because its bodies' velocities have changed; or never searched for.
+    /// The next impact is not known: it was not searched for yet, or the velocities of the two bodies have changed
+    /// since.
     Unknown,
     Never,
-    /// The pair touches, and closes from this time (s) on.
+    /// The pair touches, and closes from this time on, s.
     Closes(f64),
-    /// The pair meets.
+    /// The pair has a gap that closes: it meets at the time `secs` (s) with the normal `normal`.
     Meets {
         secs: f64,
         normal: DVec2,
@@ -175,72 +182,76 @@ enum NextImpact {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Role {
     Apart,
-    /// The pair touches, and is connected to a struck pair.
+    /// The pair touches, and is connected through touching pairs to a struck pair.
     Joined,
-    /// Its impact is the next one of both its grains.
+    /// The pair is struck: its impact is the next impact of both its grains.
     Struck,
 }
 
 /// State of a grain during the shocks.
 #[derive(Clone, Copy, Debug)]
 struct ShockBody {
-    /// Offset −Σ t Δv, one entry per degree of freedom, m.
+    /// Offset −Σ t Δv of the grain's path by its shocks, each a change of velocity Δv at a time t, m. One entry per
+    /// degree of freedom.
     offset: [f64; 3],
-    /// Change of the offset in the last pass, m.
+    /// Change of this grain's path offset in the last pass, m.
     shift: DVec2,
-    /// Time of its last shock, s.
+    /// Time of the grain's last shock, s.
     since: f64,
-    /// Time of its next shock, s, or [`NEVER`].
+    /// Time of the grain's next shock, s, or [`NEVER`].
     next: f64,
     struck_in_step: bool,
     struck_in_pass: bool,
-    /// Velocity change by gravity in the step, m/s.
+    /// Change of the grain's velocity by gravity in the whole step, m/s.
     gain: [f64; 3],
-    /// True if it rests on a body or is bonded, and so does not fall freely.
+    /// True if the grain rests on a body or is bonded, and so does not fall freely.
     is_supported: bool,
-    /// The part of its displacement that the step's last velocity does not give, m: −½aΔt² for a freely falling
-    /// grain, and −Σ tλ of the step's impulses on pairs that met.
+    /// Displacement in the step that the velocity at its end does not give, m: −½aΔt² for a freely falling grain, and
+    /// −Σ tλ of the step's impulses on pairs that met at a time t.
     rest_of_way: DVec2,
-    /// A grain of its cluster, the grains that are struck together.
+    /// Next grain on the way to the representative grain of the cluster. A cluster is a set of grains that are struck
+    /// together.
     root: u32,
-    /// For a root: the time of the cluster's shock, s, and the number of its rows.
+    /// For the representative grain of a cluster: the time of the cluster's shock, s, and the number of its rows.
     cluster: (f64, u32),
 }
 
-/// Data of shocks. Memory is kept from one step to the next.
+/// Data of the shocks of a step. The vectors keep their memory from one step to the next.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Shocks {
     numbers: StepNumbers,
     pairs: Vec<ShockPair>,
     bodies: Vec<ShockBody>,
-    /// Impulses of shocks, by row, and of the step, by contact, each along its normal at the time.
+    /// Impulses of the shocks, with the row of each, and impulses of the step, one per contact. Each is stored with its
+    /// normal.
     of_shocks: Vec<(usize, (DVec2, Impulse))>,
     of_step: Vec<(DVec2, Impulse)>,
-    /// Largest error of a contact in a step that is solved to its residual, N·s.
+    /// Largest error of a contact in a step that is solved to its residual tolerance, N·s.
     least: f64,
-    /// Smallest m_ij times closing speed (m/s), and smallest closing speed, for which a touching contact is struck.
-    /// Above the remaining error of solves.
+    /// Smallest effective mass times closing speed (N·s) and smallest closing speed (m/s) with which a touching contact
+    /// is struck. Both exceed the errors of solves.
     least_momentum: f64,
     least_closing: f64,
-    /// Fastest shock of the step so far, m/s.
+    /// Closing speed of the fastest shock of the step so far, m/s.
     fastest: f64,
 }
 
-/// Inputs of the shocks.
+/// Inputs for the calculation of shocks.
 struct ShockInputs<'a, M: Model> {
     problem: &'a StepProblem<M>,
     world: &'a World,
     candidates: &'a Candidates,
 }
 
-/// The grains of row `number`: i, and j unless it is fixed.
+/// Returns the grains of row `number`: grain i, and grain j unless the other body is fixed.
 fn grains<M: Model>(problem: &StepProblem<M>, number: usize) -> (usize, Option<usize>) {
     let row = problem.rows.get(number);
     let is_pair = number >= problem.rows.fixed.len();
     (row.i as usize, is_pair.then_some(row.j as usize))
 }
 
-/// ‖m_n (v_n^free + term of the law)‖ of a problem, N·s, the scale of its residual.
+/// Returns the scale of a problem's residual: the norm ‖m_n (v_n^free + term)‖ of the normal impulses that would stop
+/// the free velocities, N·s. `term` is the term that the contact law adds to v_n.
 fn scale<M: Model>(problem: &StepProblem<M>) -> f64 {
     let mut squared = 0.0;
     for_each_row(problem, |_, row, motion| {
@@ -250,20 +261,21 @@ fn scale<M: Model>(problem: &StepProblem<M>) -> f64 {
     squared.sqrt()
 }
 
-/// The normal of a row, and its impulse from (λ_n, λ_t), m/s.
+/// Returns the normal of a row, and the impulse of a contact from the impulses `reduced` by the effective mass, m/s.
 fn along_normal<M: Model>(row: &Row<M>, reduced: [f64; 2]) -> (DVec2, Impulse) {
     let [normal, tangential] = reduced.map(|along| row.effective_mass * along);
     (M::components(row.normal).into(), Impulse { normal, tangential })
 }
 
-/// The components along x and y.
+/// Returns the components of a body's velocity along x and y.
 fn along_axes<M: Model>(body: &M::Body<f64>) -> DVec2 {
     let [x, y, _] = M::coordinates(body);
     if M::AXES == 1 { DVec2::new(x, 0.0) } else { DVec2::new(x, y) }
 }
 
 impl ShockBody {
-    /// A grain without shocks so far, from its velocities before the step and after gravity alone.
+    /// Creates the state of a grain that no shock has struck yet, from its velocities at the beginning of the step and
+    /// after the gravity of the whole step.
     fn untouched<M: Model>(before: &M::Body<f64>, free: &M::Body<f64>) -> Self {
         let [before, free] = [before, free].map(M::coordinates);
         Self {
@@ -307,7 +319,7 @@ impl Shocks {
                 let rests = touches && speed.abs() <= RESTS_BELOW * libm::hypot(x, y);
                 bodies[grain].is_supported |= rests || is_cohesive && is_bonded;
             }
-            // The step proper stops grains that reach a driven wall (see the module).
+            // Contacts with driven walls take no part in shocks; the step itself stops grains that reach such a wall.
             let touches = touches && !problem.gives_way(number);
             pairs.push(ShockPair {
                 contact,
@@ -341,7 +353,7 @@ impl Shocks {
 }
 
 impl NextImpact {
-    /// Its time, s, or [`NEVER`].
+    /// Returns the time of the impact, s, or [`NEVER`].
     fn secs(self) -> f64 {
         match self {
             Self::Unknown | Self::Never => NEVER,
@@ -351,7 +363,7 @@ impl NextImpact {
 }
 
 impl ShockPair {
-    /// The gap along the normal at a time, m. It never exceeds the gap itself.
+    /// Returns the gap along the pair's normal at a time, m. The true gap is never smaller.
     fn gap_at(&self, secs: f64) -> f64 {
         self.gap + self.shift + secs * (self.speed + 0.5 * self.acceleration * secs)
     }

@@ -1,4 +1,4 @@
-//! Selection of the pairs that are struck next, and of the contacts struck with them.
+//! Selects the pairs that are struck next, and the contacts that are struck with them.
 
 use glam::DVec2;
 
@@ -11,7 +11,7 @@ use crate::sim::steppers::range::step_numbers::StepNumbers;
 use crate::solver::{Model, StepProblem};
 
 impl Shocks {
-    /// Finds the next impact of each pair, and returns the first time of these, s.
+    /// Finds the next impact of each pair, and returns the time of the first impact of all, s.
     pub(super) fn find_next<M: Model>(&mut self, at: &ShockInputs<'_, M>) -> f64 {
         let mut first = NEVER;
         for number in 0..self.pairs.len() {
@@ -27,7 +27,8 @@ impl Shocks {
         first
     }
 
-    /// Acceleration a_n, m/s², of a grain that falls on a fixed body and has not met it yet.
+    /// Returns the acceleration a_n along the normal, m/s², of a grain that falls on a fixed body and has not met it
+    /// yet; 0 for other pairs.
     fn acceleration<M: Model>(&self, problem: &StepProblem<M>, number: usize) -> f64 {
         let (i, j) = grains(problem, number);
         let pair = &self.pairs[number];
@@ -37,12 +38,12 @@ impl Shocks {
         pair.normal.dot(self.fall::<M>(i)) / self.numbers.time_step_secs
     }
 
-    /// Velocity change of a grain by gravity in the step, m/s.
+    /// Returns the change of a grain's velocity by gravity in the whole step, m/s.
     fn fall<M: Model>(&self, grain: usize) -> DVec2 {
         along_axes::<M>(&M::from_coordinates(self.bodies[grain].gain))
     }
 
-    /// Motion of the grain of a row relative to the other body.
+    /// Returns the motion of the grain of row `number` relative to the other body.
     pub(super) fn course<M: Model>(
         &self,
         problem: &StepProblem<M>,
@@ -68,13 +69,13 @@ impl Shocks {
         RelativeMotion { offset, velocity, acceleration }
     }
 
-    /// The time since which both grains of a pair have had their present velocities, s.
+    /// Returns the time since which both grains of a pair have had their present velocities, s.
     pub(super) fn since(&self, i: usize, j: Option<usize>) -> f64 {
         j.map_or(0.0, |j| self.bodies[j].since).max(self.bodies[i].since)
     }
 
-    /// True if a pair touches at the last shock of its grains. If other grains have struck them since the pair met,
-    /// its normal has changed.
+    /// True if a pair touches at the time of the last shock of its grains. The normal has changed if other grains have
+    /// struck the pair since it met; then the gap is computed along the new normal.
     pub(super) fn is_in_touch<M: Model>(&self, at: &ShockInputs<'_, M>, number: usize) -> bool {
         let pair = &self.pairs[number];
         let (i, j) = grains(at.problem, number);
@@ -86,7 +87,7 @@ impl Shocks {
         end.flatten().is_none_or(|(_, gap)| gap <= touch)
     }
 
-    /// Normal and gap of a pair at a time, s.
+    /// Returns the normal and the gap (m) of a pair at the time `secs`, s.
     pub(super) fn approach<M: Model>(
         &self,
         at: &ShockInputs<'_, M>,
@@ -97,7 +98,7 @@ impl Shocks {
         self.course(at.problem, number).approach(at.world, at.candidates, contact, secs, M::AXES)
     }
 
-    /// The next impact of a pair.
+    /// Returns the next impact of a pair.
     fn next_of<M: Model>(&self, at: &ShockInputs<'_, M>, number: usize) -> NextImpact {
         let pair = &self.pairs[number];
         let (i, j) = grains(at.problem, number);
@@ -111,7 +112,7 @@ impl Shocks {
                 -pair.speed > least.max(self.least_closing) && momentum > self.least_momentum;
             return if closes { NextImpact::Closes(from) } else { NextImpact::Never };
         }
-        // The gap is at least as large as its tangents.
+        // The true gap is at least as large as its linear approximations, so it cannot close if they do not.
         let [begin, end] = [from, self.numbers.time_step_secs].map(|secs| pair.gap_at(secs));
         if begin > 0.0 && end > 0.0 && pair.acceleration <= 0.0 {
             return NextImpact::Never;
@@ -119,7 +120,7 @@ impl Shocks {
         self.meeting(at, number, from).unwrap_or(NextImpact::Never)
     }
 
-    /// The meeting of a pair after the time `from` (s), if there is one.
+    /// Returns the meeting of a pair after the time `from` (s), or `None` if the pair does not meet within the step.
     fn meeting<M: Model>(
         &self,
         at: &ShockInputs<'_, M>,
@@ -133,7 +134,8 @@ impl Shocks {
         Some(NextImpact::Meets { secs, normal })
     }
 
-    /// Finds the exact time at which a pair closes that touches within the tolerance and is struck alone.
+    /// Finds the exact time at which a pair closes that touches within the tolerance. Only for pairs that are struck
+    /// alone, that is without a common grain with another pair.
     pub(super) fn refine<M: Model>(&mut self, at: &ShockInputs<'_, M>) {
         for (number, row) in at.problem.rows() {
             let root = self.root(row.i as usize);
@@ -149,8 +151,9 @@ impl Shocks {
         }
     }
 
-    /// Chooses the pairs to be struck in this pass. `first` is the earliest time, s. Pairs are struck if they are the
-    /// next for both their grains, with all contacts that touch then and are connected to them.
+    /// Chooses the pairs that are struck in this pass. A pair is struck if its next impact is the next impact of both
+    /// its grains. All contacts that touch at that time and are connected to a struck pair are struck, too. `first` is
+    /// the time of the earliest impact, s.
     pub(super) fn choose<M: Model>(&mut self, problem: &StepProblem<M>, first: f64) {
         let StepNumbers { time_step_secs, touch, .. } = self.numbers;
         for (index, body) in self.bodies.iter_mut().enumerate() {
@@ -198,7 +201,7 @@ impl Shocks {
         }
     }
 
-    /// The representative grain of a grain's cluster.
+    /// Returns the representative grain of a grain's cluster, the grains that are struck together.
     pub(super) fn root(&mut self, grain: usize) -> usize {
         let mut at = grain;
         while self.bodies[at].root as usize != at {

@@ -1,4 +1,4 @@
-//! One pass: the struck pairs form their own problem, which is solved and its result stored.
+//! Solution of one pass of shocks: the struck pairs form a contact problem of their own.
 
 use glam::DVec2;
 
@@ -10,16 +10,19 @@ use crate::solver::{
     StopTest, measure, solve, sweep,
 };
 
-/// Number of rows above which shocks use only the tolerance of the step.
+/// Number of rows above which shocks are solved to the tolerance of the step and not to the smaller tolerance of
+/// [`TIGHTLY`].
 const FEW: usize = 16;
 
-/// Settings for few rows, which are solved to a small tolerance at almost no cost.
+/// Solver settings for shocks with few rows: a small tolerance costs almost nothing there.
 const TIGHTLY: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-13, 500);
 
-/// Largest tolerance of shocks, which are small compared with the step's own velocities.
+/// Largest tolerance of shocks, relative to the shocks themselves. It takes effect if shocks are small compared with
+/// the velocities of the step.
 const LOOSEST: f64 = 1e-3;
 
-/// Solves shocks that share grains, to the tolerance of a step whose contacts may err by `least` (N·s).
+/// Solves shocks that share grains, to the tolerance of the step. `least` is the largest error that a contact of the
+/// step may have, N·s.
 fn solve_together<M: Model>(
     part: &mut StepProblem<M>,
     memory: &mut Memory,
@@ -48,8 +51,8 @@ fn solve_together<M: Model>(
 }
 
 impl Shocks {
-    /// Fills `part` with the pairs struck in this pass: the pairs that are struck alone, or all others. Returns true
-    /// if there are any.
+    /// Fills `part` with pairs struck in this pass: if `alone` is true, the pairs that share no grain with another
+    /// struck pair, otherwise all other pairs. Returns true if there are any.
     pub(super) fn set_up<M: Model>(
         &mut self,
         problem: &mut StepProblem<M>,
@@ -80,12 +83,13 @@ impl Shocks {
         part.bodies.mean_mass = problem.bodies.mean_mass;
         part.law = problem.law.with_capture_speed(0.0);
         part.hold_errors_against(problem);
-        // Friction bounds of other shocks belong to their rows.
+        // Drop the friction bounds in `part`, which belong to the rows of earlier shocks.
         part.forget_bounds();
         true
     }
 
-    /// The term that a shock adds to v_n of a row in its law, m/s. Also turns the row to the normal of a meeting.
+    /// Returns the term that the law of a shock adds to the normal velocity v_n of a row, m/s. If the pair meets, also
+    /// turns the row to the normal at the meeting.
     fn strike_row<M: Model>(&mut self, problem: &mut StepProblem<M>, number: usize) -> f64 {
         let numbers = self.numbers;
         let mut wall_speed = problem.wall_speed(number);
@@ -119,8 +123,8 @@ impl Shocks {
         bounce + gained - wall_speed
     }
 
-    /// Solves the problem in `part` and stores the result. Pairs that are struck alone need one sweep, which is
-    /// exact.
+    /// Solves the problem in `part`, and stores its impulses and velocities. If pairs are struck alone (`alone`), a
+    /// single sweep is exact.
     pub(super) fn solve<M: Model>(
         &mut self,
         problem: &mut StepProblem<M>,
@@ -141,10 +145,10 @@ impl Shocks {
         let [wall_work, of_surfaces] =
             problem.surface_works_of(part, |number| part.rows.contacts[number] as usize);
         tangential_work += of_surfaces;
-        // Relative to the scale of the step.
+        // The residual is made relative to the scale of the whole step.
         let residual = residual * (settings.tolerance * scale(part) / self.least).min(1.0);
         if alone && settings.stop == StopTest::Residual {
-            // Exact except for rounding, which may exceed the tolerance.
+            // A single sweep is exact except for rounding, which may exceed the tolerance.
             report.converged = residual <= settings.tolerance;
         }
         let mut measures = Measures {
@@ -185,7 +189,7 @@ impl Shocks {
         }
     }
 
-    /// Updates the gaps and speeds of the pairs of struck grains.
+    /// Updates the gaps and speeds of all pairs of grains that were struck in this pass.
     pub(super) fn move_on<M: Model>(&mut self, problem: &StepProblem<M>) {
         let bodies = &self.bodies;
         let shift = |grain: usize| {
