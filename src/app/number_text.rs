@@ -26,12 +26,12 @@ pub(super) fn clock_text(secs: f64) -> String {
     if millis < 1e7 { format!("{millis:.1} ms") } else { format!("{millis:.3e} ms") }
 }
 
-/// A slump as the window shows it below a pile.
+/// Returns the text of a slump below a pile.
 pub(super) fn slump_text(slump: f64) -> String {
     format!("slump Δy {slump:.3}")
 }
 
-/// A field for a time in seconds, which shows and reads milliseconds.
+/// Makes a field for a time in seconds that shows and reads milliseconds.
 pub(super) fn time_field(secs: &mut f64) -> DragValue<'_> {
     DragValue::new(secs)
         .custom_formatter(|secs, _| written((1e9 * secs).round() / 1e6))

@@ -45,7 +45,8 @@ pub(crate) fn good(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(0x5c, 0xc9, 0x8a) } else { Color32::from_rgb(0x0a, 0x7d, 0x46) }
 }
 
-/// Colours of the compared worlds, which colour-blind people can distinguish. The first are not those of push and pull.
+/// Returns the colour of a compared simulation. Colour-blind people can distinguish the six colours; the first four differ
+/// from the colours of pushing and pulling forces.
 pub(crate) fn world_colour(index: usize, dark: bool) -> Color32 {
     const COLOURS: [u32; 6] = [0x009e73, 0xaa4499, 0xe69f00, 0x56b4e9, 0x0072b2, 0xd55e00];
     const ON_DARK: [u32; 6] = [0x2fc49a, 0xe09cc4, 0xf0bf4c, 0x56b4e9, 0x9a8cff, 0xe8772e];

@@ -56,8 +56,9 @@ struct FigureSeries {
 pub(super) struct TimeStepFigure(Vec<FigureSeries>);
 
 impl TimeStepFigure {
-    /// Makes the figure of the released piles. `None` if no pile has an interval yet. If worlds are compared, a series that
-    /// contains one of them has its colour; otherwise a series keeps its colour when the world changes.
+    /// Makes the figure of the piles that were released, each with its settings and its ensemble. Returns `None` if no pile
+    /// has an interval yet. If several simulations are visible (`worlds`), a series that contains one of them has its
+    /// colour; otherwise a series keeps its colour when the settings of the visible simulation change.
     pub(super) fn new<'a>(
         released: impl Iterator<Item = &'a Released>,
         worlds: &[Settings],
@@ -156,12 +157,12 @@ impl TimeStepFigure {
     }
 }
 
-/// Settings with the default Δt: the settings that a series shares.
+/// Returns these settings with the default Δt. All points of a series have the same settings apart from Δt.
 pub(super) fn without_time_step(settings: &Settings) -> Settings {
     settings.over(Settings::default().parameters.time_step_secs)
 }
 
-/// Text at a point: the point's name, which contains all values.
+/// Returns the text at a point: its name, which contains all values.
 fn hover_text(position: &HoverPosition<'_>) -> Option<String> {
     match position {
         HoverPosition::NearDataPoint { plot_name, .. } => Some((*plot_name).to_owned()),

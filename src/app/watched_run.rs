@@ -128,13 +128,13 @@ impl WatchedRun {
         self.frame.start.as_ref().map_or(1.0, |start| start.scene.duration_secs)
     }
 
-    /// True if the visible moment is the end of the scene, or later.
+    /// True if the visible moment is at the end of the scene or later.
     pub(crate) fn has_ended(&self) -> bool {
         let last = self.world().map(|world| world.snapshot.observables).unwrap_or_default();
         self.frame.time_secs() + 0.5 * last.time_step_secs >= self.duration_secs()
     }
 
-    /// The settings in which a world differs from the others.
+    /// Returns the settings in which a simulation differs from the other visible ones, as text.
     pub(crate) fn title(&self, world: usize) -> String {
         title_among(&self.wanted, world)
     }

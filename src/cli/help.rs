@@ -42,7 +42,7 @@ const RUN_EXAMPLES: &str = "Examples:
   slump run pile --bond 20 --frames out/              # pictures, and a row a step
   slump run pile --grains 500 --seed 3 --gif fall.gif # another pile, as an animation
   slump run mine.toml --dt 1e-3 --data run/           # a scene file; all grains and contacts
-  slump run cradle --frames out/ --save end.slump     # to be gone on with:
+  slump run cradle --frames out/ --save end.slump     # resume from this file:
   slump run --restart end.slump --duration 3 --frames more/";
 
 /// Returns the definition of the command line. `-h` shows its most important options; `--help` also states the settings

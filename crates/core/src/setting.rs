@@ -264,7 +264,7 @@ macro_rules! settings {
             $(#[doc = $help] $(#[$field_meta])* pub $field: $type,)*
         }
 
-        #[doc = concat!("What is given of [`", stringify!($Name), "`].")]
+        #[doc = concat!("Changes of [`", stringify!($Name), "`]; `None` leaves a setting unchanged.")]
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
         $vis struct $Changes {
             $(

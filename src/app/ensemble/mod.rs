@@ -217,8 +217,8 @@ impl Ensemble {
         Some(said(&self.summary(world)?, row.time_secs))
     }
 
-    /// Mean slump of the other piles that have reached a simulated time (s), half the width of its interval, and their
-    /// number.
+    /// Returns the mean slump of the other initial states that have reached a simulated time (s), half the width of its 95 %
+    /// interval, and the number of these states.
     pub fn mean_at(&self, world: usize, time_secs: f64) -> Option<(f64, f64, usize)> {
         let band = self.summary(world)?.band;
         let (mean, half) = band.at(time_secs)?;

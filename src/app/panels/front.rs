@@ -229,5 +229,5 @@ fn what_to_try(ui: &mut Ui, context: &PanelContext<'_>) {
     ui.add(egui::Label::new(RichText::new(text).small().weak()).truncate()).on_hover_text(text);
 }
 
-/// Hint on a value that is changed while time passes.
+/// Hint beside the sliders while they act on the running simulation.
 const LIVE: &str = "A new value acts from the next step on. A longer Δt in mid-fall presses fast grains into one another.";

@@ -264,7 +264,7 @@ fn scene_picture(
     };
     let camera = context.camera.for_picture(context.run.view(), &of_one, size_of_one, window);
     let worlds = context.run.frame.worlds.iter().enumerate().map(|(index, world)| {
-        // The note below a world: its slump, and below it the slump of other piles.
+        // The text below a simulation: its slump, and in the next line the mean slump of other initial states.
         let others = context.ensemble.said(&context.run.frame, index);
         let others = others.map_or(String::new(), |text| format!("\n{text}"));
         PicturedWorld {

@@ -64,7 +64,8 @@ fn pace(ui: &mut Ui, frame: &LiveFrame) {
     }
 }
 
-/// Shows the last action, a failure, or the reason not to trust the run. A lesson about failures shows no alarms.
+/// Shows the last action, a failure, a warning, or the reason not to trust the run. Lessons show no warnings, because some
+/// of them are about failures.
 fn messages(ui: &mut Ui, context: &mut PanelContext<'_>, trust: &TrustPanel) {
     if let Some((notice, left_secs)) =
         context.notice.as_ref().and_then(|it| Some((it, it.left_secs()?)))

@@ -120,7 +120,7 @@ impl TrustPanel {
         (run.command_line().as_ref() == Some(&budget.of)).then_some(told)
     }
 
-    /// The word in the status bar, which opens the panel.
+    /// Shows the question and its answer in a word. A click opens the panel.
     pub(super) fn button(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let (trust, reason) = self.verdict(context.run);
         let dark = ui.visuals().dark_mode;
@@ -136,13 +136,13 @@ impl TrustPanel {
         self.is_open ^= button.on_hover_text(hint).clicked();
     }
 
-    /// The reason not to trust the run, unless it cannot be shown yet.
+    /// Returns the reason not to trust the run; `None` if the answer is not "no".
     pub(super) fn reason_against(&self, run: &WatchedRun) -> Option<String> {
         let (trust, reason) = self.verdict(run);
         (trust == Trust::No).then_some(reason)
     }
 
-    /// The panel: the reason of the verdict, the bars of the budget, and the rest below.
+    /// Shows the panel: the reason of the answer, the bars of the error budget, how steps were solved, and warnings.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &PanelContext<'_>) {
         let (trust, reason) = self.verdict(context.run);
         ui.horizontal(|ui| {
@@ -238,7 +238,7 @@ impl TrustPanel {
     }
 }
 
-/// The question and its answer in a word. Of several worlds, the question is about the selected one.
+/// Returns the question and its answer in a word. If several simulations are visible, the question names the selected one.
 fn heading(run: &WatchedRun, trust: Trust) -> String {
     let asked = match run.compares() {
         true => format!("Can I trust run {}?", run.selected + 1),
@@ -247,7 +247,7 @@ fn heading(run: &WatchedRun, trust: Trust) -> String {
     format!("{asked} {}", trust.words())
 }
 
-/// The effects of an error budget as bars with their intervals, the largest first, as in the picture of `slump budget`.
+/// Shows the effects of an error budget as bars with their 95 % intervals, the largest first, as `slump budget` draws them.
 fn bars(ui: &mut Ui, answer: &BudgetAnswer) {
     let BudgetAnswer { quantity, within, within_text, effects, .. } = answer;
     let ends = effects.iter().flat_map(|effect| effect.adds).filter(|end| end.is_finite());

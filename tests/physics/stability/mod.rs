@@ -77,7 +77,8 @@ fn every_scene_breaks_a_method_at_its_last_level_and_none_at_its_first() {
             let here = quick().cells.iter();
             here.filter(move |cell| cell.scene == challenge.name && cell.level == level)
         };
-        let broken = of(hardest).any(|cell| cell.verdict != StabilityVerdict::Holds);
+        use StabilityVerdict::{Degrades, Fails};
+        let broken = of(hardest).any(|cell| matches!(cell.verdict, Degrades | Fails));
         assert_eq!(broken, !UNBROKEN.contains(&challenge.name), "{}", challenge.name);
         let held = of(challenge.quick[0]).any(|cell| cell.verdict == StabilityVerdict::Holds);
         let recovers = challenge.name == "overlap";

@@ -3,7 +3,7 @@
 
 use slump::scene::stability::{
     FRICTION_OF_ARCH, WALL_DISTANCE, arch, balls, blow, breaking_bond_of_cantilever, cantilever,
-    column_on_line, dilatancy, mass_ratio, thin_wall,
+    column_on_line, dilatancy, leaning_column, mass_ratio, thin_wall,
 };
 
 use slump::study::stability::contraction_of_column;
@@ -169,6 +169,20 @@ fn the_contacts_of_an_arch_carry_what_statics_says() {
         let expected = if crown { FRICTION_OF_ARCH } else { spring };
         let found = impulse.tangential.abs() / impulse.normal;
         assert!((found - expected).abs() < 1e-5, "crown {crown}: {found} for {expected}");
+    }
+}
+
+#[test]
+fn a_leaning_column_holds_above_a_rolling_friction_of_1_and_rolls_aside_below() {
+    for count in [1, 5, 20] {
+        for (rolling_friction, holds) in [(1.02, true), (0.98, false)] {
+            let mut scene = leaning_column(count);
+            scene.parameters.rolling_friction = rolling_friction;
+            let run = after(&scene, 200);
+            let top = count - 1;
+            let moved = run.place(top).distance(scene.grains[top].position) / scene.mean_diameter;
+            assert_eq!(moved < 1e-4, holds, "{count} discs at {rolling_friction}: {moved} d");
+        }
     }
 }
 

@@ -254,7 +254,8 @@ fn verdicts() -> String {
                 .map(|row| match row[3] {
                     "holds" => '●',
                     "degrades" => '◐',
-                    _ => '○',
+                    "fails" => '○',
+                    _ => '–',
                 })
                 .collect();
             let _ = write!(text, " {verdicts} |");

@@ -87,6 +87,12 @@ scenes! {
         "squeeze", "25 discs in a box that is a hundredth too small" => Ok(stability::squeeze(1e-2));
         "moving-walls", "18 discs between two walls that move in: each has one place to be" => Ok(stability::press());
         "logs" | "size-ratio" | "friction-limit", "a disc 20 times as large on two small ones" => Ok(stability::logs(20.0));
+        "leaning-column", "a column that leans, at 1.05 times the least rolling friction that holds it"
+            => {
+                let mut scene = stability::leaning_column(5);
+                scene.parameters.rolling_friction = 1.05 * stability::ROLLING_FRICTION_OF_COLUMN;
+                Ok(scene)
+            };
         "arch", "an arch of three discs at 1.05 times the least friction that holds it"
             => {
                 let mut scene = stability::arch();

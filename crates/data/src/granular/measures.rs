@@ -57,22 +57,23 @@ columns! {
         coordination: u32, "1";
         /// True for a rattler, a grain that transmits no force.
         rattler: bool, "1";
-        /// a: area of the grain's cell, as far as it belongs to the packing.
+        /// Area a of the grain's cell, as far as the cell belongs to the packing.
         cell_area: f64, "m²";
-        /// σ_xx of (1/a) Σ f ⊗ ℓ over its contacts, compression positive: f on the grain, ℓ from the contact point to
-        /// its centre. The mean over all grains, weighted by a, is the pile's. NaN without a cell.
+        /// Stress component σ_xx of σ = (1/a) Σ f ⊗ ℓ over the contacts of the grain, compression positive. f is the
+        /// force on the grain, and ℓ leads from the contact point to the grain's centre. The mean over all grains,
+        /// weighted by a, is the stress of the pile. NaN without a cell.
         stress_xx: f64, "N/m";
-        /// σ_xy: x of the forces, y of the branches.
+        /// Stress component σ_xy: x component of the forces, y component of the branch vectors.
         stress_xy: f64, "N/m";
-        /// σ_yx: y of the forces, x of the branches.
+        /// Stress component σ_yx: y component of the forces, x component of the branch vectors.
         stress_yx: f64, "N/m";
-        /// σ_yy.
+        /// Stress component σ_yy.
         stress_yy: f64, "N/m";
-        /// p = (σ_1 + σ_2)/2, half the trace of σ.
+        /// Pressure p = (σ_1 + σ_2)/2, half the trace of the stress σ.
         pressure: f64, "N/m";
-        /// q = (σ_1 − σ_2)/2 of the symmetric part of σ, never negative.
+        /// Deviatoric stress q = (σ_1 − σ_2)/2 of the symmetric part of the stress σ, never negative.
         deviator: f64, "N/m";
-        /// Area of its disc divided by the area of its cell; NaN if the cell is not closed.
+        /// Area of the grain's disc divided by the area of the grain's cell; NaN if the cell is not closed.
         solid_fraction: f64, "1";
     }
 }
@@ -111,56 +112,62 @@ columns! {
     /// Measures of the whole pile at one moment. An undefined measure is NaN, such as a mean over no contacts, or a
     /// principal direction if both principal values are equal.
     pub struct PileMeasures {
-        /// Number of grains that are not lost. The other measures are those of these grains.
+        /// Number of grains that are not lost. All other measures are those of these grains.
         grains: u32, "1";
         /// Number of touching contacts.
         contacts: u32, "1";
-        /// A: area of the grains' cells, as far as they belong to the packing.
+        /// Area A of the cells of all grains, as far as the cells belong to the packing.
         area: f64, "m²";
-        /// Area of the upright box around all grains.
+        /// Area of the axis-parallel box around all grains.
         box_area: f64, "m²";
-        /// σ_xx of σ = (1/A) Σ f ⊗ ℓ over all contacts, compression positive: f on grain i, ℓ to its centre from
-        /// that of the other grain, or from the touched point of a body that no grain moves.
+        /// Stress component σ_xx of σ = (1/A) Σ f ⊗ ℓ over all contacts, compression positive. f is the force on grain
+        /// i. ℓ leads to the centre of grain i from the centre of the other grain, or from the touched point of a body
+        /// that no grain moves.
         stress_xx: f64, "N/m";
-        /// σ_xy: x of the forces, y of the branches.
+        /// Stress component σ_xy: x component of the forces, y component of the branch vectors.
         stress_xy: f64, "N/m";
-        /// σ_yx: y of the forces, x of the branches. It equals σ_xy if the torques on each grain balance.
+        /// Stress component σ_yx: y component of the forces, x component of the branch vectors. It equals σ_xy if the
+        /// torques on each grain balance.
         stress_yx: f64, "N/m";
-        /// σ_yy.
+        /// Stress component σ_yy.
         stress_yy: f64, "N/m";
-        /// p = (σ_1 + σ_2)/2, half the trace of σ.
+        /// Pressure p = (σ_1 + σ_2)/2, half the trace of the stress σ.
         pressure: f64, "N/m";
-        /// q = (σ_1 − σ_2)/2 of the symmetric part of σ, never negative.
+        /// Deviatoric stress q = (σ_1 − σ_2)/2 of the symmetric part of the stress σ, never negative.
         deviator: f64, "N/m";
         /// Direction of the largest compression, anticlockwise from the x axis, at least 0 and below 180.
         principal_direction: f64, "degree";
-        /// (1/2A) Σ m |v − v̄|²: the part of the pressure that is the momentum carried by the fluctuations of grains;
-        /// no stress above contains it. v̄ is the mean flow at the grain, a linear fit to all grains less than 3 mean
-        /// diameters away, including the grain itself. With n of them, the factor n/(n − 3) corrects for the fit; with
-        /// fewer than 7, v̄ is the velocity of the centre of mass of all grains.
+        /// Kinetic pressure (1/2A) Σ m |v − v̄|²: the part of the pressure that is the momentum carried by the
+        /// fluctuations of grains. No stress component contains it. The mean flow v̄ at a grain is a linear fit to the
+        /// velocities of all grains less than 3 mean diameters away, including the grain itself. With n of them, the
+        /// factor n/(n − 3) corrects for the fit. With fewer than 7, v̄ is the velocity of the centre of mass of all
+        /// grains.
         kinetic_pressure: f64, "N/m";
-        /// F_xx of the fabric F = mean of n ⊗ n over all contacts; its trace is 1.
+        /// Fabric component F_xx. The fabric F is the mean of n ⊗ n over all contacts with the normals n; its trace is
+        /// 1.
         fabric_xx: f64, "1";
-        /// F_xy.
+        /// Fabric component F_xy.
         fabric_xy: f64, "1";
-        /// F_yy.
+        /// Fabric component F_yy.
         fabric_yy: f64, "1";
-        /// F_1 − F_2: 0 if the normals have no preferred direction, 1 if all have the same direction.
+        /// Fabric anisotropy F_1 − F_2, the difference of the principal values of the fabric: 0 if the normals have no
+        /// preferred direction, 1 if all have the same direction.
         fabric_anisotropy: f64, "1";
         /// Preferred direction of the normals, anticlockwise from the x axis, at least 0 and below 180.
         fabric_direction: f64, "degree";
         /// Mean number of contacts per grain, with other grains, fixed discs and boundaries.
         coordination: f64, "1";
-        /// Mean number of contacts per grain without rattlers, of contacts that bear a force and do not involve a
-        /// rattler.
+        /// Mean number of contacts per grain without rattlers. Only contacts count that bear a force and do not involve
+        /// a rattler.
         coordination_without_rattlers: f64, "1";
-        /// Number of rattlers: grains with fewer than two contacts that bear a force and are not with a rattler.
+        /// Number of rattlers: grains that transmit no force, because they have fewer than two force-bearing contacts
+        /// with bodies that are not rattlers.
         rattlers: u32, "1";
-        /// Area of all discs, overlaps counted twice, divided by the area of the box around them.
+        /// Area of all discs, overlaps counted twice, divided by the area of the axis-parallel box around them.
         solid_fraction_box: f64, "1";
         /// Area of the discs with closed cells divided by the area of their cells.
         solid_fraction_cells: f64, "1";
-        /// Number of grains with closed cells: their pores are too small for a mean grain.
+        /// Number of grains with closed cells: the pores around such a grain are too small for a mean grain.
         closed_cells: u32, "1";
         /// Fraction of the contacts that slip.
         sliding_share: f64, "1";
@@ -174,15 +181,18 @@ columns! {
         clusters: u32, "1";
         /// Number of grains in the largest cluster.
         largest_cluster: u32, "1";
-        /// ⟨|N|⟩, the mean over contacts that bear a force: the scale of P(f), f = N/⟨|N|⟩.
+        /// Mean magnitude ⟨|N|⟩ of the normal forces N of contacts that bear a force: the unit of the relative normal
+        /// forces f = N/⟨|N|⟩.
         mean_normal_force: f64, "N";
-        /// ⟨f²⟩: 1 if all forces are equal, 2 if they are distributed exponentially.
+        /// Second moment ⟨f²⟩ of the relative normal forces f: 1 if all forces are equal, 2 if they are distributed
+        /// exponentially.
         normal_force_second_moment: f64, "1";
-        /// ⟨|f|³⟩: 1 if all forces are equal, 6 if they are distributed exponentially.
+        /// Third moment ⟨|f|³⟩ of the relative normal forces f: 1 if all forces are equal, 6 if they are distributed
+        /// exponentially.
         normal_force_third_moment: f64, "1";
-        /// Largest |f|.
+        /// Largest magnitude |f| of the relative normal forces.
         largest_normal_force: f64, "1";
-        /// Fraction of the force-bearing contacts with |f| above 1: the strong network.
+        /// Fraction of the force-bearing contacts with a relative normal force |f| above 1: the strong network.
         strong_share: f64, "1";
     }
 }
@@ -239,9 +249,9 @@ columns! {
     /// Shape of a heap at one moment, as a triangle. The mass of the triangle and the mass of the heap have the same
     /// mean height above the lowest point and the same mean horizontal distance from the middle.
     pub struct HeapShape {
-        /// Angle of repose: slope of the sides of the triangle.
+        /// Angle of repose: slope of the sides of the triangle that represents the heap.
         repose_angle: f64, "degree";
-        /// Half the base of the triangle.
+        /// Run-out: half the base of the triangle that represents the heap.
         run_out: f64, "m";
     }
 }

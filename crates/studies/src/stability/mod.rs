@@ -137,7 +137,7 @@ const fn challenge(
 }
 
 /// All stability tests.
-pub static CHALLENGES: [Challenge; 28] = [
+pub static CHALLENGES: [Challenge; 29] = [
     challenge("column", "discs", &[5.0, 20.0, 80.0, 200.0], [0.01, 0.2], rest::column)
         .further(&[500.0]),
     challenge("sag", "sweeps a step", &[2000.0, 200.0, 20.0, 4.0], [0.01, 0.2], rest::sag)
@@ -168,6 +168,17 @@ pub static CHALLENGES: [Challenge; 28] = [
     challenge("friction-limit", TIME_STEP, LONG_STEPS, [0.05, 0.3], rest::friction_limit),
     challenge("arch", TIME_STEP, LONG_STEPS, [0.05, 0.3], rest::arch)
         .seen("The arch stands: its friction is 1.05 times the least that holds it.", seen::MOVED),
+    challenge(
+        "leaning-column",
+        "discs",
+        &[2.0, 5.0, 20.0, 80.0],
+        [0.05, 0.3],
+        rest::leaning_column,
+    )
+    .seen(
+        "The column holds: its rolling friction is 1.05 times the least that holds it.",
+        seen::MOVED,
+    ),
     challenge("repose", TIME_STEP, LONG_STEPS, [0.01, 0.2], rest::repose)
         .seen("The heap stands still.", seen::MOVED),
     challenge("repose-angle", "rows", &[2.0, 6.0, 12.0], [0.02, 0.2], rest::repose_angle)

@@ -120,11 +120,30 @@ pub(super) fn arch(trial: &Trial) -> Result<f64> {
     least_friction(trial, &scenes::arch(), scenes::FRICTION_OF_ARCH)
 }
 
+/// Returns the relative error of the rolling friction below which a leaning column rolls aside.
+pub(super) fn leaning_column(trial: &Trial) -> Result<f64> {
+    let right = scenes::ROLLING_FRICTION_OF_COLUMN;
+    let scene = with_sweeps(FEW_SWEEPS, scenes::leaning_column(trial.count()));
+    least(trial, &scene, right, |parameters| &mut parameters.rolling_friction)
+}
+
 fn least_friction(trial: &Trial, scene: &Scene, right: f64) -> Result<f64> {
+    let scene = with_time_step(trial, scene.clone());
+    least(trial, &scene, right, |parameters| &mut parameters.friction)
+}
+
+/// Returns the relative error of the smallest value of a parameter at which a scene stays at rest. `right` is the exact
+/// smallest value.
+fn least(
+    trial: &Trial,
+    scene: &Scene,
+    right: f64,
+    parameter: fn(&mut Parameters) -> &mut f64,
+) -> Result<f64> {
     let range = [right / FRICTION_RANGE, right * FRICTION_RANGE];
-    let least = threshold(range, PILE_HALVINGS, |friction| {
-        let mut scene = with_time_step(trial, scene.clone());
-        scene.parameters.friction = friction;
+    let least = threshold(range, PILE_HALVINGS, |value| {
+        let mut scene = scene.clone();
+        *parameter(&mut scene.parameters) = value;
         Ok(!slides(trial, scene)?)
     })?;
     Ok((least / right - 1.0).abs())

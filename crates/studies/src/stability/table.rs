@@ -6,7 +6,7 @@ use std::fmt;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{CHALLENGES, Challenge, Trial, VARIANTS};
+use super::{CHALLENGES, Challenge, DEFAULT, Trial, VARIANTS};
 use crate::chart::{self, Axis, Chart, INK, Layer, Rgb, Sheet};
 use crate::error::{Error, Result};
 use crate::harness::Change;
@@ -21,6 +21,8 @@ pub enum StabilityVerdict {
     Degrades,
     /// The answer is wrong.
     Fails,
+    /// The method does not support a part of the scene, such as rolling friction, and says so.
+    Refuses,
 }
 
 impl StabilityVerdict {
@@ -41,6 +43,7 @@ impl StabilityVerdict {
             Self::Holds => "holds",
             Self::Degrades => "degrades",
             Self::Fails => "fails",
+            Self::Refuses => "refuses",
         }
     }
 }
@@ -56,7 +59,8 @@ pub struct StabilityCell {
     pub level: f64,
     /// Verdict on the variant.
     pub verdict: StabilityVerdict,
-    /// Error with two digits, because further digits differ between builds of the program.
+    /// Error with two digits, because further digits differ between builds of the program. Empty if the method refuses the
+    /// scene.
     pub error: String,
 }
 
@@ -153,13 +157,18 @@ fn summary(levels: &[&StabilityCell]) -> (StabilityVerdict, Option<f64>) {
 }
 
 fn cell(challenge: &Challenge, trial: &Trial) -> Result<StabilityCell> {
-    let error = challenge.error(trial)?;
+    let (verdict, error) = match challenge.error(trial) {
+        Ok(error) => (StabilityVerdict::of(error, challenge.limits), format!("{error:.1e}")),
+        // The default accepts every scene, so the variant is the reason for the error.
+        Err(_) if trial.variant.name != DEFAULT => (StabilityVerdict::Refuses, String::new()),
+        Err(error) => return Err(error),
+    };
     Ok(StabilityCell {
         scene: challenge.name.to_owned(),
         method: trial.variant.name.clone(),
         level: trial.level,
-        verdict: StabilityVerdict::of(error, challenge.limits),
-        error: format!("{error:.1e}"),
+        verdict,
+        error,
     })
 }
 
@@ -179,6 +188,7 @@ impl fmt::Display for StabilityTable {
             write!(out, "{:SCENE_WIDTH$}", challenge.name)?;
             for variant in VARIANTS.iter() {
                 let (verdict, from) = summary(&self.levels(challenge, variant));
+                let from = from.filter(|_| verdict != StabilityVerdict::Refuses);
                 let from = from.map_or(String::new(), |level| format!(" {}", number(level)));
                 write!(out, "{:CELL_WIDTH$}", format!("{}{from}", verdict.name()))?;
             }
@@ -204,11 +214,11 @@ const WIDTH: u32 = 1200;
 const ROW: u32 = 32;
 const BELOW: u32 = 150;
 
-/// Colours of the verdicts "holds", "degrades" and "fails". They also differ in lightness.
-const COLOURS: [Rgb; 3] = [(206, 234, 214), (253, 226, 147), (240, 150, 130)];
+/// Colours of the verdicts "holds", "degrades", "fails" and "refuses". They also differ in lightness.
+const COLOURS: [Rgb; 4] = [(206, 234, 214), (253, 226, 147), (240, 150, 130), (232, 232, 232)];
 
 pub(super) fn colour(verdict: f64) -> Rgb {
-    COLOURS[(verdict as usize).min(2)]
+    COLOURS[(verdict as usize).min(3)]
 }
 
 /// Draws the table as a picture: blocks of columns, each block below its headers.
@@ -247,13 +257,14 @@ pub fn picture(table: &StabilityTable) -> Sheet {
                 });
                 let first = levels.iter().find(|cell| cell.verdict != StabilityVerdict::Holds);
                 let text = match (first.map(|cell| cell.level), from) {
+                    _ if verdict == StabilityVerdict::Refuses => verdict.name().to_owned(),
                     (Some(first), Some(worst)) if first == worst => {
                         format!("from {}", number(first))
                     }
                     (Some(first), Some(worst)) => {
                         format!("{}, {}", number(first), number(worst))
                     }
-                    _ => "holds".to_owned(),
+                    _ => verdict.name().to_owned(),
                 };
                 write(text, column, row);
             }
@@ -266,7 +277,7 @@ pub fn picture(table: &StabilityTable) -> Sheet {
         challenges.iter().map(|one| format!("{}: {}", one.name, one.driver)).collect();
     let caption = vec![
         "Green holds; yellow degrades and red fails, from that value of the parameter on. Two values: it degrades from \
-         the first on and fails from the second on."
+         the first on and fails from the second on. Grey: the method does not support rolling friction and refuses the scene."
             .into(),
         drivers.join("; "),
     ];

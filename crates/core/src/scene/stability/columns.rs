@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use super::{DIAMETER, GRAVITY, TOUCH, disc, half_space, on_floor};
+use super::{DIAMETER, GRAVITY, TOUCH, disc, half_space, on_floor, view};
 use crate::scene::Scene;
-use crate::world::{Grain, Gravity, Physics};
+use crate::world::{Disc, Grain, Gravity, Physics};
 
 /// Returns the scene of a column of n discs with mass m. The floor carries n·m·g, and the k-th contact above the
 /// floor carries (n − k)·m·g.
@@ -40,6 +40,29 @@ pub fn mass_ratio(ratio: f64) -> Scene {
     let heavy =
         Grain::at_rest(DIAMETER * DVec2::new(0.0, 1.0 + radius - 2.0 * TOUCH), DIAMETER * radius);
     on_floor("mass-ratio", vec![disc(0.0, 0.5 - TOUCH), heavy])
+}
+
+/// Smallest rolling friction at which [`leaning_column`] stays at rest.
+pub const ROLLING_FRICTION_OF_COLUMN: f64 = 1.0;
+
+/// Returns the scene of n discs on a fixed disc. All centres are on a line that leans from the vertical by the angle φ with
+/// tan φ = 1/(2n). Without rolling friction the column rolls aside, whatever its friction coefficient is.
+///
+/// Each disc has the weight w and the radius r. The contact below the k-th disc from the top carries k discs: N = k w cos
+/// φ and T = k w sin φ. The weight of these discs acts at the distance k r from the contact, so the contact must transmit
+/// the moment M = k² r w sin φ. Rolling friction allows |M| ≤ μ_r R N with the reduced radius R = r/2. So the lowest
+/// contact, k = n, decides, and the column holds if
+///
+/// > μ_r ≥ 2n tan φ = 1.
+pub fn leaning_column(count: usize) -> Scene {
+    let along = DVec2::new(0.5 / count as f64, 1.0).normalize() * (1.0 - TOUCH);
+    let place = |k: usize| DVec2::new(0.0, 0.5) + k as f64 * along;
+    let grains = (1..=count).map(|k| disc(place(k).x, place(k).y)).collect();
+    let mut scene = on_floor("leaning-column", grains);
+    scene.fixed_discs = vec![Disc { position: DIAMETER * place(0), radius: 0.5 * DIAMETER }];
+    let half = 0.5 * count as f64 + 1.0;
+    scene.view = view(DVec2::new(-half, -0.5), DVec2::new(half, count as f64 + 1.5));
+    scene
 }
 
 /// Number of discs below the heavy disc.

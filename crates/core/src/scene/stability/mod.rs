@@ -10,7 +10,10 @@ mod impacts;
 use glam::DVec2;
 
 pub use boxes::{press, pressed_places, pressing_secs, squeeze};
-pub use columns::{column, column_on_line, lift_off, logs, mass_ratio, overlapped};
+pub use columns::{
+    ROLLING_FRICTION_OF_COLUMN, column, column_on_line, leaning_column, lift_off, logs, mass_ratio,
+    overlapped,
+};
 pub use hanging::{breaking_bond, breaking_bond_of_cantilever, bridge, cantilever, hanging_chain};
 pub use heaps::{
     FRICTION_OF_ARCH, STEEPEST_DEGREES, arch, heap, heap_far_away, heap_of, heap_on_slope, lattice,
