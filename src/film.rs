@@ -18,8 +18,8 @@ use crate::output::{DraftFile, PendingFile, Texts, folder_of};
 pub(crate) const VIDEO_RATES_HZ: [f64; 2] = [1.0, 240.0];
 /// Shortest and longest side of a video, pixels. Encoders refuse longer sides.
 pub(crate) const VIDEO_SIDES: [u32; 2] = [16, 16_384];
-/// Encoders of ffmpeg for videos that browsers can play, with options for good quality. The first encoder that the
-/// installed ffmpeg contains is used.
+/// Encoders of ffmpeg for videos that browsers can play, in order of preference, with options for good quality. The
+/// first encoder that the installed ffmpeg has is used.
 const ENCODERS: [(&str, &[&str]); 4] = [
     ("libx264", &["-crf", "18"]),
     ("libopenh264", &["-b:v", "8M"]),
@@ -27,22 +27,24 @@ const ENCODERS: [(&str, &[&str]); 4] = [
     ("libvpx-vp9", &["-crf", "24", "-b:v", "0", "-cpu-used", "4"]),
 ];
 
-/// Hundredths of a second per second. GIF files give the duration of a picture in hundredths of a second.
+/// Conversion factor from seconds to hundredths of a second, the unit of durations in GIF files.
 const CENTISECS: f64 = 100.0;
 /// Shortest duration of a picture in a GIF, hundredths of a second. Viewers show pictures of shorter duration for a
 /// tenth of a second.
 const LEAST_CENTISECS: f64 = 2.0;
-/// Number of pixels from which the GIF encoder chooses the colours of a picture: it samples every n-th pixel. It
-/// samples all pixels of a small picture, because the legend's colours have few pixels.
+/// Number of sampled pixels from which the GIF encoder chooses the colours of a picture. It samples every n-th pixel,
+/// so that about this many are sampled. It samples all pixels of a small picture, because the colours of the legend
+/// have few pixels.
 const LOOKED_AT: u32 = 100_000;
-/// Largest n in this sampling: the encoder samples at least one in ten pixels.
+/// Largest distance n between two sampled pixels: the GIF encoder samples at least one in ten pixels.
 const MOST_PASSED: u32 = 10;
 
-/// A GIF animation that is being written. The file gets its name when it is finished.
+/// A GIF animation that is being written. The file gets its final name when the animation is finished.
 pub(crate) struct Animation {
     path: PathBuf,
     picture_centisecs: u16,
-    /// `encoder` and `draft` have handles of the same file, because the encoder owns the handle that it writes to.
+    /// The GIF encoder with a handle of the file; `draft` has another handle of the file, because the encoder owns its
+    /// handle.
     encoder: Option<Encoder<DraftFile>>,
     draft: PendingFile,
     pictures: usize,
@@ -52,8 +54,8 @@ pub(crate) struct Animation {
 }
 
 impl Animation {
-    /// Returns the possible frame rate nearest to `rate_hz`, Hz. Durations in a GIF are multiples of a hundredth of a
-    /// second.
+    /// Returns the frame rate of a GIF nearest to `rate_hz`, Hz. Durations of pictures in a GIF are multiples of a
+    /// hundredth of a second, so not every rate is possible.
     #[cfg(feature = "panels")]
     pub(crate) fn nearest_rate_hz(rate_hz: f64) -> f64 {
         CENTISECS / f64::from(Self::centisecs(rate_hz))
@@ -109,7 +111,7 @@ impl Animation {
         encoder.write_frame(&frame)
     }
 
-    /// Ends the animation and gives the file its name. Returns false if there was no picture and hence no file.
+    /// Ends the animation and gives the file its final name. Returns false if there was no picture and hence no file.
     pub(crate) fn finish(self) -> Result<bool> {
         // The encoder writes the end of the file when it is dropped.
         drop(self.encoder);
@@ -125,7 +127,8 @@ fn too_large() -> EncodingError {
         .into()
 }
 
-/// Refuses a file name that does not end with the ending of the file's format. Devices and pipes may have any name.
+/// Returns an error if a file name does not have the ending of the file's format, such as `.gif`. Devices and pipes may
+/// have any name.
 pub(crate) fn check_ending(option: &str, path: &Path, ending: &str, other: &str) -> Result<()> {
     let is_special = path.metadata().is_ok_and(|there| !there.is_file() && !there.is_dir());
     let has_ending = path.extension().is_some_and(|it| it.eq_ignore_ascii_case(ending));
@@ -137,7 +140,7 @@ pub(crate) fn check_ending(option: &str, path: &Path, ending: &str, other: &str)
     Err(Error::value(option, path.display(), allowed))
 }
 
-/// An MP4 video that is being written. The file gets its name when it is finished.
+/// An MP4 video that is being written. The file gets its final name when the video is finished.
 pub(crate) struct Video {
     path: PathBuf,
     rate_hz: f64,
@@ -152,8 +155,8 @@ impl Video {
         Ok(Self { path: path.to_owned(), rate_hz, ffmpeg: None })
     }
 
-    /// Adds a picture. All pictures must have the size of the first picture, and both sides must be even. The texts of
-    /// the first picture become the video's comment.
+    /// Adds a picture. All pictures must have the size of the first picture, and width and height must be even. The
+    /// texts of the first picture become the video's comment.
     pub(crate) fn add(&mut self, image: &RgbaImage, texts: &Texts) -> Result<()> {
         let added = match &mut self.ffmpeg {
             Some(ffmpeg) => ffmpeg.add(image),
@@ -163,7 +166,7 @@ impl Video {
         added.map_err(|error| Error::file(&self.path, error))
     }
 
-    /// Ends the video and gives the file its name. Returns false if there was no picture and hence no file.
+    /// Ends the video and gives the file its final name. Returns false if there was no picture and hence no file.
     pub(crate) fn finish(self) -> Result<bool> {
         let Some(mut ffmpeg) = self.ffmpeg else { return Ok(false) };
         ffmpeg.finish().map_err(|error| Error::file(&self.path, error))?;
@@ -174,7 +177,7 @@ impl Video {
     }
 }
 
-/// A running ffmpeg process. Dropping this value ends the process and deletes the temporary encoded file.
+/// A running ffmpeg process. When this value is dropped, the process ends and its temporary file is deleted.
 struct Ffmpeg {
     process: Child,
     /// Temporary file that ffmpeg writes. At the end ffmpeg inserts the index of pictures at the beginning of the file,
@@ -252,7 +255,8 @@ impl Drop for Ffmpeg {
     }
 }
 
-/// Returns the name and options of the first available encoder, or an error message that says which program is missing.
+/// Returns the name and options of the first video encoder of ffmpeg that is available, or an error message that says
+/// which program is missing.
 fn encoder() -> std::result::Result<(&'static str, &'static [&'static str]), &'static str> {
     static FOUND: OnceLock<std::result::Result<usize, &str>> = OnceLock::new();
     let find = || {
@@ -274,7 +278,8 @@ fn encoder() -> std::result::Result<(&'static str, &'static [&'static str]), &'s
     FOUND.get_or_init(find).map(|index| ENCODERS[index])
 }
 
-/// Checks that ffmpeg can encode videos. `given` is the value of the option that needs ffmpeg, for the error message.
+/// Checks that ffmpeg can encode videos. `given` is the user's value of the option that needs ffmpeg; the error message
+/// contains it.
 pub(crate) fn check_ffmpeg(given: impl std::fmt::Display) -> Result<()> {
     encoder().map(drop).map_err(|missing| {
         Error::value("video", given, format!("{missing}; a GIF and frames need nothing more"))
@@ -288,7 +293,8 @@ mod tests {
 
     use super::*;
 
-    /// A legend has only few pixels of a picture, but most of the picture's colours.
+    /// Tests that a GIF keeps the colours of the legend. A legend has only few pixels of a picture, but most of the
+    /// picture's colours.
     #[test]
     fn a_legend_of_colours_keeps_them_in_a_picture_of_any_size() {
         let folder = tempfile::tempdir().expect("a folder");

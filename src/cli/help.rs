@@ -8,13 +8,13 @@ use crate::config::Config;
 use crate::error::{Error, Result};
 use crate::scene::built_in;
 
-/// Options that the short help (`-h`) shows. The long help (`--help`) shows all options.
+/// Names of the options that the short help (`-h`) shows. The long help (`--help`) shows all options.
 const FIRST: [&str; 16] = [
     "scene", "grains", "seed", "preset", "duration", "stepper", "bond", "dt", "rho", "mu",
     "solver", "headless", "frames", "gif", "data", "help",
 ];
 
-/// Options that are allowed only with `--headless`.
+/// Names of the options that are allowed only with `--headless`.
 const HEADLESS: [&str; 13] = [
     "overwrite",
     "fps",
@@ -73,7 +73,8 @@ pub fn command() -> Command {
     tell(root, &told)
 }
 
-/// Changes the command `run` so that the scene is its first argument and `--headless`, which it implies, is hidden.
+/// Changes the command `run` so that the scene is its first argument and the option `--headless`, which `run` implies,
+/// is hidden.
 fn scene_first(run: Command) -> Command {
     let scene = |scene: Arg| {
         let scene = scene.long(None).index(1).value_name("SCENE").help_heading(None);
@@ -82,8 +83,8 @@ fn scene_first(run: Command) -> Command {
     run.mut_arg("scene", scene).mut_arg("headless", |arg| arg.hide(true)).after_help(RUN_EXAMPLES)
 }
 
-/// Applies `told` to the arguments of all commands that take a scene. A negative number is always parsed as a value, so
-/// that the option's own check refuses it with a clear message.
+/// Applies the function `told` to the arguments of all commands that take a scene. An argument that looks like a
+/// negative number is always parsed as a value, so that the option's own check refuses it with a clear message.
 fn tell(command: Command, told: &dyn Fn(Arg) -> Arg) -> Command {
     let command = command.mut_args(|arg| match arg.get_action().takes_values() {
         true => arg.allow_negative_numbers(true),

@@ -116,7 +116,7 @@ enum CliCommand {
     },
 }
 
-/// Exit code of a run that ends with an error, except a run that a signal ended.
+/// Exit code of a run that ends with an error, unless a signal ended the run.
 const REFUSED: u8 = 2;
 
 /// Runs the command line of this process. An error is reported as one sentence on stderr, with exit code 2. A run that
@@ -160,12 +160,13 @@ fn parse() -> std::result::Result<Option<Cli>, (u8, String)> {
 }
 
 /// Smallest stack of the main thread, bytes, with which the program starts. Measured runs needed between 512 and 768
-/// KiB. A window that opens a saved session needs more than 2 MiB, but a run without a window must not be refused
-/// because of that. Systems with windows usually have stacks of 8 MiB.
+/// KiB. A window that opens a saved session needs more than 2 MiB, but a run without a window must not be refused for
+/// that reason. The default stack is usually 8 MiB on systems with windows.
 #[cfg(target_os = "linux")]
 const LEAST_STACK_BYTES: u64 = 1 << 20;
 
-/// Refuses to start if the stack is too small, because a stack overflow would end the process without a message.
+/// Returns an error if the stack of the main thread is too small, because a stack overflow would end the process
+/// without a message.
 fn check_stack() -> Result<()> {
     #[cfg(target_os = "linux")]
     if let Some(bytes) = rustix::process::getrlimit(rustix::process::Resource::Stack).current {
@@ -435,11 +436,10 @@ impl ProblemCommand {
     }
 }
 
-/// Number of sweeps after which a solve is long enough to report its progress. With a smaller number, short solves also
-/// report.
+/// Number of sweeps after which a solve reports its progress. With a smaller number, short solves also report.
 const LONG_SOLVE_SWEEPS: u32 = 4_096;
 
-/// Prints the solutions that were found from several sets of initial impulses.
+/// Prints the solutions of a contact problem that were found from several sets of initial impulses.
 fn print_found(found: &[FoundSolution], starts: u32) {
     let solved = found.iter().filter(|solution| solution.is_solved).count();
     print_line(format_args!("starts          {starts}, under Coulomb's law"));
@@ -461,7 +461,7 @@ fn print_found(found: &[FoundSolution], starts: u32) {
     }
 }
 
-/// Reports the progress of a long solve, and ends the solve after a signal.
+/// Reports the progress of a long solve, and ends the solve if a signal has arrived.
 fn show_progress(progress: SolveProgress, tolerance: f64) -> ControlFlow<()> {
     let SolveProgress { sweeps, residual } = progress;
     if let Some(residual) = residual.filter(|_| sweeps >= LONG_SOLVE_SWEEPS) {
@@ -472,7 +472,7 @@ fn show_progress(progress: SolveProgress, tolerance: f64) -> ControlFlow<()> {
     caught_signal().map_or(ControlFlow::Continue(()), |_| ControlFlow::Break(()))
 }
 
-/// Prints a solution, with the limit of sweeps and the signal if one of them ended the solve early.
+/// Prints a solution. If the solve ended early, also prints its cause: the limit of sweeps or a signal.
 fn print_solution(solution: &Solution, max_sweeps: u32, signal: Option<Signal>) {
     let Solution { contacts, method, sweeps, factorisations, seconds, residual, .. } = solution;
     print_line(format_args!("contacts        {contacts}"));

@@ -256,7 +256,7 @@ fn secs_of(text: &str) -> std::result::Result<f64, String> {
     if secs > 0.0 && secs.is_finite() { Ok(secs) } else { Err(allowed()) }
 }
 
-/// Prints a command for each run of a study. A command that was stopped can be repeated.
+/// Prints one command for each run of a study. A command that was interrupted can be executed again.
 fn list_runs(study: &Path, runs: usize, out: &Path, quick: bool) -> Result<()> {
     let text = |path: &Path| {
         let allowed = "a name that is text";

@@ -1,4 +1,4 @@
-//! Computes the piles and the cradle of the paper and draws its Figs. 3, 4 and 7.
+//! Simulates the piles and the cradle of the paper and draws its Figs. 3, 4 and 7.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -39,7 +39,7 @@ struct FigureRun {
     recorded: Recorded,
 }
 
-/// Simulates the runs of the figures on all cores and draws the figures into `folder`.
+/// Simulates the runs of Figs. 3, 4 and 7 of the paper on all cores and draws the figures into `folder`.
 pub(super) fn draw(folder: &Path, earlier: EarlierFiles, renderer: RendererChoice) -> Result<()> {
     let mut renderer = Renderer::new(renderer)?;
     make_threads()?;
@@ -78,7 +78,7 @@ pub(super) fn draw(folder: &Path, earlier: EarlierFiles, renderer: RendererChoic
     Ok(())
 }
 
-/// Simulates all runs, starting with the most expensive run, so that at the end no core waits long for another core.
+/// Simulates the runs of all figures. The most expensive run starts first, so that at the end no core is idle for long.
 fn simulate(folder: &Path, runs: Vec<PaperRun>) -> Result<Vec<FigureRun>> {
     let steps = |run: &PaperRun| run.scene.duration_secs / run.scene.parameters.time_step_secs;
     let progress = Progress::new("simulating", runs.iter().map(|run| steps(run) as u64).sum());
@@ -105,7 +105,7 @@ fn simulate(folder: &Path, runs: Vec<PaperRun>) -> Result<Vec<FigureRun>> {
     runs
 }
 
-/// Recorder that keeps the snapshots of a run that the figures need, and writes its table of observables.
+/// Recorder of a run: keeps the snapshots that the figures need, and writes the table of observables.
 struct FigureRecorder<'a> {
     table: Option<ObservablesTable>,
     snapshots: Vec<Snapshot>,
@@ -127,9 +127,9 @@ impl Recorder for FigureRecorder<'_> {
 
 struct FigurePanel<'a> {
     run: &'a FigureRun,
-    /// Index of the displayed snapshot in the list of the run.
+    /// Index of the snapshot that the panel shows, in the run's list of snapshots.
     number: usize,
-    /// File name without its ending.
+    /// Name of the panel's file without its ending.
     name: String,
 }
 
@@ -217,7 +217,8 @@ impl FigureWriter<'_> {
         self.figure("fig7.png", &figure, &panels)
     }
 
-    /// Draws panels that are `width` pixels wide and as high as `view` needs, and writes each panel to a file.
+    /// Draws panels, each `width` pixels wide and as high as `view` (the visible part of the scene) needs, and writes
+    /// each panel to a file.
     fn panels(
         &mut self,
         [rows, columns]: [usize; 2],
@@ -242,7 +243,8 @@ impl FigureWriter<'_> {
         Ok(PanelGrid::new(rows, columns, images))
     }
 
-    /// Writes a figure that consists of several panels to a file, with the command that reproduces it.
+    /// Writes a figure that consists of several panels to a file. The file contains the command that reproduces the
+    /// figure.
     fn figure(&mut self, file: &str, figure: &PanelGrid, panels: &[FigurePanel]) -> Result<()> {
         let mut texts = Texts::default();
         texts.add("Command line", "slump --headless --frames figures");
@@ -267,7 +269,8 @@ fn of_figure<'a>(runs: &'a [FigureRun], figure: &'a str) -> impl Iterator<Item =
     runs.iter().filter(move |run| run.paper.figure == figure)
 }
 
-/// Returns one view for all panels of a figure, so that they can be compared. It contains all grains of all runs.
+/// Returns the visible part of the scene for all panels of a figure. It contains all grains of all runs; because it is
+/// the same in all panels, the panels can be compared.
 fn common_view(runs: &[FigureRun], figure: &str) -> View {
     let snapshots = of_figure(runs, figure).flat_map(|run| &run.snapshots);
     let mut view = View { min: DVec2::INFINITY, max: DVec2::NEG_INFINITY };
@@ -278,9 +281,10 @@ fn common_view(runs: &[FigureRun], figure: &str) -> View {
     view
 }
 
-/// Returns the height, pixels, at which the whole view is visible, with the margins of [`Style::camera`].
+/// Returns the height of a panel, pixels, at which the whole view is visible, including the margins of
+/// [`Style::camera`].
 fn panel_height(View { min, max }: View, width: u32) -> u32 {
-    /// Space above and below the grains for margins and scale bar, pixels.
+    /// Total height of the space above and below the grains, for margins and scale bar, pixels.
     const ROOM: f64 = 70.0;
     let shape = (max.y - min.y) / (max.x - min.x);
     (f64::from(width) * shape + ROOM).ceil() as u32

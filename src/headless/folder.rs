@@ -1,11 +1,11 @@
-//! The output folder of one run, and its checkpoint file, from which the same command can resume a run that was
+//! The output folder of one run, and its checkpoint file, with which the same command can resume a run that was
 //! stopped.
 //!
-//! Several writers fill the folder: the table of observables, the pictures, and the file of states that wait to be
-//! drawn. At a checkpoint each writer first flushes everything to the disk and then reports the length of its output,
-//! its *mark*. When the run resumes, each output is cut off at its mark, and the rest is written again with the same
-//! contents. A new kind of output needs a mark in [`Marks`], which `RunWriter::marks` collects and `RunWriter::open`
-//! passes to the writers.
+//! Several writers fill the folder: the table of observables, the pictures, and the file of snapshots that are drawn at
+//! the end of the run. At a checkpoint each writer first flushes its data to the disk and then reports the length of
+//! its output, its *mark*. When the run resumes, each output is cut off at its mark, and the rest is written again with
+//! the same contents. A new kind of output needs a mark in [`Marks`], which `RunWriter::marks` collects and
+//! `RunWriter::open` passes to the writers.
 
 use std::path::{Path, PathBuf};
 
@@ -22,17 +22,17 @@ use crate::output::{
 use crate::scene::Scene;
 use crate::sim::{ForceSums, Simulation, Tally};
 
-/// Treatment of the files of an earlier run in the output folder.
+/// Treatment of files that an earlier run left in the output folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum EarlierFiles {
-    /// A folder that contains such files is refused.
+    /// The new run ends with an error if there are such files.
     Refused,
     Cleared,
-    /// The files stay, because the run is resumed.
+    /// The files are kept, because the run is resumed.
     Kept,
 }
 
-/// An output folder, locked against use by other runs.
+/// An output folder, locked so that no other run uses it at the same time.
 pub(super) struct RunFolder {
     path: PathBuf,
     earlier: EarlierFiles,
@@ -43,7 +43,7 @@ impl RunFolder {
     /// Creates the folder if it is missing, locks it for this run, and checks its contents.
     ///
     /// # Errors
-    /// If the folder cannot be written to, if another run uses it, or if it contains files that are refused.
+    /// If the folder cannot be written to, if another run uses it, or if it contains files that must not be there.
     pub(super) fn claim(path: &Path, earlier: EarlierFiles) -> Result<Self> {
         let folder = Self::lock(path, earlier)?;
         folder.check("")?;
@@ -65,16 +65,17 @@ impl RunFolder {
         &self.path
     }
 
-    /// True if a run may be resumed from the contents of the folder.
+    /// True if a run may be resumed from the contents of the folder, because the user did not ask to remove them.
     pub(super) fn may_go_on(&self) -> bool {
         self.earlier == EarlierFiles::Refused
     }
 
-    /// Checks the folder: refuses files of an earlier run, or, if such files are to be removed, files that another
-    /// program wrote. `why` is the reason why no run can be resumed from the folder, for the error message.
+    /// Checks the contents of the folder. If files of an earlier run are to be removed, returns an error if another
+    /// program wrote one of them. Otherwise returns an error if there are files of an earlier run; its message contains
+    /// `why`, the reason why no run can be resumed from the folder.
     ///
     /// # Errors
-    /// Names the first file that is refused.
+    /// Names the first file that must not be there.
     pub(super) fn check(&self, why: &str) -> Result<()> {
         let names = match self.earlier {
             EarlierFiles::Kept => return Ok(()),
@@ -92,8 +93,9 @@ impl RunFolder {
         Err(Error::value("frames", self.path.display(), allowed))
     }
 
-    /// Prepares the folder for a resumed run. Removes the pictures that are not in `marks`, and unfinished files of a
-    /// process that was killed, including an unfinished `animation` in the folder.
+    /// Prepares the folder for a resumed run. Removes the pictures that are not in `marks` (they are later than the
+    /// checkpoint) and unfinished files of a process that was killed, including an unfinished `animation` in the
+    /// folder.
     ///
     /// # Errors
     /// Names a picture or table that is missing or incomplete, or a picture that cannot be removed.
@@ -145,7 +147,8 @@ impl RunFolder {
     }
 }
 
-/// Returns the names of the files in the folder that any run may have written, and of the file named `animation`.
+/// Returns the names of the files in the folder that have a name which runs give to their files, and of the file named
+/// `animation`.
 fn files_of_a_run(folder: &Path, animation: Option<&str>) -> Result<Vec<String>> {
     let refuse = |error| Error::file(folder, error);
     let mut names = Vec::new();
@@ -166,11 +169,11 @@ fn is_of_every_run(name: &str) -> bool {
     is_frame(name) || ["manifest.json", TABLE, CHECKPOINT, WAITING].contains(&name)
 }
 
-/// Refuses two options that name the same path, and an option that names a file which the run itself writes into its
+/// Returns an error if two options name the same path, or if an option names a file that the run itself writes into its
 /// folder.
 ///
 /// # Errors
-/// Names the first option that is refused.
+/// Names the first such option.
 pub(super) fn check_apart(places: &[(&str, &Path)], folder: Option<&Path>) -> Result<()> {
     let folder = folder.map(|folder| folder.canonicalize().unwrap_or_else(|_| folder.to_owned()));
     let mut taken: Vec<(&str, PathBuf)> = Vec::new();
@@ -194,7 +197,7 @@ fn is_frame(name: &str) -> bool {
     number.is_some_and(|digits| digits.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
-/// Returns the names of the pictures and tables that the manifest of an earlier run lists.
+/// Returns the names of the pictures and tables in the manifest of an earlier run.
 fn told_of(folder: &Path) -> Vec<String> {
     let text = std::fs::read_to_string(folder.join("manifest.json")).unwrap_or_default();
     let manifest: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
@@ -209,60 +212,64 @@ fn told_of(folder: &Path) -> Vec<String> {
     pictures.chain(tables).filter(is_name).collect()
 }
 
-/// True for a regular file. Links and pipes are never removed: the run writes to their targets.
+/// True for a regular file. Links and pipes are never removed; the run writes to their targets.
 fn is_plain(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|there| there.is_file())
 }
 
 /// Name of the table of observables in the output folder.
 pub(super) const TABLE: &str = "observables.csv";
-/// Name of the checkpoint in the output folder.
+/// Name of the checkpoint file in the output folder.
 pub(super) const CHECKPOINT: &str = "checkpoint.slump";
-/// Name of the file with states that wait to be drawn, if these states must survive the end of the process.
+/// Name of the file of snapshots that are drawn at the end of the run. It exists only if the snapshots must survive the
+/// end of the process.
 pub(super) const WAITING: &str = "checkpoint.states";
 
-/// Lengths of all outputs of a run at a checkpoint. A resumed run cuts the outputs off at these lengths.
+/// Lengths of all outputs of a run at a checkpoint, and other data with which the run is resumed. A resumed run cuts
+/// the outputs off at these lengths.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Marks {
-    /// Hash of the command; only the same command resumes the run.
+    /// Hash of the command and its inputs; only the same command can resume the run.
     pub fingerprint: String,
-    /// Number of the next picture.
+    /// Number of the next picture to be drawn.
     pub next_picture: usize,
     /// Length of `observables.csv`, bytes.
     pub table: u64,
-    /// Length of the file of states that wait to be drawn, bytes.
+    /// Length of the file of snapshots that are drawn at the end of the run, bytes.
     pub waiting: u64,
-    /// Pictures in the folder.
+    /// Pictures that the run has written into the folder.
     pub pictures: Vec<PictureEntry>,
-    /// Step and time of the saved run from which the command started (`--restart`), if it did.
+    /// Step number and simulated time of the saved run with which the command started (`--restart`); `None` without
+    /// this option.
     pub restarted_from: Option<Instant>,
-    /// Moments at which the same command resumed the run; empty in a run without interruption.
+    /// Step numbers and simulated times at which the same command resumed the run; empty in a run without interruption.
     pub went_on_at: Vec<Instant>,
     /// Extent of the recording of grains and contacts: its numbers of frames and rows.
     pub recording: RecordingMark,
-    /// Sums over contact pairs since the last frame of the recording.
+    /// Sums of contact forces, per pair of bodies, over the steps since the last frame of the recording.
     pub sums: ForceSums,
 }
 
-/// State from which a run starts or resumes.
+/// State of the simulation and of the outputs with which a run starts or resumes.
 pub(super) struct Beginning {
     pub state: SavedState,
-    /// Lengths of the outputs that the folder already contains.
+    /// Lengths of the outputs that the folder already contains, at which they are cut off.
     pub marks: Marks,
 }
 
-/// Writer of checkpoints, which saves a run at intervals of simulated time so that the same command can resume it.
+/// Writer of checkpoints: saves a run at intervals of simulated time, so that the same command can resume it.
 pub(super) struct Checkpoints {
     path: PathBuf,
     every_secs: f64,
     fingerprint: String,
-    /// Number of the next checkpoint. Checkpoint n is due at n times the interval.
+    /// Number of the next checkpoint. Checkpoint n is due at the simulated time n · `every_secs`.
     next: f64,
 }
 
 impl Checkpoints {
-    /// Plans the checkpoints in `folder` of a run that begins at the present moment of `simulation`.
+    /// Returns the writer of the checkpoints in `folder` for a run that begins at the present state of `simulation`.
+    /// `every_secs` is the interval of simulated time, s.
     pub(super) fn start(
         folder: &Path,
         every_secs: f64,
@@ -303,17 +310,17 @@ impl Checkpoints {
         Ok(())
     }
 
-    /// Removes the checkpoint of a complete run.
+    /// Removes the checkpoint files of a complete run.
     pub(super) fn remove(self) -> Result<()> {
         remove_if_there(&self.path)?;
         remove_if_there(&self.path.with_file_name(WAITING))
     }
 }
 
-/// Returns the checkpoint in the folder that the same command wrote, if there is a checkpoint.
+/// Returns the checkpoint in the folder that the same command wrote, or `None` if the folder has no checkpoint.
 ///
 /// # Errors
-/// States why this command cannot resume from the checkpoint.
+/// States why this command cannot resume the run from the checkpoint.
 pub(super) fn look(
     folder: &Path,
     fingerprint: &str,

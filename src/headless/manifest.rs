@@ -23,22 +23,22 @@ pub(super) struct Manifest {
     /// Wall-clock time at which the manifest was last written during the run.
     #[serde(skip)]
     written: Clock,
-    /// Duration of the last write.
+    /// Wall-clock time that the last write of the manifest took.
     #[serde(skip)]
     writing_took: Duration,
 }
 
-/// Shortest time between two writes during the run. If the process is killed, its manifest may lack the pictures of
-/// this period.
+/// Shortest time between two writes of the manifest during the run. If the process is killed, the manifest may lack the
+/// pictures of this period.
 const WAIT: Duration = Duration::from_millis(500);
-/// Least ratio of the time between two writes to the duration of a write. Because of it, a long manifest, which takes
-/// longer to write, is written less often.
+/// Smallest ratio of the time between two writes of the manifest to the duration of a write. It limits the time spent
+/// on a long manifest, which takes longer to write.
 const PART: u32 = 20;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum RunStatus {
-    /// The run has not ended, or its process was killed.
+    /// The run has not ended yet, or its process was killed.
     Running,
     /// The run reached its full duration.
     Complete,
@@ -46,7 +46,7 @@ pub(super) enum RunStatus {
     Interrupted,
     /// The run ended because its state was no longer finite.
     NotFinite,
-    /// Writing the results failed.
+    /// The run ended with another error, for example because its results could not be written.
     Failed,
 }
 
@@ -69,7 +69,7 @@ pub(super) struct RunEntry {
     pub step: u64,
     /// Simulated time at the end, s.
     pub time_secs: f64,
-    /// The scene without its lists of grains and fixed discs.
+    /// The scene without its lists of grains and of discs that are not grains.
     pub scene: serde_json::Value,
     pub grains: usize,
     pub fixed_discs: usize,
@@ -78,13 +78,13 @@ pub(super) struct RunEntry {
     /// Hash of the final state ([`crate::sim::Snapshot::state_hash`]); empty until the run has ended.
     pub last_state: String,
     pub tally: Tally,
-    /// Step and time of the saved run from which this run starts (`--restart`).
+    /// Step number and simulated time of the saved run from which this run starts (`--restart`).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub restarted_from: Option<Instant>,
-    /// Moments at which the same command resumed the run from a checkpoint.
+    /// Step numbers and simulated times at which the same command resumed the run from a checkpoint.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub went_on_at: Vec<Instant>,
-    /// Warnings, each with the change of settings that is most likely to help.
+    /// Warnings about the run, each with the change of settings that is most likely to help.
     pub alarms: Vec<AlarmEntry>,
     /// Cohesive time Bond·Δt/√(d/g), dimensionless (paper §3.3).
     pub cohesive_time: f64,
@@ -92,18 +92,20 @@ pub(super) struct RunEntry {
     pub capture_speed: f64,
     /// Substeps per step; 1 if the stepper solves each step as a whole.
     pub substeps: u32,
-    /// Longest substep that is certainly stable, s; missing if the stepper has no such limit.
+    /// Longest substep that is known to be stable, s; missing if the stepper has no such limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub critical_time_step_secs: Option<f64>,
-    /// Duration of the collision of two grains of mean mass, s; missing if contacts are not springs.
+    /// Duration of the collision of two grains of mean mass, s; missing if the stepper does not represent contacts by
+    /// springs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_time_secs: Option<f64>,
-    /// Work of breaking the bond of two grains of mean mass; missing if the contact law does not define this work.
+    /// Work that breaks the bond (cohesive contact) of two grains of mean mass; missing if the contact law does not
+    /// define this work.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fracture_work: Option<FractureWork>,
 }
 
-/// A moment of a run: number of the step, and simulated time.
+/// Step number and simulated time of a state of a run.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Instant {
@@ -126,15 +128,15 @@ pub(super) struct AlarmEntry {
     pub message: String,
 }
 
-/// A picture, with the moments of runs that it shows.
+/// A picture file, with the states of runs that it shows.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct PictureEntry {
     pub file: String,
-    /// One moment for each panel of the picture.
+    /// The displayed state, one for each panel of the picture.
     pub shows: Vec<ShownMoment>,
 }
 
-/// A moment of a run that a picture shows.
+/// A state of a run that a picture shows: the name of the run, and the observables of the state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct ShownMoment {
     pub run: String,
@@ -160,8 +162,8 @@ impl Manifest {
         self.write_and(path, true)
     }
 
-    /// Adds a picture to the list. Writes the manifest if the last write was long enough ago, because a process that is
-    /// killed cannot write it later.
+    /// Adds a picture to the list. Also writes the manifest if the last write was long enough ago, so that the manifest
+    /// is nearly complete if the process is killed.
     pub(super) fn add(&mut self, picture: PictureEntry, path: &Path) -> Result<()> {
         self.pictures.push(picture);
         if self.written.elapsed() < WAIT.max(PART * self.writing_took) {
@@ -185,7 +187,7 @@ impl Manifest {
 }
 
 impl RunEntry {
-    /// Returns the entry of a run at its start.
+    /// Returns the manifest's entry of a run that starts.
     pub(super) fn start(name: &str, scene: &Scene) -> Result<Self> {
         let mut said = serde_json::to_value(scene)
             .map_err(|error| Error::value("scene", name, error.to_string()))?;
@@ -218,7 +220,7 @@ impl RunEntry {
         })
     }
 
-    /// Completes the entry at the end of the run, with the results.
+    /// Adds the results to the manifest's entry of a run that has ended.
     pub(super) fn end(&mut self, ended: RunStatus, recorded: &Recorded) {
         let Recorded { simulation, tally, .. } = recorded;
         let Observables { step, time_secs, .. } = *simulation.observables();

@@ -29,8 +29,8 @@ pub(crate) fn draw_snapshots(folder: &Path) -> Result<()> {
     figures::draw(folder, EarlierFiles::Kept, HeadlessOptions::default().renderer)
 }
 
-/// Runs the scene of `config` and writes the outputs that `options` request. If only a folder of frames is given, draws
-/// the paper's figures.
+/// Runs the scene of `config` and writes the outputs that `options` name. If `options` name only a folder for frames,
+/// draws the paper's figures instead.
 pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
     heed_signals();
     let earlier = if options.overwrite { EarlierFiles::Cleared } else { EarlierFiles::Refused };

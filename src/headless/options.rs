@@ -1,5 +1,5 @@
-//! Options of pictures, recordings and saved runs, and the command lines by which output files can be reproduced. These
-//! command lines are written into the files.
+//! Options of pictures, recordings and saved runs, and the command lines that reproduce output files. These command
+//! lines are written into the files.
 
 use std::path::{Path, PathBuf};
 
@@ -130,11 +130,12 @@ pub(crate) struct HeadlessOptions {
 const DEFAULT_SIZE: PictureSize = PictureSize { width: 960, height: 540 };
 /// Default number of pictures per simulated second.
 const DEFAULT_FPS: f64 = 25.0;
-/// Largest number of pictures. A larger number is probably a mistake of the user.
+/// Largest number of pictures of a run. A larger number is probably a mistake of the user.
 const MOST_PICTURES: f64 = 1e5;
 
 impl HeadlessOptions {
-    /// True if any option is given that the paper's figures do not use.
+    /// True if the command draws the frames of a scene, because it has an option that has no effect on the paper's
+    /// figures.
     pub(super) fn asks_for_frames(&self) -> bool {
         let Self { headless, overwrite, renderer, .. } = *self;
         let frames = self.frames.clone();
@@ -145,14 +146,14 @@ impl HeadlessOptions {
         self.frames.is_some() || self.animation().is_some()
     }
 
-    /// Returns the files that the options name, each with the name of its option.
+    /// Returns the output files that the options name, each with the name of its option.
     pub(super) fn files(&self) -> Vec<(&'static str, &Path)> {
         let files = [("gif", &self.gif), ("video", &self.video), ("save", &self.save)];
         files.into_iter().filter_map(|(option, path)| Some((option, path.as_deref()?))).collect()
     }
 
-    /// Checks that at least one output is requested, and that options of pictures are given only with pictures. `data`
-    /// is the requested recording.
+    /// Checks that the options ask for at least one output, and that options of pictures are given only with pictures.
+    /// `data` describes the recording, if there is one.
     pub(super) fn check_places(&self, data: Option<&DataSettings>) -> Result<()> {
         if self.draws() {
             return Ok(());
@@ -177,7 +178,7 @@ impl HeadlessOptions {
         Ok(())
     }
 
-    /// Path of the GIF or video, if one is requested.
+    /// Path of the GIF or video; `None` if the options name no such file.
     pub(super) fn animation(&self) -> Option<&Path> {
         self.gif.as_deref().or(self.video.as_deref())
     }
@@ -220,7 +221,7 @@ impl HeadlessOptions {
         Ok(Style { range, ..style })
     }
 
-    /// Number of pictures per simulated second, if no times of pictures are given.
+    /// Number of pictures per simulated second, used if the options do not list the times of the pictures.
     pub(super) fn pictures_per_sec(&self) -> Result<f64> {
         Ok(self.fps.unwrap_or(DEFAULT_FPS / self.video_speed()?))
     }
@@ -292,7 +293,7 @@ impl HeadlessOptions {
 }
 
 impl HeadlessOptions {
-    /// Refuses an interval between checkpoints that is not positive and finite.
+    /// Returns an error if the interval between checkpoints is not positive and finite.
     pub(super) fn check_checkpoints(&self) -> Result<()> {
         match self.checkpoint_every {
             Some(secs) if !(secs > 0.0 && secs.is_finite()) => {
@@ -302,8 +303,8 @@ impl HeadlessOptions {
         }
     }
 
-    /// Returns the folder and settings of the requested recording; `None` if neither the options nor the scene name a
-    /// folder. Options override the scene.
+    /// Returns the folder and settings of the recording of grains and contacts; `None` if neither the options nor the
+    /// scene name a folder. Options override the scene.
     pub(super) fn data_settings(&self, scene: &Scene) -> Result<Option<(PathBuf, DataSettings)>> {
         let of_scene = scene.data.clone().unwrap_or_default();
         let given = !self.data_format.is_empty();
@@ -320,7 +321,8 @@ impl HeadlessOptions {
     }
 }
 
-/// Texts to be written into the file of a figure's panel that shows a built-in scene, including its command line.
+/// Texts, including a command line, to be written into the picture file of one panel of a figure. The panel shows a
+/// built-in scene.
 pub(super) fn texts_of_panel(scene: &Scene, snapshot: &Snapshot) -> Result<Texts> {
     let settings = scene.settings();
     let words = Config::of_scene(&scene.name).words(&settings)?;
@@ -331,7 +333,8 @@ pub(super) fn texts_of_panel(scene: &Scene, snapshot: &Snapshot) -> Result<Texts
 }
 
 impl HeadlessOptions {
-    /// Returns the provenance (scene, settings and options) of the run that `config` and these options describe.
+    /// Returns the provenance (scene, settings and command-line arguments) of the run that `config` and these options
+    /// describe.
     pub(super) fn provenance(&self, config: &Config, scene: &Scene) -> Result<Provenance> {
         let settings = scene.settings();
         let words = match &self.restart {
@@ -349,7 +352,8 @@ impl HeadlessOptions {
         Ok(Provenance { scene: scene.name.clone(), settings, words })
     }
 
-    /// Texts to be written into the file of the picture at a simulated time, s, including its command line.
+    /// Texts, including a command line, to be written into the file of the picture that shows the simulated time
+    /// `time_secs`, s.
     pub(super) fn texts_of_frame(&self, run: &Provenance, time_secs: f64, style: &Style) -> Texts {
         let frames = ["--frames".to_owned(), "frames".to_owned()];
         run.texts(
@@ -358,8 +362,8 @@ impl HeadlessOptions {
         )
     }
 
-    /// Texts to be written into the file of an animation of a run that lasts `duration_secs`, s. The command line in
-    /// these texts ends with `last_words`.
+    /// Texts, including a command line, to be written into the file of an animation of a run that lasts
+    /// `duration_secs`, s. `last_words` are the last arguments of the command line.
     pub(super) fn texts_of_animation(
         &self,
         run: &Provenance,
@@ -383,7 +387,7 @@ impl HeadlessOptions {
         run.texts(None, &words)
     }
 
-    /// Returns the options that reproduce the drawing, with the scales of the frames.
+    /// Returns the command-line options that reproduce the style of the pictures, including their scales.
     fn words_of_style(&self, style: &Style) -> Vec<String> {
         let named = |value: Option<clap::builder::PossibleValue>| {
             value.map_or_else(String::new, |value| value.get_name().to_owned())

@@ -1,5 +1,5 @@
 //! Runs one scene without a window. The run starts from the scene at t = 0, from a saved run, or from the checkpoint
-//! that the same command left in its folder.
+//! that the same command wrote into its folder.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ use crate::scene::{Scene, Settling};
 use crate::sim::{Observables, Simulation, Tally};
 use crate::study::{OnItsWay, go_on as go_on_with};
 
-/// Simulates the scene, or resumes a saved run, and writes all requested outputs.
+/// Simulates the scene, or resumes a saved run, and writes all outputs that the options name.
 pub(super) fn draw(
     config: &Config,
     options: &HeadlessOptions,
@@ -109,7 +109,7 @@ pub(super) fn draw(
     writer.end(recorded)
 }
 
-/// Reports on stderr the given settings that have no effect with the chosen stepper.
+/// Reports on stderr which of the user's settings have no effect with the chosen stepper.
 fn tell_of_unread_settings(config: &Config, scene: &Scene) {
     let unread = config.unread_by(scene.stepper);
     if !unread.is_empty() {
@@ -118,8 +118,8 @@ fn tell_of_unread_settings(config: &Config, scene: &Scene) {
     }
 }
 
-/// Returns the state of the run that the same command left in its folder, if the run can be resumed. A folder with
-/// other files of an earlier run is refused, unless these files are to be removed.
+/// Returns the state of the run that the same command left in its folder; `None` if there is none. If the folder
+/// contains other files of an earlier run, returns an error, unless these files are to be removed.
 fn left_in(folder: Option<&RunFolder>, fingerprint: Option<&str>) -> Result<Option<Beginning>> {
     let Some(folder) = folder else { return Ok(None) };
     let Some(fingerprint) = fingerprint.filter(|_| folder.may_go_on()) else {
@@ -137,11 +137,11 @@ fn left_in(folder: Option<&RunFolder>, fingerprint: Option<&str>) -> Result<Opti
     }
 }
 
-/// The requested run, read and checked, before its grains settle.
+/// The run that the options describe, read and checked, before its grains settle.
 pub(super) enum RequestedRun {
     /// A scene that starts at t = 0, before its grains have settled.
     Scene(Box<Scene>),
-    /// A saved run, with the requested changes of settings.
+    /// A saved run with the changes of settings on the command line.
     Run(Box<SavedState>),
 }
 
@@ -155,7 +155,7 @@ impl RequestedRun {
     /// Reads and checks the run that the options describe.
     ///
     /// # Errors
-    /// Names the value that is refused.
+    /// Names an option with an invalid value.
     pub(super) fn of(config: &Config, options: &HeadlessOptions) -> Result<Self> {
         options.check_checkpoints()?;
         let Some(path) = &options.restart else {
@@ -170,7 +170,7 @@ impl RequestedRun {
         Ok(Self::Run(Box::new(state)))
     }
 
-    /// The scene with the requested settings.
+    /// The scene with the settings of the command line.
     pub(super) fn scene(&self) -> &Scene {
         match self {
             Self::Scene(scene) => scene,
@@ -181,7 +181,8 @@ impl RequestedRun {
     /// Returns the times of the pictures and the end of the run.
     ///
     /// # Errors
-    /// If a time is not within the run.
+    /// If the time of a picture is not within the run, or if the run would end before the saved state from which it
+    /// starts.
     pub(super) fn schedule(
         &self,
         config: &Config,
@@ -215,8 +216,8 @@ impl RequestedRun {
         }
     }
 
-    /// Returns a hash of all inputs that affect what the command computes and draws. Paths of outputs and of saved runs
-    /// are left out.
+    /// Returns a hash of all inputs that affect what the command computes and draws. Paths of outputs and of the saved
+    /// run are left out.
     ///
     /// # Errors
     /// If the inputs cannot be encoded as bytes.
@@ -245,7 +246,7 @@ impl RequestedRun {
         Ok(hasher.finalize().to_hex().to_string())
     }
 
-    /// Returns the state from which the run starts, after its grains have settled.
+    /// Returns the state with which the run starts, after its grains have settled.
     ///
     /// # Errors
     /// If the grains do not come to rest.
@@ -269,7 +270,7 @@ impl RequestedRun {
     }
 }
 
-/// Returns the scene of a configuration. If a new pile must settle first, the progress is shown.
+/// Builds the scene of a configuration. If it contains a new pile, the pile settles first, and the progress is shown.
 pub(crate) fn settled(config: &Config) -> Result<Scene> {
     let progress = Progress::new("settling", 100);
     let scene = config.scene(|Settling { time_secs, limit_secs, .. }| {
@@ -280,7 +281,7 @@ pub(crate) fn settled(config: &Config) -> Result<Scene> {
     scene
 }
 
-/// A requested recording that has not started.
+/// A recording (table of grains and contacts for other programs) that has not started yet.
 pub(super) struct RecordingPlan {
     /// The locked folder of the recording; `None` if a resumed run continues its own recording.
     claim: Option<RecordingFolder>,
@@ -289,11 +290,11 @@ pub(super) struct RecordingPlan {
 }
 
 impl RecordingPlan {
-    /// Locks the folder of a requested recording. If `goes_on` is true, the run continues its existing recording and
-    /// needs no lock.
+    /// Locks the folder of the recording. If `goes_on` is true, a resumed run continues its own recording and needs no
+    /// lock.
     ///
     /// # Errors
-    /// Names the problem with the folder.
+    /// States why the folder cannot be used.
     pub(super) fn claim(
         (folder, settings): (PathBuf, DataSettings),
         overwrite: bool,
@@ -303,7 +304,7 @@ impl RecordingPlan {
         Ok(Self { claim, folder, settings })
     }
 
-    /// Checks that the recording of a resumed run is still complete.
+    /// Checks that the recording that a resumed run continues is still complete.
     ///
     /// # Errors
     /// Names the missing file.
@@ -311,7 +312,7 @@ impl RecordingPlan {
         Recording::check(&self.folder, &formats_of(&self.settings)?, step, mark)
     }
 
-    /// Starts the recording at the present state of a run, or resumes the existing recording at `mark`.
+    /// Starts the recording at the present state of a run, or continues an existing recording from the extent `mark`.
     ///
     /// # Errors
     /// If the folder cannot be written to, or a file of the recording is missing.

@@ -9,11 +9,12 @@ use crate::error::{Error, Result};
 use crate::output::{GrowingFile, end_of_last};
 use crate::sim::Observables;
 
-/// Longest time that a row waits in memory before it is written. With a shorter time, runs of small scenes spend their
-/// time in system calls; with a longer time, more rows are lost if the process is killed.
+/// Longest time that a row waits in memory before it is written to the file. With a shorter time, runs of small scenes
+/// spend much of their time in system calls; with a longer time, more rows are missing if the process is killed.
 const LONGEST_WAIT: Duration = Duration::from_millis(100);
 
-/// Largest number of bytes that wait in memory. Small scenes reach it before [`LONGEST_WAIT`].
+/// Largest number of bytes of rows that wait in memory before they are written to the file. Small scenes reach it
+/// before [`LONGEST_WAIT`].
 const MOST_WAITING: usize = 1 << 16;
 
 /// The table of observables, one row per step. Only whole rows are written, so that the table is readable after the
@@ -25,22 +26,23 @@ pub(super) struct ObservablesTable {
 }
 
 impl ObservablesTable {
-    /// Starts `observables.csv` in a folder.
+    /// Starts a new `observables.csv` in a folder.
     pub(super) fn start(folder: &Path) -> Result<Self> {
         Self::start_as(folder.join(TABLE))
     }
 
-    /// Continues after the first `length` bytes of `observables.csv` in a folder.
+    /// Continues an existing `observables.csv` in a folder after its first `length` bytes.
     pub(super) fn go_on(folder: &Path, length: u64) -> Result<Self> {
         Ok(Self::of(GrowingFile::go_on(folder.join(TABLE), length)?))
     }
 
-    /// Starts a table at a path.
+    /// Starts a new table of observables with this path.
     pub(super) fn start_as(path: PathBuf) -> Result<Self> {
         Ok(Self::of(GrowingFile::start(path)?))
     }
 
-    /// Returns a table that writes to a file. The names of the columns are written only if the file is empty.
+    /// Returns a table that writes to a file. If the file is not empty, it already has the line with the names of the
+    /// columns.
     fn of(file: GrowingFile) -> Self {
         let mut builder = csv::WriterBuilder::new();
         builder.has_headers(file.length() == 0).buffer_capacity(MOST_WAITING);
@@ -68,7 +70,7 @@ impl ObservablesTable {
         Ok(file.length())
     }
 
-    /// Writes the waiting rows, and waits until all rows are on the disk.
+    /// Writes the rows that are still in memory, and waits until all rows are on the disk.
     pub(super) fn finish(mut self) -> Result<()> {
         self.mark().map(drop)
     }
@@ -77,9 +79,10 @@ impl ObservablesTable {
 /// A writer that receives arbitrary pieces of text and passes only whole rows on to the file.
 struct WholeRows {
     file: GrowingFile,
-    /// The beginning of an incomplete row.
+    /// Text of a row whose end has not been received yet.
     begun: Vec<u8>,
-    /// True after a write has failed. No further rows are written, because they would leave a gap in the table.
+    /// True after a write to the file has failed. No further rows are written, because they would leave a gap in the
+    /// table.
     is_full: bool,
 }
 

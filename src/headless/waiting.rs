@@ -1,5 +1,5 @@
-//! States of a run that wait in a file until the end of the run, because the scale of their colours is not known
-//! earlier.
+//! Snapshots of a run that are kept in a file until the end of the run and then drawn, because the common scale of
+//! their colours is not known earlier.
 
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -13,19 +13,19 @@ use crate::output::{DraftFile, nameless_file};
 use crate::render::{Style, automatic_range, force_reference};
 use crate::sim::Snapshot;
 
-/// States of a run that wait to be drawn. Colours and widths need the same scale in all frames, and this scale is known
-/// only at the end of the run. The states are in a temporary file that disappears with the process, or in a named file
-/// if the run may be resumed.
+/// Store of snapshots that are drawn at the end of a run. Colours of grains and widths of force lines need the same
+/// scale in all pictures, and this scale is known only at the end of the run. The snapshots are in a temporary file
+/// that disappears with the process, or in a named file if the run may be resumed.
 pub(crate) struct WaitingStates {
     path: PathBuf,
     file: DraftFile,
-    /// Offsets of all states in the file, bytes, followed by the end of the last state.
+    /// Offsets of all snapshots in the file, bytes, followed by the end of the last snapshot.
     places: Vec<u64>,
     range: Option<(f64, f64)>,
     force_reference: f64,
 }
 
-/// A state with the number of its picture.
+/// A snapshot with the number of the picture that will show it.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct WaitingState {
@@ -34,8 +34,8 @@ struct WaitingState {
 }
 
 impl WaitingStates {
-    /// Returns a store for waiting states, or `None` if the style has fixed scales. If `outlive` is true, the states
-    /// survive the end of the process in a named file.
+    /// Returns a store of snapshots to be drawn at the end of the run, or `None` if the style already has its scales.
+    /// If `outlive` is true, the snapshots are in a named file, which remains when the process ends.
     ///
     /// # Errors
     /// Names the file and gives the system's message.
@@ -61,14 +61,15 @@ impl WaitingStates {
         }
     }
 
-    /// Returns an empty store. Its temporary file is in `folder`, or in the system's temporary folder if `folder`
-    /// cannot contain it.
+    /// Returns an empty store of snapshots. Its temporary file is in `folder`, or in the system's temporary folder if
+    /// no file can be created in `folder`.
     pub(crate) fn start(folder: &Path) -> Result<Self> {
         let file = nameless_file(folder).or_else(|_| nameless_file(&std::env::temp_dir()));
         Ok(Self::of(folder, file.map_err(|error| Error::file(folder, error))?))
     }
 
-    /// Returns a store with the states in the first `length` bytes of a file, which are to be drawn in the given style.
+    /// Returns a store with the snapshots in the first `length` bytes of an existing file, which are to be drawn in the
+    /// given style.
     pub(super) fn go_on(path: &Path, length: u64, style: &Style) -> Result<Self> {
         #[cfg(not(target_arch = "wasm32"))]
         let file =
@@ -90,18 +91,18 @@ impl WaitingStates {
         Self { path: path.to_owned(), file, places: vec![0], range: None, force_reference: 0.0 }
     }
 
-    /// Number of states in the file.
+    /// Number of snapshots in the file.
     pub(crate) fn len(&self) -> usize {
         self.places.len() - 1
     }
 
-    /// Flushes all states to the disk. Returns their length in the file, bytes.
+    /// Flushes all snapshots to the disk. Returns their total length in the file, bytes.
     pub(super) fn mark(&self) -> Result<u64> {
         self.file.sync_data().map_err(|error| self.refuse(error))?;
         Ok(self.end())
     }
 
-    /// Adds a state that is to be drawn in the given style as picture `number`.
+    /// Adds a snapshot that is to be drawn in the given style as the picture with this number.
     pub(crate) fn add(&mut self, style: &Style, number: usize, snapshot: Snapshot) -> Result<()> {
         self.measure(style, &snapshot);
         let state = rmp_serde::to_vec_named(&WaitingState { number, snapshot });
@@ -119,14 +120,15 @@ impl WaitingStates {
         self.force_reference = self.force_reference.max(force_reference(style, snapshot));
     }
 
-    /// Sets the missing scales of the style, so that they fit all states.
+    /// Sets the missing scales of the style (range of the colours, force of the widest line), so that they fit all
+    /// snapshots.
     pub(crate) fn set_scale(&self, style: &mut Style) {
         let reference = Some(self.force_reference).filter(|&largest| largest > 0.0);
         style.range = style.range.or(self.range);
         style.force_reference = style.force_reference.or(reference);
     }
 
-    /// Returns the number of the picture and the state at an index.
+    /// Returns the snapshot at an index, with the number of its picture.
     pub(crate) fn get(&mut self, index: usize) -> Result<(usize, Snapshot)> {
         let place = SeekFrom::Start(self.places[index]);
         self.file.seek(place).map_err(|error| self.refuse(error))?;
@@ -138,7 +140,7 @@ impl WaitingStates {
         self.places.last().copied().unwrap_or(0)
     }
 
-    /// Reads the state at the current position of the file.
+    /// Reads the snapshot at the current position of the file.
     fn read(&self) -> Result<WaitingState> {
         let (mut file, mut length, mut bytes) = (&self.file, [0; 8], Vec::new());
         let read = file.read_exact(&mut length);

@@ -1,5 +1,5 @@
-//! The outputs of a run: table, pictures, animations, recording and manifest, and the checkpoints from which all
-//! outputs can be resumed.
+//! The outputs of a run: table, pictures, animations, recording and manifest, and the checkpoints with which an
+//! interrupted run and its outputs are resumed.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -25,7 +25,7 @@ use crate::study::png::write_png;
 use crate::study::{Recorded, Recorder};
 
 const RUN: &str = "run";
-/// Frame rate of a GIF, Hz, which common viewers can show.
+/// Frame rate of a GIF, Hz, which common viewers can display.
 const GIF_RATE_HZ: f64 = 25.0;
 
 pub(super) struct RunWriter<'a> {
@@ -38,19 +38,20 @@ pub(super) struct RunWriter<'a> {
     table: Option<ObservablesTable>,
     gif: Option<Animation>,
     video: Option<Video>,
-    /// States that wait to be drawn at the end of the run, because their colours and widths need one common scale;
-    /// `None` if the scales are fixed, so that frames are drawn during the run.
+    /// Snapshots that are drawn at the end of the run, because their colours and line widths need one common scale;
+    /// `None` if the scales are given, so that frames are drawn during the run.
     waiting: Option<WaitingStates>,
     pub recording: Option<Recording>,
     manifest: Manifest,
     provenance: Provenance,
     checkpoints: Option<Checkpoints>,
-    /// State of the outputs at the beginning of the run. Only `next_picture` is updated during the run.
+    /// Lengths of the outputs at the beginning of the run. Only `next_picture` is updated during the run.
     marks: Marks,
 }
 
 impl<'a> RunWriter<'a> {
-    /// Starts the outputs of a run that continues from `marks` to the step number `end`.
+    /// Opens the outputs of a run that ends at the step number `end`. If the run is resumed, the outputs continue from
+    /// the lengths in `marks`.
     pub(super) fn open(
         options: &'a HeadlessOptions,
         renderer: Renderer,
@@ -100,7 +101,7 @@ impl<'a> RunWriter<'a> {
         Ok(writer)
     }
 
-    /// Adds the existing pictures of a resumed run to the GIF and the video.
+    /// Adds the pictures that a resumed run had already drawn to the GIF and the video.
     fn animate_earlier_pictures(&mut self) -> Result<()> {
         if self.gif.is_none() && self.video.is_none() {
             return Ok(());
@@ -122,7 +123,7 @@ impl<'a> RunWriter<'a> {
         Ok(())
     }
 
-    /// Flushes all outputs to the disk and returns their marks, for a checkpoint.
+    /// Flushes all outputs to the disk and returns their lengths, for a checkpoint.
     fn marks(&mut self) -> Result<Marks> {
         // The recording counts its own frames and rows; `flush` returns these numbers when the data are in the files.
         let recording = self.recording.as_mut().map(Recording::flush).transpose()?;
@@ -145,7 +146,8 @@ impl<'a> RunWriter<'a> {
         checkpoints.map_or(Ok(()), |it| it.write(self.scene, simulation, tally, marks))
     }
 
-    /// Saves the final state, as a checkpoint for the same command and as the file that `--save` names.
+    /// Saves the final state of the run, as a checkpoint for the same command and in the file that the option `--save`
+    /// names.
     fn save(&mut self, recorded: &Recorded) -> Result<()> {
         let Recorded { simulation, tally, failure, .. } = recorded;
         let checkpoint = match failure {
@@ -191,8 +193,9 @@ impl<'a> RunWriter<'a> {
         }
     }
 
-    /// Draws the waiting states, even if a signal has ended the run. If a signal arrives during the drawing, the
-    /// drawing ends. Returns the signal that ended the run or the drawing.
+    /// Draws the snapshots that were kept until the end of the run, even if a signal has ended the run. A signal that
+    /// arrives during the drawing ends the drawing. Returns the signal that ended the run or the drawing, if there was
+    /// one.
     fn draw_waiting(&mut self, ended_by: Option<Signal>) -> Result<Option<Signal>> {
         let Some(mut waiting) = self.waiting.take() else { return Ok(ended_by) };
         // The manifest is written first. Drawing may take longer than the sender of the signal waits before it kills
@@ -229,7 +232,7 @@ impl<'a> RunWriter<'a> {
         self.animate(image)
     }
 
-    /// Adds a picture to the GIF and the video. Both files contain the command that reproduces them.
+    /// Adds a picture to the GIF and the video. Each file contains the command that reproduces it.
     fn animate(&mut self, image: RgbaImage) -> Result<()> {
         let Self { options, scene, provenance, style, .. } = self;
         let texts = |words: &[&str]| {
@@ -296,24 +299,24 @@ impl Recorder for RunWriter<'_> {
     }
 }
 
-/// Returns a sentence with the folder and the number of frames of a finished recording.
+/// Returns a sentence for the user with the folder of a finished recording and its number of frames.
 pub(crate) fn recording_sentence(folder: &Path, frames: u64) -> String {
     format!("{} of data in {}", counted(frames, "frame"), folder.display())
 }
 
-/// Returns `Continue` until a signal has arrived, then `Break`.
+/// Returns `Continue` as long as no signal (such as Ctrl+C) has arrived, then `Break`.
 pub(super) fn go_on() -> ControlFlow<()> {
     caught_signal().map_or(ControlFlow::Continue(()), |_| ControlFlow::Break(()))
 }
 
-/// Returns the error for a run that a signal ended after the step with the observables `last`.
+/// Returns the error for a run that a signal ended. `last` contains the observables of its last step.
 pub(super) fn interrupted(signal: Signal, last: &Observables) -> Error {
     let (signal, exit_code) = (signal.name(), signal.exit_code());
     Error::Interrupted { signal, exit_code, step: last.step, time_secs: last.time_secs }
 }
 
-/// Reports warnings about the run on stderr, each with the most likely remedy. A state that is no longer finite is not
-/// reported here, because it ends the run with an error.
+/// Reports warnings about the run on stderr, each with the change of settings that is most likely to help. The warning
+/// that the state is no longer finite is left out, because this ends the run with an error.
 pub(super) fn tell_of_alarms(scene: &Scene, alarms: &[Alarm]) {
     for alarm in alarms.iter().filter(|alarm| alarm.kind != AlarmKind::NotFinite) {
         note_line(format_args!("{}: {}", scene.name, alarm.message(&scene.settings())));

@@ -6,14 +6,14 @@ use std::time::Duration;
 use super::Pace;
 use crate::Instant;
 
-/// Largest delay behind the chosen pace that a run catches up. If the delay is larger, the run skips it and
-/// continues at the chosen pace from the present moment.
+/// Largest delay behind the chosen speed of playing that a run catches up by faster steps. If the delay is larger, the
+/// run does not catch up and continues at the chosen speed from its present state.
 const MOST_LAG: Duration = Duration::from_millis(100);
-/// Period over which the displayed rates are averaged.
+/// Period of wall-clock time over which the displayed rates (such as steps per second) are averaged.
 const RATE_WINDOW: Duration = Duration::from_millis(300);
 
-/// Receives a message, or returns a timeout error after `wait`. A zero `wait` reads no clock, because the standard
-/// library has no clock in a browser.
+/// Receives a message, or returns a timeout error after the time `wait`. If `wait` is zero, no clock is read, because
+/// the clock of Rust's standard library does not work in a browser.
 pub(crate) fn receive_within<T>(
     inbox: &Receiver<T>,
     wait: Duration,
@@ -33,7 +33,7 @@ pub(super) struct Clock {
     anchor: (Instant, f64),
     window: (Instant, f64, u64),
     steps: u64,
-    /// Simulated time per wall-clock time, averaged over 300 ms.
+    /// Simulated time per wall-clock time (dimensionless), averaged over 300 ms.
     pub real_time_factor: f64,
     /// Steps of all simulations per second of wall-clock time, 1/s, averaged over 300 ms.
     pub steps_per_sec: f64,
@@ -52,7 +52,7 @@ impl Clock {
         }
     }
 
-    /// Starts the clock at the simulated time `time_secs`, s.
+    /// Starts the clock of a run whose simulated time is now `time_secs`, s.
     pub(super) fn start(&mut self, time_secs: f64) {
         let now = Instant::now();
         self.anchor = (now, time_secs);
@@ -66,7 +66,7 @@ impl Clock {
         anchor_secs + factor * anchor.elapsed().as_secs_f64()
     }
 
-    /// Returns the time to wait before the step from the simulated time `time_secs` is due.
+    /// Returns the wall-clock time to wait before the step that begins at the simulated time `time_secs`, s, is due.
     pub(super) fn wait(&mut self, time_secs: f64) -> Duration {
         let Pace::RealTime(factor) = self.pace else { return Duration::ZERO };
         let (anchor, anchor_secs) = self.anchor;
@@ -79,7 +79,7 @@ impl Clock {
         due.saturating_duration_since(now)
     }
 
-    /// Counts `steps` steps, after which the simulated time is `time_secs`.
+    /// Records that `steps` more steps were taken, after which the simulated time is `time_secs`, s.
     pub(super) fn count(&mut self, steps: u64, time_secs: f64) {
         self.steps += steps;
         let (since, secs, steps) = self.window;

@@ -1,4 +1,4 @@
-//! The commands that a window sends to a live run (a simulation that the user watches).
+//! The commands that a window sends to a live run (a simulation that the user watches while it is computed).
 
 use std::sync::Arc;
 
@@ -29,24 +29,25 @@ pub enum Pace {
 /// world that does not exist are ignored.
 #[derive(Serialize, Deserialize)]
 pub enum Command {
-    /// Replace everything by a new initial state from this source.
+    /// Replace all simulations and their history by a new initial state from this source.
     #[serde(skip)]
     Load(Box<dyn StartSource>),
     /// Cancel the loading of an initial state.
     CancelLoading,
-    /// Restart from the present initial state with one world for each of these settings (usually one), side by
-    /// side. The previous run is kept.
+    /// Restart from the present initial state with one world (simulation) for each of these settings; the worlds run
+    /// side by side. The previous run is kept.
     Compare(Vec<Settings>),
     /// Change the settings of the simulation with this index from its next step on.
     Change(usize, Settings),
     /// Tie a spring to a grain of the simulation with this index, so that the user can drag the grain; `None` removes
     /// the spring.
     SetPull(usize, Option<Pull>),
-    /// Edit the simulation with this index (for example, move a grain) before its next step. Recorded steps after this
-    /// moment are kept as a separate run.
+    /// Edit the simulation with this index (for example, move a grain) before its next step. If steps after the edit
+    /// were already recorded, they are kept as a separate run.
     Edit(usize, Edit),
-    /// Start time: show the recorded steps, and compute more steps at their end. If the settings differ from the
-    /// recorded settings, a new run branches off, and the recorded steps are kept as a separate run.
+    /// Let simulated time advance: show the recorded steps, and compute more steps at the end of the record. If the
+    /// settings differ from the recorded settings, a new run branches off, and the recorded steps are kept as a
+    /// separate run.
     Play,
     /// Stop time.
     Pause,
@@ -56,12 +57,12 @@ pub enum Command {
     /// Go back to the initial state with the present settings, and pause. The previous run is kept in
     /// [`LiveFrame::past`](super::LiveFrame::past).
     Reset,
-    /// Return to the earlier or undone run of this number, at the moment at which the user left that run, and
+    /// Return to the earlier or undone run of this number, at the simulated time at which the user left that run, and
     /// pause. The present run is kept.
     Return(u64),
-    /// Name the run of this number, or the present run if the number is `None`.
+    /// Give this name to the run of this number, or to the present run if the number is `None`.
     Name(Option<u64>, String),
-    /// Go to the recorded moment nearest to this simulated time, s, and pause.
+    /// Go to the recorded state nearest to this simulated time, s, and pause.
     Seek(f64),
     /// Pass the history of the simulation with this index to the callback.
     #[serde(skip)]
@@ -76,12 +77,13 @@ pub enum Command {
 }
 
 impl Command {
-    /// True if the command makes the loading of an initial state that is in progress pointless.
+    /// True if an initial state that is still being computed or read becomes useless by this command, for example
+    /// because the command asks for another initial state.
     pub(super) fn interrupts(&self) -> bool {
         matches!(self, Self::CancelLoading | Self::Load(_) | Self::Quit)
     }
 
-    /// True if the command concerns the state at the moment that is shown.
+    /// True if the command concerns the state of the run that the window shows.
     pub(super) fn is_about_the_moment(&self) -> bool {
         matches!(
             self,
@@ -94,7 +96,8 @@ impl Command {
         )
     }
 
-    /// True if the command must wait for the state that a seek is still computing.
+    /// True if the command must wait until a seek has computed its state. (A seek is a jump to a recorded simulated
+    /// time.)
     pub(super) fn waits_for_seek(&self) -> bool {
         self.is_about_the_moment() || matches!(self, Self::Play | Self::Reset | Self::Return(..))
     }

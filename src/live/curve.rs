@@ -1,4 +1,5 @@
-//! The observables of a run as a list that a clone can share cheaply with a window, however long the run is.
+//! The observables of a run after each of its steps, as a list whose clones share memory. However long the run is, a
+//! copy for the window is cheap.
 
 use std::sync::Arc;
 
@@ -6,14 +7,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::sim::Observables;
 
-/// Number of rows in a chunk. A full chunk is shared between clones and never changes.
+/// Number of rows (observables after one step) in a chunk. A full chunk is shared between clones and never changes.
 const CHUNK: usize = 256;
-/// Largest number of rows. A longer curve drops rows until a least spacing in simulated time remains. 32,768 rows take
-/// 6 MB.
+/// Largest number of rows (observables after one step). A longer curve drops rows, so that the remaining rows have a
+/// least spacing in simulated time. 32,768 rows take 6 MB.
 const MOST_ROWS: usize = 32_768;
 
-/// Observables of a run in the order of time. A short run has one row per step. In a long run the rows have a least
-/// spacing in simulated time. The first and the newest row are always present.
+/// Observables of a run in the order of time. A row contains the observables after one step. A short run has a row for
+/// every step. In a long run only some steps have a row, with a least spacing in simulated time. The first and the
+/// newest row are always present.
 ///
 /// A clone shares all full chunks and copies at most 256 rows.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -24,11 +26,12 @@ pub struct Curve {
     least_spacing_secs: f64,
 }
 
-/// Fraction of the least spacing by which a spacing may be too short, because times have rounding errors.
+/// Relative tolerance of the least spacing of rows: two rows may be closer by this fraction, because times have
+/// rounding errors.
 const ROUNDING: f64 = 1e-6;
 
 impl Curve {
-    /// Number of rows.
+    /// Number of rows (observables after one step).
     pub fn len(&self) -> usize {
         self.chunks.len() * CHUNK + self.tail.len()
     }
@@ -43,7 +46,7 @@ impl Curve {
         self.least_spacing_secs
     }
 
-    /// The rows, first to last.
+    /// The rows (observables after one step) in order of time.
     pub fn rows(&self) -> impl Iterator<Item = &Observables> {
         self.chunks.iter().flat_map(|chunk| chunk.iter()).chain(&self.tail)
     }
@@ -105,7 +108,7 @@ impl Curve {
 /// The difference between two versions of a curve, to be sent to another process.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct CurveChange {
-    /// Number of rows at the beginning that both versions share.
+    /// Number of rows at the beginning of the curve that both versions have in common.
     kept: usize,
     rows: Vec<Observables>,
     least_spacing_secs: f64,

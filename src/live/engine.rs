@@ -1,4 +1,5 @@
-//! The loop of the solver's thread: it handles commands, takes the steps that are due, and publishes frames.
+//! The loop of the solver's thread: it handles commands, takes the steps that are due, and publishes frames (the data
+//! that the window draws).
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -17,10 +18,11 @@ use crate::Instant;
 use crate::error::Error;
 use crate::sim::{Settings, Surroundings};
 
-/// Number of frame intervals after which a frame that the window has not fetched is replaced by a newer frame. With
-/// a smaller number, time is spent on frames that nobody sees; with a larger number, the window shows events late.
+/// Number of frame intervals after which a frame that the window has not fetched is replaced by a newer frame. With a
+/// smaller number, time is spent on frames that the window never fetches; with a larger number, the window shows
+/// changes late.
 const UNFETCHED_INTERVALS: u32 = 3;
-/// Shortest time between two frames while an initial state is being made.
+/// Shortest wall-clock time between two frames while an initial state is being computed.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(50);
 
 struct Outbox {
@@ -31,7 +33,8 @@ struct Outbox {
     sent: Instant,
     /// True if the last published frame does not show the newest state.
     is_behind: bool,
-    /// True if a frame must be published immediately after the next step.
+    /// True if a frame must be published as soon as the present step is finished, without waiting for the frame
+    /// interval.
     is_urgent: bool,
 }
 
@@ -44,22 +47,23 @@ impl Outbox {
 
 pub(super) struct Engine {
     inbox: Receiver<(u64, Command)>,
-    /// Commands that wait until a loading or a seek has ended.
+    /// Commands that wait until an initial state is loaded or a seek (a jump to a recorded time) has ended.
     waiting: VecDeque<(u64, Command)>,
     outbox: Outbox,
     start: Option<Arc<LiveStart>>,
-    /// Walls and fixed discs around the grains at the start, including the walls that are removed when time begins.
+    /// Walls and discs that are not grains, as they are in the initial state. They include the walls that support the
+    /// grains only until the first step.
     held: Option<Arc<Surroundings>>,
     history: RunHistory,
     mode: Mode,
     clock: Clock,
-    /// Simulated time at which playing pauses, s.
+    /// Simulated time at which the run pauses by itself, s.
     stop_at_secs: Option<f64>,
     refusal: Option<Arc<str>>,
     acknowledged: u64,
     loads: u64,
     quit: bool,
-    /// Returns true to cancel the loading of an initial state ([`LiveOptions`]).
+    /// Callback that returns true to cancel the loading of an initial state ([`LiveOptions`]).
     gives_up: Box<dyn Fn() -> bool + Send>,
 }
 
@@ -105,9 +109,9 @@ impl Engine {
         while !self.quit && self.turn(true) {}
     }
 
-    /// Handles all commands and takes the steps and sends the frames that are due. If nothing is due and
-    /// `may_sleep` is true, the thread sleeps until a command comes or something is due. Returns false if the
-    /// window has gone, so that no command can come.
+    /// Handles all commands, takes the steps that are due, and sends the frames that are due. If nothing is due and
+    /// `may_sleep` is true, the thread sleeps until a command comes or something is due. Returns false if the window is
+    /// closed, so that no further command can come.
     pub(super) fn turn(&mut self, may_sleep: bool) -> bool {
         if !self.receive(may_sleep) {
             return false;
@@ -127,8 +131,8 @@ impl Engine {
         true
     }
 
-    /// Handles all commands. If nothing else is due and `may_sleep` is true, the thread sleeps until a command
-    /// comes. Returns false if the window has gone, so that no command can come.
+    /// Handles all commands. If nothing else is due and `may_sleep` is true, the thread sleeps until a command comes.
+    /// Returns false if the window is closed, so that no further command can come.
     fn receive(&mut self, may_sleep: bool) -> bool {
         let mut commanded = false;
         loop {
@@ -165,7 +169,7 @@ impl Engine {
         true
     }
 
-    /// Returns the time until a step or a frame is due; `None` if nothing is due before the next command.
+    /// Returns the wall-clock time until a step or a frame is due; `None` if nothing is due before the next command.
     pub(super) fn wait(&mut self) -> Option<Duration> {
         if self.mode.seeks() || matches!(self.mode, Mode::Stepping { .. }) {
             return Some(Duration::ZERO);
@@ -283,8 +287,8 @@ impl Engine {
         };
     }
 
-    /// Stops time. If a stored moment is shown, its state is computed, so that the run can continue from that
-    /// moment.
+    /// Pauses the run. If a stored snapshot is shown, the whole state at its time is computed, so that the run can
+    /// continue from there.
     fn pause(&mut self) {
         match self.mode {
             Mode::Showing { until_secs } => self.seek(until_secs, false),
@@ -294,8 +298,8 @@ impl Engine {
         }
     }
 
-    /// Shows the stored moment that is due. After the last stored moment, the simulations seek the end of the
-    /// record, where a keyframe (a copy of the whole state) is kept.
+    /// Shows the stored snapshot that is due. After the last stored snapshot, the simulations seek (jump to) the end of
+    /// the record, where a keyframe (a copy of the whole state) is kept.
     fn advance_show(&mut self) {
         if !self.outbox.wait().is_zero() {
             return;
@@ -315,7 +319,8 @@ impl Engine {
         self.seek(stop_secs.unwrap_or(end_secs), goes_on);
     }
 
-    /// Starts a seek to the recorded moment nearest to the simulated time `secs`.
+    /// Starts to compute the recorded state nearest to the simulated time `secs`, s. After that, the run plays if
+    /// `then_plays` is true.
     fn seek(&mut self, secs: f64, then_plays: bool) {
         self.mode = Mode::Seeking { then_plays };
         self.history.present.seek(secs);
@@ -350,7 +355,7 @@ impl Engine {
         }
     }
 
-    /// Takes the step that is due, and pauses at the end of the run.
+    /// Takes the step that is due, and pauses the run when it has reached its duration.
     fn advance_run(&mut self) {
         if !self.wait_for_step().is_zero() {
             return;
@@ -369,8 +374,8 @@ impl Engine {
         }
     }
 
-    /// Replaces everything by the initial state from `source`, unless the source fails or the user cancels the
-    /// loading.
+    /// Replaces all simulations and their history by the initial state from `source`, unless the source fails or the
+    /// user cancels the loading.
     fn load(&mut self, source: Box<dyn StartSource>) {
         self.pause();
         self.refusal = None;
@@ -393,8 +398,8 @@ impl Engine {
         }
     }
 
-    /// Returns true if a command makes the present loading pointless. All received commands are kept, to be handled
-    /// after the loading.
+    /// Returns true if the loading of an initial state must stop, because a command makes it pointless or the callback
+    /// `gives_up` returns true. All received commands are kept, to be handled after the loading.
     fn is_interrupted(&mut self) -> bool {
         let mut interrupted = (self.gives_up)();
         while let Ok((number, command)) = self.inbox.try_recv() {
@@ -425,7 +430,7 @@ impl Engine {
         }
     }
 
-    /// Puts one simulation for each of these settings at the initial state.
+    /// Starts one simulation for each of these settings at the initial state.
     fn restart(&mut self, all: &[Settings]) {
         if let Some(start) = &self.start
             && !all.is_empty()

@@ -1,4 +1,4 @@
-//! Frames: the data that a live run sends to the window for display, which are cheap to copy.
+//! Frames: the data that a live run sends to the window, which draws them. Frames are cheap to copy.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::sim::{AlarmKind, FractureWork, Snapshot, Surroundings};
 use crate::solver::Method;
 use crate::world::Gravity;
 
-/// The newest state of a live run, for display.
+/// The newest state of a live run, in the form that the window draws.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LiveFrame {
     /// Number of this frame, counted from 1.
@@ -22,46 +22,47 @@ pub struct LiveFrame {
     pub loads: u64,
     /// Initial state of the run; `None` before the first load.
     pub start: Option<Arc<LiveStart>>,
-    /// The worlds (simulations side by side). There is one, except if worlds are compared.
+    /// The worlds (simulations side by side). There is one world, unless the user compares several settings.
     pub worlds: Vec<WorldFrame>,
     /// The user's name for the present run; may be empty.
     pub name: String,
     /// Summaries of the earlier runs, the newest last, followed by the undone runs, starting with the next one to redo.
     pub past: Arc<[PastRun]>,
-    /// States of the newest earlier run at the displayed simulated time, or at its last stored moment before that time.
-    /// The window draws them as outlines for comparison. The list is empty if no moment is stored.
+    /// Snapshots of the newest earlier run at the displayed simulated time, or its last stored snapshots before that
+    /// time. The window draws them as outlines for comparison. The list is empty if no snapshot is stored.
     pub ghosts: Vec<Arc<Snapshot>>,
     /// True if the run is playing, so that simulated time advances.
     pub playing: bool,
-    /// True if the next step repeats a recorded step.
+    /// True if the next step repeats a step that is already recorded.
     pub replaying: bool,
-    /// True if the next step branches off from the record, because the settings differ from the recorded ones.
+    /// True if the next step branches off from the record, because the present settings differ from the recorded
+    /// settings.
     pub branching: bool,
-    /// True if a stored moment is shown and nothing is computed.
+    /// True if a stored snapshot is shown and nothing is computed.
     pub stored: bool,
-    /// True if a recorded moment or a long single step is being computed.
+    /// True if a recorded state or a long single step is being computed.
     pub seeking: bool,
-    /// Progress of the making of an initial state; `None` if none is being made.
+    /// Progress while an initial state is computed or read; `None` at other times.
     pub loading: Option<LoadingProgress>,
-    /// The reason why the last load, edit or change of settings was refused, if it was.
+    /// The error message if the last load, edit or change of settings was refused; otherwise `None`.
     pub refusal: Option<Arc<str>>,
-    /// Simulated time per wall-clock time, averaged over 300 ms.
+    /// Simulated time per wall-clock time (dimensionless), averaged over 300 ms.
     pub real_time_factor: f64,
     /// Steps of all simulations per second of wall-clock time, 1/s, averaged over 300 ms.
     pub steps_per_sec: f64,
 }
 
-/// One world (simulation) at one moment, for display.
+/// One world (simulation) at one simulated time, in the form that the window draws.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct WorldFrame {
-    /// Positions, velocities, contacts and observables. Before the first step, the walls that hold the grains until
-    /// time begins are included.
+    /// Positions, velocities, contacts and observables. Before the first step, the snapshot includes the walls that
+    /// support the grains only until the first step.
     pub snapshot: Arc<Snapshot>,
     /// The controls (settings and pull of a grain) of the next step.
     pub controls: Controls,
     /// Acceleration of gravity, m/s²; `None` if gravity is not uniform.
     pub gravity: Option<DVec2>,
-    /// Observables of all recorded steps, for plots.
+    /// Observables after each recorded step, for plots.
     pub curve: Curve,
     /// True if all recorded steps have the settings of the next step, and the user neither edited the simulation nor
     /// pulled a grain.
@@ -70,39 +71,41 @@ pub struct WorldFrame {
     pub recorded_from_secs: f64,
     /// Simulated time of the last recorded step, s.
     pub recorded_secs: f64,
-    /// Number of steps up to this moment that did not reach the tolerance.
+    /// Number of steps up to the displayed time that did not reach the solver's tolerance.
     pub unconverged_steps: u64,
-    /// Wall-clock time per step, ms, as a running mean.
+    /// Wall-clock time that the solver's thread needs per step, ms, as a running mean.
     pub step_ms: f64,
     /// The solver's method for the next step. If the user chose `auto`, this is the method that `auto` picks.
     pub picked_method: Method,
     /// Number of substeps of the next step.
     pub substeps: u32,
-    /// Longest substep that is certainly stable, s; `None` if the stepper has no such limit.
+    /// Longest substep that is known to be stable, s; `None` if the stepper has no such limit.
     pub critical_time_step_secs: Option<f64>,
-    /// Duration of the collision of two grains of mean mass, s; `None` if contacts are not springs.
+    /// Duration of the collision of two grains of mean mass, s; `None` if the stepper does not represent contacts by
+    /// springs.
     pub contact_time_secs: Option<f64>,
-    /// Work of breaking a bond slowly; `None` if the contact law does not define this work.
+    /// Work that breaks a bond (a cohesive contact) slowly; `None` if the contact law does not define this work.
     pub fracture_work: Option<FractureWork>,
-    /// Warnings about the run up to this moment, with advice.
+    /// Warnings about the run up to the displayed time, with advice.
     pub alarms: Vec<WorldAlarm>,
-    /// The reason why the simulation cannot continue from this moment, if it cannot.
+    /// The reason why the simulation cannot continue from the displayed state; `None` if it can.
     pub failure: Option<Arc<str>>,
 }
 
-/// A warning about a world (simulation).
+/// A warning about a world (simulation), for example that energy was created.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WorldAlarm {
     /// Kind of the warning.
     pub kind: AlarmKind,
-    /// Message: the event, the simulated time of its first step, and advice for the settings of that step.
+    /// Message: the problem, the simulated time of the first step with this problem, and advice for the settings of
+    /// that step.
     pub text: Arc<str>,
-    /// True if the present settings differ from the settings at the time of the event.
+    /// True if the problem arose under other settings than the present settings.
     pub is_earlier: bool,
 }
 
 impl LiveFrame {
-    /// Simulated time of the first simulation, s.
+    /// Simulated time of the first of the simulations, s.
     pub fn time_secs(&self) -> f64 {
         self.worlds.first().map_or(0.0, |world| world.snapshot.observables.time_secs)
     }
@@ -117,15 +120,16 @@ impl LiveFrame {
         self.worlds.iter().all(|world| world.snapshot.observables.step == 0)
     }
 
-    /// True if walls still hold the grains, because time has not begun.
+    /// True before the first step if some walls support the grains only until that step.
     pub fn held(&self) -> bool {
         self.at_start() && self.start.as_ref().is_some_and(|start| !start.held_by.is_empty())
     }
 }
 
 impl WorldFrame {
-    /// Returns the present moment of a simulation, or the stored moment if one is given. Before the first step, the
-    /// frame has the surroundings `held`, which include the walls that are removed when time begins.
+    /// Returns the data to draw: the present state of a simulation, or the snapshot `stored` if one is given. Before
+    /// the first step, the walls and discs that are not grains are replaced by `held`, which includes the walls that
+    /// support the grains only until the first step.
     pub(super) fn of(
         world: &WorldHistory,
         stored: Option<&StoredMoment>,
@@ -169,8 +173,8 @@ impl WorldFrame {
     }
 }
 
-/// Returns the warnings about a simulation, except the warning that the state is no longer finite, which is reported as
-/// the failure. Each advises on the settings of the step in which it was raised.
+/// Returns the warnings about a simulation, with advice for the settings of the step in which each warning was raised.
+/// The warning that the state is no longer finite is left out, because it is reported as the failure.
 fn alarms(world: &WorldHistory) -> Vec<WorldAlarm> {
     let simulation = &world.simulation;
     let alarms = simulation.alarms().iter().copied().chain(simulation.alarm_on_placed());

@@ -19,11 +19,11 @@ pub struct Live {
     sent: u64,
 }
 
-/// The place in which a run is computed.
+/// The solver that computes a run: in this process or in another one.
 enum Place {
-    /// A thread of this process.
+    /// A thread of this process, with the channels to it.
     Thread { commands: Sender<(u64, Command)>, frames: Output<LiveFrame> },
-    /// A solver elsewhere, such as a browser's worker, which exchanges bytes with this process.
+    /// A solver in another process, such as a browser's worker, which exchanges messages as bytes with this process.
     Remote(Box<RemoteRun>),
 }
 
@@ -44,14 +44,15 @@ impl Live {
         Ok(Self { place: Place::Thread { commands, frames }, sent: 0 })
     }
 
-    /// Returns a handle of a run that a [`RemoteEngine`](super::RemoteEngine) computes. `ask` sends messages to
-    /// that engine, and the replies arrive in `inbox`.
+    /// Returns a handle of a run that a [`RemoteEngine`](super::RemoteEngine) computes. The callback `ask` sends
+    /// messages to that engine, and its replies arrive in `inbox`.
     pub fn remote(ask: Ask, inbox: Receiver<Vec<u8>>) -> Self {
         Self { place: Place::Remote(Box::new(RemoteRun::new(ask, inbox))), sent: 0 }
     }
 
     /// Sends a command and returns its number. [`LiveFrame::acknowledged`] reaches this number when the command has
-    /// taken effect. For loading and seeking, it reaches the number when they have begun.
+    /// taken effect. The loading of an initial state and a seek (a jump to a recorded time) are acknowledged when they
+    /// begin.
     pub fn send(&mut self, command: Command) -> u64 {
         self.sent += 1;
         match &mut self.place {
@@ -65,12 +66,12 @@ impl Live {
         self.sent
     }
 
-    /// The number of the last command sent.
+    /// The number of the last command that was sent.
     pub fn sent(&self) -> u64 {
         self.sent
     }
 
-    /// The newest frame. This function never waits.
+    /// The newest frame (the data to draw). This function never waits for the solver.
     pub fn latest(&mut self) -> &LiveFrame {
         match &mut self.place {
             Place::Thread { frames, .. } => frames.read(),

@@ -1,5 +1,5 @@
-//! The history of a live run: its worlds (simulations side by side) with their records, and the earlier runs. No
-//! computed step is lost by a reset, by other worlds, or by a change at an earlier moment.
+//! The history of a live run: the records of its worlds (simulations side by side), and the earlier runs. The computed
+//! steps are kept if the user resets the run, starts other worlds, or changes something at an earlier simulated time.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,27 +15,27 @@ use crate::sim::{Edit, Settings, Simulation, Snapshot, Tally};
 
 /// Largest number of earlier runs; if there are more, the oldest run is dropped.
 const MOST_PAST: usize = 50;
-/// Number of newest earlier runs with the keyframe memory of [`PART_OF_PAST`]. Older runs keep two keyframes each, and
-/// the oldest runs are dropped if all keyframes together exceed the memory of the present run.
+/// Number of newest earlier runs with many keyframes (copies of the state, [`PART_OF_PAST`]). Older runs keep two each.
+/// The oldest runs are dropped if all earlier runs need more memory for keyframes than the present run may.
 const NEWEST: usize = 4;
-/// Each of the newest earlier runs gets 1/8 of the memory for keyframes.
+/// Divisor of the memory limit: each of the newest earlier runs gets 1/8 of the present run's memory for keyframes.
 const PART_OF_PAST: usize = 8;
-/// Bytes of keyframes of the present run, and of each earlier run, in a history that is sent to the window or to a
-/// file. States between keyframes can be computed again.
+/// Memory for the keyframes (copies of the state) of the present run and of each earlier run, bytes, in a history that
+/// is sent to the window or to a file. States between keyframes can be computed again.
 const KEYFRAME_BYTES: usize = 8 << 20;
 const PAST_KEYFRAME_BYTES: usize = 1 << 20;
 /// Largest number of rows of a curve in a history that is sent to the window or to a file, for the present run and for
-/// earlier runs. A row (the observables of one step) takes about 500 bytes in a file.
+/// each earlier run. A row contains the observables after one step and takes about 500 bytes in a file.
 const ROWS: usize = 4096;
 const PAST_ROWS: usize = 512;
-/// Time after which a tick is interrupted to handle commands. A tick is one step of the simulation with the longest
-/// time step; a simulation with a far shorter time step takes thousands of steps in a tick.
+/// Wall-clock time after which a tick is interrupted to handle commands. A tick is one step of the simulation with the
+/// longest time step; a simulation with a far shorter time step takes thousands of steps in a tick.
 const SLICE: Duration = Duration::from_millis(50);
-/// Number of steps that each simulation takes between two reports of progress.
+/// Number of steps that each simulation takes between two reports of progress to the user.
 const STEPS_AT_ONCE: u64 = 8;
 
-/// Worlds (simulations) side by side at the same simulated time. The world with the largest time step leads. Each other
-/// world follows to within half of its own time step.
+/// A run: worlds (simulations) side by side that are kept at the same simulated time. The world with the largest time
+/// step leads. Each other world follows to within half of its own time step.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct LiveRun {
@@ -67,18 +67,18 @@ impl LiveRun {
         self.worlds.iter().map(|world| *world.simulation.settings()).collect()
     }
 
-    /// True if the next step branches off from the record, because the settings differ from the recorded ones.
+    /// True if the next step branches off from the record, because its settings differ from the recorded settings.
     pub(super) fn branches(&self) -> bool {
         self.worlds.iter().any(WorldHistory::branches)
     }
 
-    /// True if the next step repeats a recorded step.
+    /// True if the next step repeats a step that is already recorded.
     pub(super) fn replays(&self) -> bool {
         let replays = |world: &WorldHistory| world.record.replays(&world.simulation);
         !self.branches() && self.worlds.iter().any(replays)
     }
 
-    /// True if the moments after the present one are stored and can be shown without computing.
+    /// True if snapshots of the steps after the present state are stored and can be shown without computing.
     pub(super) fn is_stored(&self) -> bool {
         self.worlds.iter().all(|world| world.stored.go_on_from(world.steps()))
     }
@@ -87,8 +87,8 @@ impl LiveRun {
         self.worlds.iter().any(|world| world.failure.is_some())
     }
 
-    /// Limits the keyframes of all simulations together to about `budget_bytes` bytes, and their stored moments to
-    /// [`STORED_BYTES`].
+    /// Limits the keyframes (copies of the state) of all simulations together to about `budget_bytes` bytes, and their
+    /// stored snapshots to [`STORED_BYTES`].
     fn keep_within(&mut self, budget_bytes: usize) {
         let count = self.worlds.len().max(1);
         for world in &mut self.worlds {
@@ -126,8 +126,8 @@ impl LiveRun {
     }
 
     /// Takes one step of the simulation with the largest time step, and the steps that bring the other simulations to
-    /// the same time. If this takes longer than [`SLICE`], the next tick continues. Returns the number of steps of all
-    /// simulations, and true if all steps succeeded.
+    /// the same simulated time. If this takes longer than [`SLICE`], the next call continues. Returns the number of
+    /// steps of all simulations in this call, and true if all of them succeeded.
     pub(super) fn tick(&mut self) -> (u64, bool) {
         let steps_before = self.steps();
         let goal_secs = self.goal_secs.take();
@@ -142,7 +142,7 @@ impl LiveRun {
         (self.steps() - steps_before, all_well)
     }
 
-    /// True while some simulations have not yet finished a tick ([`Self::tick`]).
+    /// True while some simulations have not yet finished the tick that has begun ([`Self::tick`]).
     pub(super) fn is_on_its_way(&self) -> bool {
         self.goal_secs.is_some()
     }
@@ -152,12 +152,12 @@ impl LiveRun {
         self.worlds.iter_mut().for_each(|world| world.seek(time_secs));
     }
 
-    /// Takes one step of a seek in each simulation. Returns true if all simulations have reached the requested time.
+    /// Takes one step of a jump to a recorded time in each simulation. Returns true if all simulations have arrived.
     pub(super) fn advance_seek(&mut self) -> bool {
         each(&mut self.worlds, WorldHistory::advance_seek)
     }
 
-    /// Copy of the run with fewer keyframes and rows, to be sent to the window or to a file.
+    /// Copy of the run with at most `bytes` bytes of keyframes and `rows` rows per curve, for the window or a file.
     fn thinned(&self, bytes: usize, rows: usize) -> Self {
         let mut run = Self { worlds: Vec::new(), ..self.clone() };
         run.worlds = self.worlds.iter().map(WorldHistory::handed_out).collect();
@@ -184,7 +184,7 @@ pub struct PastRun {
     pub number: u64,
     /// The user's name for the run; may be empty.
     pub name: String,
-    /// True if the user went back from this run to an earlier run.
+    /// True if the user went back from this run to an earlier run, so that this run can be redone.
     pub is_undone: bool,
     /// Simulated time of the last recorded step of the run, s.
     pub recorded_secs: f64,
@@ -195,9 +195,9 @@ pub struct PastRun {
 /// Summary of one world (simulation) of an earlier run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PastWorld {
-    /// The controls (settings and pull of a grain) at the last step.
+    /// The controls (settings and pull of a grain) of the world's next step.
     pub controls: Controls,
-    /// Observables of the whole recorded run, for plots.
+    /// Observables after each recorded step of the run, for plots.
     pub curve: Curve,
 }
 
@@ -219,7 +219,7 @@ impl PastRun {
 }
 
 /// All data that a live run has computed: the present simulations with their records, and the earlier runs. A run can
-/// be continued from its history, and each of its steps can be computed again from the recorded changes.
+/// be continued from its history, and each of its past states can be computed again.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunHistory {
@@ -232,26 +232,26 @@ pub struct RunHistory {
     /// Summaries of the earlier runs for display.
     #[serde(skip)]
     told: Arc<[PastRun]>,
-    /// Number of runs that have been kept so far.
+    /// Number of runs that have become earlier runs so far; the last number given to a run.
     #[serde(skip)]
     count: u64,
     #[serde(skip)]
     recording_bytes: usize,
 }
 
-/// Plan of a simulation: its settings, their changes and its number of steps. [`RunHistory::computed`] computes it.
+/// A simulation to be computed ([`RunHistory::computed`]): its settings, their changes, and its number of steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorldPlan {
     /// Settings of the first step.
     pub settings: Settings,
-    /// Changes of the settings, in order. Each has the number of the step after which it takes effect.
+    /// Changes of the settings in order of time. Each change has the number of the step after which it takes effect.
     pub changes: Vec<(u64, Settings)>,
     /// Number of steps of the simulation.
     pub steps: u64,
 }
 
 impl RunHistory {
-    /// Returns a history without simulations, whose keyframes may take `recording_bytes` bytes.
+    /// Returns a history without simulations. `recording_bytes` is the memory for keyframes (copies of states), bytes.
     pub(super) fn new(recording_bytes: usize) -> Self {
         Self { recording_bytes, ..Self::default() }
     }
@@ -276,7 +276,7 @@ impl RunHistory {
         self.tell();
     }
 
-    /// Starts one simulation from `start` for each of the settings `all`. The run so far is kept as an earlier run.
+    /// Starts one simulation from the state `start` for each of the settings `all`. The previous run is kept.
     pub(super) fn restart(&mut self, start: &Simulation, tally: Tally, all: &[Settings]) {
         let world =
             |settings: &Settings| WorldHistory::new(start, tally, settings, self.recording_bytes);
@@ -288,8 +288,8 @@ impl RunHistory {
         return_freed_memory();
     }
 
-    /// Goes back to the earlier run of this number, or forward to the undone run of this number. The runs between are
-    /// kept in their order. Returns false if no run has this number.
+    /// Goes back to the earlier run of this number, or forward to the undone run of this number. The runs between them
+    /// and the present run are kept in their order. Returns false if no run has this number.
     pub(super) fn go_to(&mut self, number: u64) -> bool {
         let has = |runs: &[LiveRun]| runs.iter().any(|run| run.number == number);
         let is_back = has(&self.past);
@@ -310,7 +310,7 @@ impl RunHistory {
         true
     }
 
-    /// Keeps a copy of the present run, if its next step branches off from the record.
+    /// Keeps a copy of the present run if its next step branches off from the record.
     pub(super) fn keep_before_tick(&mut self) {
         if self.present.branches() {
             let mut before = self.present.clone();
@@ -322,8 +322,8 @@ impl RunHistory {
         }
     }
 
-    /// Applies a user's edit (for example, a moved grain) to a simulation. If this branches off from the record, the
-    /// run is kept.
+    /// Applies a user's edit (for example, a moved grain) to a simulation. If later steps were already recorded, the
+    /// run before the edit is kept as an earlier run.
     pub(super) fn edit(&mut self, world: usize, edit: Edit) -> Result<()> {
         let Some(edited) = self.present.worlds.get(world) else { return Ok(()) };
         let branches = edited.record.is_before_end(&edited.simulation);
@@ -333,15 +333,15 @@ impl RunHistory {
         Ok(())
     }
 
-    /// Keeps the run as it was before a change branched off. The present run becomes a new run without a name.
+    /// Makes `before`, the run before a change, an earlier run. The present run becomes a new run without a name.
     fn keep_copy(&mut self, before: LiveRun) {
         self.keep(before);
         self.present.name.clear();
         self.present.number = 0;
     }
 
-    /// Stored states of the newest earlier run, one per simulation, at the last stored moment up to the simulated time
-    /// `secs`, s. The list is empty if a simulation has no such moment.
+    /// Snapshots of the newest earlier run, one per simulation, each the last stored snapshot up to the simulated time
+    /// `secs`, s. The list is empty if a simulation has no such snapshot.
     pub(super) fn ghosts(&self, secs: f64) -> Vec<Arc<Snapshot>> {
         let worlds = self.past.last().map_or(&[][..], |run| &run.worlds);
         let snapshots =
@@ -358,7 +358,7 @@ impl RunHistory {
         self.tell();
     }
 
-    /// Returns the run with a number and a limited memory, or `None` if the run has no recorded step.
+    /// Gives a run a number and limits its memory, so that it can be kept. `None` if the run has no recorded step.
     fn kept(&mut self, mut run: LiveRun) -> Option<LiveRun> {
         if !run.worlds.iter().any(|world| world.record.has_steps()) {
             return None;
@@ -373,7 +373,7 @@ impl RunHistory {
         Some(run)
     }
 
-    /// Limits the memory of the kept runs. Only the newest earlier run keeps stored moments.
+    /// Limits the memory of the kept runs. Only the newest earlier run keeps stored snapshots.
     fn limit(&mut self) {
         let older = self.past.len().saturating_sub(1);
         let older = self.past[..older].iter_mut().chain(&mut self.undone);
@@ -392,7 +392,7 @@ impl RunHistory {
         }
     }
 
-    /// Names the earlier or undone run of this number, or the present run if the number is `None`.
+    /// Gives a name to the earlier or undone run of this number, or to the present run if the number is `None`.
     pub(super) fn name(&mut self, number: Option<u64>, name: String) {
         match number {
             None => self.present.name = name,
@@ -417,7 +417,7 @@ impl RunHistory {
         self.told = past.chain(undone).collect();
     }
 
-    /// Copy with fewer keyframes and rows, to be sent to the window or to a file. Failed earlier runs are left out.
+    /// Copy with fewer keyframes and curve rows, for the window or a file. Failed earlier runs are left out.
     pub(super) fn thinned(&self) -> Self {
         let thinned = |runs: &[LiveRun]| {
             let kept = runs.iter().filter(|run| !run.has_failed());
@@ -431,11 +431,11 @@ impl RunHistory {
         }
     }
 
-    /// Computes the history of several simulations in parallel. All start from `start`, after steps with the sums
-    /// `tally`. `tell` receives the progress and returns false to cancel the computation.
+    /// Computes several simulations in parallel, one for each of `plans`, from the state `start`. `tally` contains the
+    /// sums over the steps before `start`. `tell` receives the progress and returns false to cancel the computation.
     ///
     /// # Errors
-    /// If a setting is refused, or if the computation is cancelled.
+    /// If a setting is invalid, or if the computation is cancelled.
     pub fn computed(
         start: &Simulation,
         tally: Tally,
@@ -471,7 +471,7 @@ impl RunHistory {
         &self.present.worlds
     }
 
-    /// True if a history that was read from a file is consistent.
+    /// True if a history that was read from a file is consistent: each run has a world, and all records are consistent.
     pub fn is_sound(&self) -> bool {
         let is_sound = |run: &LiveRun| {
             !run.worlds.is_empty() && run.worlds.iter().all(|world| world.record.is_sound())
@@ -479,13 +479,13 @@ impl RunHistory {
         is_sound(&self.present) && self.past.iter().chain(&self.undone).all(is_sound)
     }
 
-    /// The reason why one of the present simulations cannot continue, if one cannot.
+    /// The reason why one of the present simulations cannot continue; `None` if all can continue.
     pub fn failure(&self) -> Option<&str> {
         self.present.worlds.iter().find_map(|world| world.failure.as_deref())
     }
 }
 
-/// Takes up to [`STEPS_AT_ONCE`] steps of a plan, with its changes of settings. Returns true if more steps remain.
+/// Takes up to [`STEPS_AT_ONCE`] steps of the simulation that `plan` describes. Returns true if more steps remain.
 fn advance(world: &mut WorldHistory, plan: &WorldPlan) -> Result<bool> {
     for _ in 0..STEPS_AT_ONCE {
         let step = world.steps();

@@ -1,4 +1,4 @@
-//! Progress of the making of an initial state, for display.
+//! Progress while an initial state is computed or read, for display.
 
 use std::sync::Arc;
 
@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::sim::Snapshot;
 
-/// Callback that receives the progress of a long computation, such as the making of an initial state. Returns false
-/// to cancel the computation.
+/// Callback that receives the progress of a long computation, for example of an initial state. It returns false to
+/// cancel the computation.
 pub type Tell<'a> = &'a mut dyn FnMut(LoadingProgress) -> bool;
 
-/// Progress of a long computation, such as the making of an initial state.
+/// Progress of a long computation, for example of an initial state.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LoadingProgress {
-    /// Completed fraction, 0 to 1.
+    /// Completed fraction of the computation, 0 to 1.
     pub part: f32,
     /// Description of the progress in one line.
     pub text: String,
@@ -22,7 +22,8 @@ pub struct LoadingProgress {
     pub preview: Option<Preview>,
 }
 
-/// A state of the grains while an initial state is being made. It is only shown; it does not change any simulation.
+/// A state of the grains while an initial state is still being computed. It is only drawn; it is not part of any
+/// simulation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Preview {
     /// The positions and velocities to show.

@@ -1,4 +1,4 @@
-//! Messages between a window and a solver in another process, as bytes.
+//! Messages between a window and a solver in another process, encoded as bytes.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;

@@ -1,9 +1,9 @@
 //! Live runs: simulations that compute on a thread of their own while a user watches and changes them.
 //!
-//! The window sends commands through a channel ([`Command`]) and reads the newest moment from a triple buffer
+//! The window sends commands through a channel ([`Command`]) and reads the newest data to draw from a triple buffer
 //! ([`LiveFrame`]). The window never waits for the thread, and the thread never waits for the window. The thread
-//! records all steps in a [`RunHistory`], so that the user can look at a run again and continue it from any moment.
-//! Several simulations (*worlds*) that start from one initial state are kept at the same simulated time.
+//! records all steps in a [`RunHistory`], so that the user can look at a run again and continue it from any recorded
+//! time. Several simulations (*worlds*) that start from one initial state are kept at the same simulated time.
 
 mod clock;
 mod command;

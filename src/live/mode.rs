@@ -6,25 +6,23 @@ use super::LoadingProgress;
 #[derive(Clone, Debug)]
 pub(super) enum Mode {
     Paused,
-    /// Time passes, and steps are computed when they are due.
+    /// Simulated time advances, and steps are computed when they are due.
     Computing,
-    /// The stored moments of the record up to this simulated time, s, are shown at the chosen pace. Nothing is
-    /// computed, so that a run that is slow to compute is also shown smoothly. The simulations do not change in
-    /// this mode.
+    /// The stored snapshots up to this simulated time, s, are shown at the chosen speed. Nothing is computed, so that a
+    /// run that is slow to compute is also shown smoothly. The simulations do not change in this mode.
     Showing {
         until_secs: f64,
     },
-    /// A recorded moment is being computed. After that, time passes if `then_plays` is true; otherwise the run
-    /// pauses.
+    /// A recorded state is being computed. After that, the run plays if `then_plays` is true; otherwise it pauses.
     Seeking {
         then_plays: bool,
     },
-    /// A step that takes longer than 50 ms is being completed. After that, `more` further requested steps are
-    /// taken, and the run pauses.
+    /// A single step that takes longer than 50 ms is being completed. After that, `more` further steps that the user
+    /// asked for are taken, and the run pauses.
     Stepping {
         more: u64,
     },
-    /// An initial state is being made.
+    /// An initial state is being computed or read, with this progress.
     Loading(LoadingProgress),
 }
 

@@ -6,10 +6,10 @@ use std::time::Duration;
 pub struct LiveOptions {
     /// Callback on the solver's thread after each new frame, for example to make the window redraw.
     pub wake: Box<dyn Fn() + Send>,
-    /// Callback while an initial state is made. If it returns true, the loading is cancelled. A thread that
-    /// receives no commands during the loading needs this callback.
+    /// Callback during the loading of an initial state. If it returns true, the loading is cancelled. A thread that
+    /// receives no commands during the loading can only be interrupted by this callback.
     pub gives_up: Box<dyn Fn() -> bool + Send>,
-    /// Shortest time between two frames of a running simulation.
+    /// Shortest wall-clock time between two frames of a running simulation.
     pub frame_interval: Duration,
     /// Memory for keyframes (copies of the whole state) of all simulations together, bytes.
     pub recording_bytes: usize,

@@ -1,9 +1,9 @@
 //! The record of a simulation, from which each of its past states can be computed again with the same bits.
 //!
 //! A step depends only on the state and the settings, and a clone of a simulation continues exactly like the original.
-//! So a record consists of some clones (keyframes) and all changes of the settings. A state between two keyframes is
-//! computed from the keyframe before it. If memory runs out, every second keyframe is dropped. Then the whole run can
-//! still be computed, with more steps from the nearest keyframe.
+//! So a record consists of some clones (keyframes) and of all changes of the settings. A state between two keyframes is
+//! computed from the keyframe before it. If the memory for keyframes is full, every second keyframe is dropped. Then
+//! the whole run can still be computed, with more steps from the nearest keyframe.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -13,13 +13,13 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use crate::sim::{Edit, Pull, RunEnding, Settings, Simulation, Tally};
 
-/// The inputs of a simulation that can change between two steps.
+/// The inputs of a simulation that a user can change between two steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Controls {
     /// Settings of the next step.
     pub settings: Settings,
-    /// Spring by which the user drags a grain, if the user does.
+    /// Spring by which the user drags a grain; `None` if the user drags no grain.
     pub pull: Option<Pull>,
 }
 
@@ -62,7 +62,8 @@ const FIRST_SPACING: u64 = 32;
 pub struct WorldRecord {
     keyframes: Vec<Keyframe>,
     changes: Vec<ControlsChange>,
-    /// Edits by the user, in order of time. Each simulation counts the edits that it contains.
+    /// Edits by the user, in order of time. The state of a simulation contains the number of its edits, so that edits
+    /// still to be applied can be found.
     edits: Vec<HandEdit>,
     spacing: u64,
     budget_bytes: usize,
@@ -85,7 +86,7 @@ impl Keyframe {
 
 impl WorldRecord {
     /// Returns a record that begins at the state `start`. `tally` contains the sums over the steps before `start`, and
-    /// `budget_bytes` is the approximate memory for keyframes.
+    /// `budget_bytes` is the approximate memory for keyframes (copies of the state), bytes.
     pub(super) fn new(start: &Simulation, tally: Tally, budget_bytes: usize) -> Self {
         Self {
             keyframes: vec![Keyframe { simulation: Arc::new(start.clone()), tally }],
@@ -109,7 +110,7 @@ impl WorldRecord {
         &self.keyframes[0].simulation
     }
 
-    /// Records the state before a new step. Records of later steps are removed.
+    /// Records the state before a new step. If later steps were recorded, they are removed from the record.
     pub(super) fn before_step(&mut self, simulation: &Simulation, tally: &Tally) {
         let step = simulation.observables().step;
         self.cut(step, self.edits_of(simulation));
@@ -135,7 +136,7 @@ impl WorldRecord {
         }
     }
 
-    /// Removes the records of all steps after `step`, and all edits except the first `edits`.
+    /// Removes everything that was recorded after the step number `step`, and all edits except the first `edits`.
     fn cut(&mut self, step: u64, edits: usize) {
         if self.end_step > step {
             let begun_with = self.start().edits();
@@ -149,7 +150,8 @@ impl WorldRecord {
         self.edits.truncate(edits);
     }
 
-    /// Records a user's edit that led to the state of `simulation`. Records of later steps are removed.
+    /// Records a user's edit (for example, a moved grain) that led to the state of `simulation`. Later steps are
+    /// removed from the record.
     pub(super) fn edited(&mut self, simulation: &Simulation, edit: Edit) {
         let after_step = simulation.observables().step;
         self.cut(after_step, self.edits_of(simulation).saturating_sub(1));
@@ -157,17 +159,19 @@ impl WorldRecord {
         self.edits.push(HandEdit { after_step, edit });
     }
 
-    /// Number of this record's edits that the state of `simulation` contains.
+    /// Number of this record's edits (for example, moved grains) that were already applied to the state of
+    /// `simulation`.
     fn edits_of(&self, simulation: &Simulation) -> usize {
         simulation.edits().saturating_sub(self.start().edits())
     }
 
-    /// All edits by the user, in order of time.
+    /// All edits by the user (for example, moved grains), in order of time.
     pub fn edits(&self) -> &[HandEdit] {
         &self.edits
     }
 
-    /// Keeps a keyframe of the state at the end of the record, so that a later seek to the end computes nothing.
+    /// Keeps a keyframe (a copy of the state) at the end of the record, so that a later jump to the end computes
+    /// nothing.
     pub(super) fn keep_end(&mut self, simulation: &Simulation, tally: &Tally) {
         let step = simulation.observables().step;
         if step == self.end_step && self.last_keyframe() < step {
@@ -175,7 +179,7 @@ impl WorldRecord {
         }
     }
 
-    /// Records the end of a step that `simulation` has just taken.
+    /// Records that `simulation` has just finished a step.
     pub(super) fn after_step(&mut self, simulation: &Simulation) {
         self.end_step = simulation.observables().step;
         self.end_secs = simulation.time_secs();
@@ -208,8 +212,8 @@ impl WorldRecord {
         }
     }
 
-    /// True if a record that was read from a file is consistent: it has a keyframe, the step numbers of keyframes,
-    /// changes and edits increase, and no keyframe is later than the last step.
+    /// True if a record that was read from a file is consistent: it has a keyframe; keyframes, changes and edits are in
+    /// the order of their step numbers; and no keyframe is later than the last step.
     pub(super) fn is_sound(&self) -> bool {
         let rise = |pair: &[Keyframe]| pair[0].step() < pair[1].step();
         let last = self.keyframes.last().map(Keyframe::step);
@@ -221,7 +225,7 @@ impl WorldRecord {
             && changes.into_iter().all(|pair| pair[0].after_step < pair[1].after_step)
     }
 
-    /// True if any step is recorded.
+    /// True if the record contains at least one step.
     pub(super) fn has_steps(&self) -> bool {
         self.end_step > self.start().observables().step
     }
@@ -232,9 +236,9 @@ impl WorldRecord {
         self.edits.is_empty() && self.changes.iter().all(|change| change.controls == all_along)
     }
 
-    /// True if the next step of a simulation repeats a recorded step. If the user now pulls a grain and the pull is not
-    /// recorded, the step is a new one. If a recorded pull is missing, the step still counts as recorded, because a
-    /// seek removes pulls.
+    /// True if the next step of a simulation repeats a recorded step. If the user now pulls a grain and the record has
+    /// no such pull, the step is a new step. If the record has a pull that is now missing, the step still counts as a
+    /// repetition, because a jump to a recorded time removes pulls.
     pub(super) fn replays(&self, simulation: &Simulation) -> bool {
         let step = simulation.observables().step;
         let same = |recorded: &Controls| {
@@ -249,7 +253,8 @@ impl WorldRecord {
         simulation.observables().step < self.end_step
     }
 
-    /// Returns the last keyframe at or before a simulated time, and the sums over the steps up to that keyframe.
+    /// Returns the last keyframe (copy of the state) at or before a simulated time, s, and the sums over the steps up
+    /// to that keyframe.
     pub(super) fn keyframe_before(&self, time_secs: f64) -> (&Simulation, Tally) {
         let after = |keyframe: &Keyframe| keyframe.simulation.time_secs() <= time_secs;
         let index = self.keyframes.partition_point(after).saturating_sub(1);
@@ -257,8 +262,8 @@ impl WorldRecord {
         (&keyframe.simulation, keyframe.tally)
     }
 
-    /// True if the state of `simulation` is the recorded state nearest to the simulated time `goal_secs`, or a later
-    /// state, or the last recorded state.
+    /// True if the state of `simulation` is the recorded state nearest to the simulated time `goal_secs`, s, or any
+    /// later recorded state, or the last recorded state.
     pub(super) fn has_come_to(&self, simulation: &Simulation, goal_secs: f64) -> bool {
         let step = simulation.observables().step;
         let controls = self.controls_after(step).copied();
@@ -270,8 +275,8 @@ impl WorldRecord {
         time_secs + 0.5 * time_step_secs >= goal_secs || step >= self.end_step
     }
 
-    /// Prepares a recorded state for its next recorded step: applies the recorded edits up to this moment, and sets the
-    /// recorded controls.
+    /// Prepares a recorded state for its next recorded step: applies the recorded edits that precede this step, and
+    /// sets the recorded controls (settings and pull of a grain).
     pub(super) fn restore_controls(&self, simulation: &mut Simulation) {
         let step = simulation.observables().step;
         let made = self.edits.iter().skip(self.edits_of(simulation));
@@ -286,19 +291,20 @@ impl WorldRecord {
         }
     }
 
-    /// The settings of the recorded step with this number.
+    /// The settings of the recorded step with this number; `None` if no settings are recorded for it.
     pub(super) fn settings_of_step(&self, step: u64) -> Option<Settings> {
         Some(self.controls_after(step.checked_sub(1)?)?.settings)
     }
 
-    /// The controls of the step after step number `step`; `None` before the first recorded change.
+    /// The controls (settings and pull of a grain) of the step that follows step number `step`; `None` before the first
+    /// recorded change.
     pub(super) fn controls_after(&self, step: u64) -> Option<&Controls> {
         let count = self.changes.partition_point(|change| change.after_step <= step);
         count.checked_sub(1).map(|index| &self.changes[index].controls)
     }
 
-    /// Returns the changes of the controls from step `from_step` on that affect steps up to the simulated time
-    /// `until_secs`.
+    /// Returns the changes of the controls (settings and pull of a grain) from step `from_step` on that affect steps up
+    /// to the simulated time `until_secs`, s.
     pub fn changes(
         &self,
         from_step: u64,
@@ -312,12 +318,13 @@ impl WorldRecord {
         })
     }
 
-    /// Computes the states between two simulated times again, with the same bits. `each` receives all states in order
-    /// of time, starting at the keyframe before the first time. Its second argument is true if the state is between the
-    /// two times. Each state has the settings of the step that led to it. `each` can end the replay.
+    /// Computes the states between two simulated times, s, again with the same bits. The callback `each` receives all
+    /// states in order of time, starting at the keyframe before the first time. Its second argument is true if the
+    /// state lies between the two times. Each state has the settings of the step that led to it. The callback can end
+    /// the replay.
     ///
     /// # Errors
-    /// Errors of `each`, and errors of a step except a state that is no longer finite.
+    /// Returns an error of the callback or of a step. If a state is no longer finite, the replay ends without an error.
     pub fn replay(
         &self,
         [from_secs, until_secs]: [f64; 2],

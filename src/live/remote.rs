@@ -1,9 +1,9 @@
 //! A live run whose solver shares no memory with the window, for example in a browser's worker. The window and the
 //! solver exchange messages as bytes.
 //!
-//! Most commands are sent unchanged. A source of initial states is sent as data. A callback for a history stays on the
-//! window's side and is called when the reply arrives. The solver sends only its newest frame, as the difference from
-//! the previous frame, and makes the next frame when the window has seen the last one.
+//! Most commands are sent unchanged. A source of initial states is sent as data. A callback that receives a history
+//! stays in the window's process and is called when the reply arrives. The solver sends only its newest frame, as the
+//! difference from the previous frame, and makes the next frame when the window has seen the last one.
 
 use std::collections::HashMap;
 use std::marker::PhantomData;
@@ -25,12 +25,12 @@ use super::{
 use crate::Instant;
 use crate::error::{Error, Result};
 
-/// Time after which the solver sends another frame, although the window has not yet reported that it has seen the last
-/// one. While an initial state is being made, the solver receives no messages, so it cannot learn that the window has
-/// seen a frame.
+/// Time after which the solver sends another frame, although the window has not yet confirmed the last one. While an
+/// initial state is being computed, the solver receives no messages, so it cannot learn that the window has seen a
+/// frame.
 const UNSEEN_INTERVAL: Duration = Duration::from_millis(100);
 
-/// A message from the window to the solver. The first number of each message is the number of the command.
+/// A message from the window to the solver. The first number of a message is the number of its command.
 #[derive(Serialize, Deserialize)]
 enum Request {
     Command(u64, Command),
@@ -41,7 +41,7 @@ enum Request {
     Seen,
 }
 
-/// A message from the solver to the window.
+/// A message from the solver to the window. A number in a message is that of the command to which it replies.
 #[derive(Serialize, Deserialize)]
 enum Reply {
     Frame(Box<FrameChange>),
@@ -52,7 +52,8 @@ enum Reply {
 /// A frame as its difference from the previous frame.
 #[derive(Serialize, Deserialize)]
 struct FrameChange {
-    /// The frame without its initial state, summaries of earlier runs, and curves.
+    /// The frame without those of its data that are sent only when they change: the initial state, the summaries of
+    /// earlier runs, and the curves.
     frame: LiveFrame,
     start: Option<Arc<LiveStart>>,
     past: Option<Arc<[PastRun]>>,
@@ -85,16 +86,17 @@ impl FrameChange {
     }
 }
 
-/// A callback that waits for the history of one simulation or of the whole run.
+/// A callback of the window that waits for a history: of one simulation, or of the whole run.
 enum Waiting {
     World(Taker),
     All(StartTaker),
 }
 
-/// Sends the bytes of a message to the solver. The flag is true if the loading that is in progress is to be cancelled.
+/// Callback that sends the bytes of a message to the solver. Its second argument is true if the initial state that is
+/// being loaded is to be abandoned.
 pub type Ask = Box<dyn FnMut(Vec<u8>, bool)>;
 
-/// The window's side of a remote run.
+/// The end of a remote run in the window's process.
 pub(super) struct RemoteRun {
     ask: Ask,
     inbox: Receiver<Vec<u8>>,
@@ -162,13 +164,14 @@ impl RemoteRun {
     }
 }
 
-/// Sends the bytes of a message to the window. Frames are also sent while an initial state is being made.
+/// Callback that sends the bytes of a message to the window. Frames are also sent while an initial state is being
+/// computed.
 pub type Post = Box<dyn FnMut(Vec<u8>) + Send>;
 
-/// Sends a frame to the window when the window has seen the previous frame, or after [`UNSEEN_INTERVAL`].
+/// Sends a frame to the window when the window has confirmed the previous frame, or after [`UNSEEN_INTERVAL`].
 struct FramePoster {
     frames: Output<LiveFrame>,
-    /// The last frame that was sent.
+    /// The last frame that was sent to the window.
     posted: LiveFrame,
     posted_at: Instant,
     is_seen: bool,
@@ -196,7 +199,8 @@ impl FramePoster {
     }
 }
 
-/// The solver's side of a remote run: an engine that never sleeps. `S` is the type of its sources of initial states.
+/// The end of a remote run in the solver's process: an engine that never sleeps. `S` is the type of its sources of
+/// initial states.
 pub struct RemoteEngine<S> {
     engine: Engine,
     commands: Sender<(u64, Command)>,
@@ -205,7 +209,7 @@ pub struct RemoteEngine<S> {
 }
 
 impl<S: StartSource + DeserializeOwned> RemoteEngine<S> {
-    /// Returns an engine without an initial state, which sends its replies to `post`.
+    /// Returns an engine without an initial state, which sends its replies through the callback `post`.
     pub fn new(post: Post, options: LiveOptions) -> Self {
         let (commands, inbox) = channel();
         let (output, frames) = triple_buffer(&LiveFrame::default());
@@ -257,8 +261,8 @@ impl<S: StartSource + DeserializeOwned> RemoteEngine<S> {
         Ok(())
     }
 
-    /// Handles the received commands and takes the steps that are due. Returns the time until the next step or frame is
-    /// due; `None` if nothing is due before the next message.
+    /// Handles the received commands and takes the steps that are due. Returns the wall-clock time until the next step
+    /// or frame is due; `None` if nothing is due before the next message.
     pub fn turn(&mut self) -> Option<Duration> {
         self.engine.turn(false);
         self.engine.wait()

@@ -1,4 +1,4 @@
-//! The initial state of a live run, and the sources that make initial states.
+//! The initial state of a live run, and the sources that compute or read initial states.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -11,10 +11,10 @@ use crate::scene::Scene;
 use crate::sim::{Settings, Simulation, Tally};
 use crate::world::{Boundary, Physics};
 
-/// A source of an initial state. It is serialisable data, so that it can be sent to the thread or process that
-/// computes the run.
+/// A source of an initial state, for example a scene to build or a file to read. It is serialisable data, so that it
+/// can be sent to the thread or process that computes the run.
 pub trait StartSource: Send + 'static {
-    /// Makes the initial state. `tell` reports the progress; if it returns false, `make` stops with an error.
+    /// Makes the initial state. `tell` receives the progress; if it returns false, `make` stops with an error.
     ///
     /// # Errors
     /// States why no initial state could be made.
@@ -31,8 +31,8 @@ pub trait StartSource: Send + 'static {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LiveStart {
-    /// The scene in its initial state. The run pauses at the duration of the scene, and the user can continue the
-    /// run.
+    /// The scene in its initial state. The run pauses when it reaches the duration of the scene, and the user can
+    /// continue the run.
     pub scene: Scene,
     /// The configuration from which the scene can be built again.
     #[serde(with = "as_json")]
@@ -40,20 +40,21 @@ pub struct LiveStart {
     /// Arrangement of the window that saved this initial state, as text in the window's own form; `None` if no
     /// window saved it.
     pub window: Option<String>,
-    /// The simulation at t = 0, or at the last moment of a saved run.
+    /// The simulation at t = 0, or the state at which a saved run was left.
     pub simulation: Simulation,
-    /// Sums over the steps before this state (a [`Tally`]).
+    /// Sums over the steps before this state, such as the number of unsolved steps (a [`Tally`]).
     pub tally: Tally,
-    /// Walls that support the grains until time begins; drawn before the first step.
+    /// Walls that support the grains only until the first step; they are drawn before the first step.
     pub held_by: Vec<Boundary>,
     /// Lower left and upper right corner of the view, m.
     pub view: [DVec2; 2],
     /// True if the scene is a heap on level ground, so that its slump (relative drop of the mean height) is
     /// meaningful.
     pub slumps: bool,
-    /// Settings of the worlds that start side by side; empty for one world with the settings of `simulation`.
+    /// Settings of the worlds (simulations) that start side by side; empty for one world with the settings of
+    /// `simulation`.
     pub worlds: Vec<Settings>,
-    /// History of a run that continues. If a history is given, `worlds` has no effect.
+    /// History of a saved run that is to be continued. If a history is given, `worlds` has no effect.
     #[serde(rename = "record")]
     pub history: Option<RunHistory>,
 }
@@ -64,7 +65,7 @@ impl LiveStart {
         self.simulation.settings()
     }
 
-    /// The physics (friction, rotation and so on) that the scene needs.
+    /// The kind of equations (friction, rotation and so on) that the scene needs.
     pub fn physics(&self) -> Physics {
         self.simulation.physics()
     }
@@ -81,8 +82,8 @@ impl StartSource for LiveStart {
     }
 }
 
-/// Serialises a configuration as JSON text. A configuration reads its options by name, and binary forms have no
-/// names.
+/// Serialises a configuration as JSON text in every format. A configuration finds its options by name, and binary
+/// formats do not store names.
 pub(crate) mod as_json {
     use serde::de::Error as _;
     use serde::ser::Error as _;

@@ -1,21 +1,21 @@
-//! Stored moments: past states of a run in the form in which the window shows them. With stored moments, recorded time
-//! can be shown without computing.
+//! Stored snapshots: past states of a run in the form that the window draws. With stored snapshots, past times can be
+//! shown without computing.
 
 use std::sync::Arc;
 
 use crate::sim::{Simulation, Snapshot, Tally};
 use crate::world::Gravity;
 
-/// Memory for the stored moments of all simulations together, bytes. If it is full, every second moment is dropped. It
-/// is enough for about 2,000 moments of 138 grains, or 30 moments of 10,000 grains.
+/// Memory for the stored snapshots of all simulations together, bytes. If it is full, every second snapshot is dropped.
+/// It is enough for about 2,000 snapshots of 138 grains, or 30 snapshots of 10,000 grains.
 pub(super) const STORED_BYTES: usize = 64 << 20;
 
-/// The state after one step, in the form in which the window shows it.
+/// The state after one step, in the form that the window draws.
 #[derive(Clone, Debug)]
 pub(super) struct StoredMoment {
     pub snapshot: Arc<Snapshot>,
     pub gravity: Gravity,
-    /// Sums over all steps up to this moment.
+    /// Sums over all steps up to this state, such as the number of unsolved steps.
     pub tally: Tally,
 }
 
@@ -30,7 +30,7 @@ impl StoredMoment {
     }
 }
 
-/// The stored moments of one simulation, in order of time.
+/// The stored snapshots of one simulation, in order of time.
 #[derive(Clone, Debug)]
 pub(super) struct StoredMoments {
     moments: Vec<StoredMoment>,
@@ -47,8 +47,8 @@ impl Default for StoredMoments {
 }
 
 impl StoredMoments {
-    /// Stores the state after the simulation's last step. Stored moments of later steps are removed, unless the step
-    /// `is_recorded`, so that the later steps remain valid.
+    /// Stores a snapshot after the simulation's last step. If `is_recorded` is true, this step repeats a recorded step,
+    /// and snapshots of later steps remain valid. Otherwise they are removed.
     pub(super) fn store(&mut self, simulation: &Simulation, tally: &Tally, is_recorded: bool) {
         let now = simulation.observables().step;
         let earlier = self.moments.partition_point(|moment| moment.step() < now);
@@ -66,7 +66,7 @@ impl StoredMoments {
         self.thin();
     }
 
-    /// Limits the memory of the stored moments, bytes.
+    /// Limits the memory of the stored snapshots to `most_bytes` bytes.
     pub(super) fn keep_within(&mut self, most_bytes: usize) {
         self.most_bytes = most_bytes;
         self.thin();
@@ -80,7 +80,7 @@ impl StoredMoments {
         }
     }
 
-    /// Removes the stored moments of step `first` and of later steps, because these states have changed.
+    /// Removes the stored snapshots of step number `first` and of later steps, because these states have changed.
     pub(super) fn forget_from(&mut self, first: u64) {
         self.retain(|step| step < first);
     }
@@ -90,13 +90,13 @@ impl StoredMoments {
         self.bytes = self.moments.iter().map(StoredMoment::bytes).sum();
     }
 
-    /// The last stored moment at or before a simulated time, s.
+    /// The last stored snapshot at or before a simulated time, s.
     pub(super) fn at(&self, secs: f64) -> Option<&StoredMoment> {
         let is_there = |moment: &StoredMoment| moment.snapshot.observables.time_secs <= secs;
         self.moments.get(self.moments.partition_point(is_there).checked_sub(1)?)
     }
 
-    /// True if the moments after step `from` are stored.
+    /// True if the snapshots that follow step number `from` are stored.
     pub(super) fn go_on_from(&self, from: u64) -> bool {
         let next = self.moments.partition_point(|moment| moment.step() <= from);
         self.moments.get(next).is_some_and(|next| next.step() <= from + 2 * self.stride)

@@ -1,4 +1,4 @@
-//! One world (simulation) of a live run: its present state, its record, and the curve of its observables.
+//! One world (simulation) of a live run: its present state, the record of its steps, and the curve of its observables.
 
 use std::sync::Arc;
 
@@ -10,38 +10,38 @@ use crate::Instant;
 use crate::error::{Error, Result};
 use crate::sim::{Edit, Settings, Simulation, Tally};
 
-/// Weight of the newest step in the running mean of the wall-clock time per step.
+/// Weight (0 to 1) of the newest step in the running mean of the wall-clock time per step.
 const NEWEST: f64 = 0.05;
 
-/// One world (simulation) of a live run, with its record. A clone shares the keyframes of the record and most of the
-/// curve.
+/// One world (simulation) of a live run, with the record of its steps. A clone shares memory with the original: the
+/// keyframes of the record and most of the curve.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WorldHistory {
-    /// The simulation at the present moment.
+    /// The simulation in its present state.
     pub simulation: Simulation,
-    /// The record of the steps before the present moment and, after a seek, of the steps after it.
+    /// The record of the steps up to the present state and, after a jump back in time, also of the steps after it.
     #[serde(rename = "recording")]
     pub record: WorldRecord,
-    /// Observables of all recorded steps, for plots.
+    /// Observables after each recorded step, for plots.
     pub curve: Curve,
-    /// Stored moments, which can be shown without computing.
+    /// Stored snapshots, which can be shown without computing.
     #[serde(skip)]
     pub(super) stored: StoredMoments,
-    /// Sums over the steps up to the present moment.
+    /// Sums over the steps up to the present state, such as the number of unsolved steps.
     pub tally: Tally,
     #[serde(skip)]
     pub(super) step_secs: f64,
-    /// The reason why the simulation cannot continue from the present moment, if it cannot.
+    /// The reason why the simulation cannot continue from the present state; `None` if it can.
     pub failure: Option<Arc<str>>,
-    /// Simulated time that a seek approaches, s.
+    /// Simulated time to which a seek (a jump to a recorded time) leads, s.
     #[serde(skip)]
     goal_secs: Option<f64>,
 }
 
 impl WorldHistory {
     /// Returns a simulation at the state `start` with these settings. `tally` contains the sums over the steps before
-    /// `start`, and `budget_bytes` limits the keyframes.
+    /// `start`, and `budget_bytes` is the memory for keyframes (copies of the state), bytes.
     pub(super) fn new(
         start: &Simulation,
         tally: Tally,
@@ -66,7 +66,7 @@ impl WorldHistory {
         }
     }
 
-    /// The number of the step that led to the present moment.
+    /// The number of the step that led to the present state.
     pub(super) fn steps(&self) -> u64 {
         self.simulation.observables().step
     }
@@ -75,12 +75,13 @@ impl WorldHistory {
         self.simulation.parameters().time_step_secs
     }
 
-    /// True if the next step branches off from the record, because the settings differ from the recorded ones.
+    /// True if the next step branches off from the record, because the present settings differ from the recorded
+    /// settings.
     pub(super) fn branches(&self) -> bool {
         self.record.is_before_end(&self.simulation) && !self.record.replays(&self.simulation)
     }
 
-    /// Takes a step, and records the step unless it is already recorded. Returns false if the step fails.
+    /// Takes a step, and records the step unless it repeats a recorded step. Returns false if the step fails.
     pub(super) fn step(&mut self) -> bool {
         if self.failure.is_some() {
             return false;
@@ -105,7 +106,7 @@ impl WorldHistory {
         self.failure.is_none()
     }
 
-    /// Repeats a recorded step. Returns false if the step fails.
+    /// Takes a step that repeats a recorded step. Returns false if the step fails.
     fn step_in_the_record(&mut self) -> bool {
         self.record.restore_controls(&mut self.simulation);
         let before = Instant::now();
@@ -134,13 +135,13 @@ impl WorldHistory {
         self.step_secs += weight * (secs - self.step_secs);
     }
 
-    /// True if another step brings the simulated time closer to `time_secs`.
+    /// True if another step brings the simulated time closer to `time_secs`, s.
     pub(super) fn is_before(&self, time_secs: f64) -> bool {
         self.simulation.time_secs() + 0.5 * self.time_step_secs() < time_secs
     }
 
-    /// Takes at least one step, and further steps until the simulated time is nearest to `time_secs` or the wall-clock
-    /// time `until` is reached. Returns false if a step failed.
+    /// Takes at least one step, and further steps until the simulated time is nearest to `time_secs`, s, or the wall
+    /// clock reaches `until`. Returns false if a step failed.
     pub(super) fn catch_up(&mut self, time_secs: f64, until: Instant) -> bool {
         while self.is_before(time_secs) {
             if !self.step() {
@@ -153,7 +154,7 @@ impl WorldHistory {
         true
     }
 
-    /// Starts a seek to the recorded moment nearest to the simulated time `time_secs`.
+    /// Starts to compute the recorded state nearest to the simulated time `time_secs`, s (a seek).
     pub(super) fn seek(&mut self, time_secs: f64) {
         if self.failure.is_none() {
             self.record.keep_end(&self.simulation, &self.tally);
@@ -166,7 +167,7 @@ impl WorldHistory {
         self.record.restore_controls(&mut self.simulation);
     }
 
-    /// Takes one step of a seek. Returns true when the seek has ended.
+    /// Takes one step of a seek (a jump to a recorded time). Returns true when the seek has reached its time.
     pub(super) fn advance_seek(&mut self) -> bool {
         let Some(goal) = self.goal_secs else { return true };
         if self.record.has_come_to(&self.simulation, goal) || !self.replay_step() {
@@ -178,7 +179,7 @@ impl WorldHistory {
         false
     }
 
-    /// Applies a user's edit (for example, a moved grain). Records of later steps are removed.
+    /// Applies a user's edit (for example, a moved grain). Later steps are removed from the record.
     pub(super) fn edit(&mut self, edit: Edit) -> Result<()> {
         if let Some(failure) = &self.failure {
             return Err(Error::value("state", failure, "one from which the run can continue"));
@@ -190,7 +191,7 @@ impl WorldHistory {
         Ok(())
     }
 
-    /// Copy of the history without stored moments, to be sent to the window or to a file.
+    /// Copy of the history without stored snapshots, to be sent to the window or to a file.
     pub(super) fn handed_out(&self) -> Self {
         let mut world = Self { stored: StoredMoments::default(), ..self.clone() };
         // The user's pull of a grain ends here.

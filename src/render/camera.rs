@@ -9,7 +9,7 @@ use glam::DVec2;
 use crate::sim::Snapshot;
 use crate::world::{Boundary, Edge};
 
-/// The rectangle of the scene that a picture shows.
+/// The visible part of the scene: the point in the middle of the picture, and the scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// The point in the middle of the picture, m.
@@ -18,7 +18,7 @@ pub struct Camera {
     pub metres_per_pixel: f64,
 }
 
-/// Empty border on each side of a picture, pixels.
+/// Widths of the empty border on the sides of a picture, pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Margins {
     pub left: f64,
@@ -75,13 +75,13 @@ impl Camera {
     }
 }
 
-/// Returns the vector from the middle of a picture of `size` pixels to its upper right corner.
+/// Returns the vector from the middle of a picture of `size` pixels to its upper right corner, pixels, y up.
 pub(super) fn half_size(size: [u32; 2]) -> DVec2 {
     DVec2::from(size.map(f64::from)) / 2.0
 }
 
-/// Returns the box (m) around all finite parts of a snapshot: grains, fixed discs, walls and the centre of attraction.
-/// `None` if there are no such parts.
+/// Returns the smallest box (m) around all finite items of a snapshot: grains, discs that are not grains, walls, and
+/// the centre of attraction. `None` if there are no such items.
 pub fn bounds(snapshot: &Snapshot) -> Option<[DVec2; 2]> {
     let surroundings = &snapshot.surroundings;
     let grains = snapshot.grains.iter().map(|grain| (grain.position, grain.radius));

@@ -1,11 +1,11 @@
-//! Colours in gamma space: the numbers that a PNG file stores, divided by 255.
+//! Colours as gamma-encoded values: the numbers that a PNG file stores, divided by 255.
 //!
-//! Every renderer blends these numbers, so that pictures look the same everywhere, and a pixel that an edge half covers
-//! has the mean colour of the edge's two sides.
+//! Every renderer blends these numbers, so that pictures look the same everywhere, and a pixel that is half on each
+//! side of an edge has the mean colour of the two sides.
 
 use serde::{Deserialize, Serialize};
 
-/// Red, green, blue and opacity, each 0 to 1, not premultiplied.
+/// A colour: red, green, blue and opacity, each 0 to 1, not premultiplied.
 #[repr(C)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -21,7 +21,7 @@ impl Colour {
     #[cfg(test)]
     pub(crate) const BLACK: Self = Self::grey(0);
 
-    /// Returns the opaque colour `#rrggbb`.
+    /// Returns the opaque colour whose hexadecimal code is `rrggbb`, such as `0xff0000` for red.
     pub(crate) const fn hex(rrggbb: u32) -> Self {
         Self {
             red: ((rrggbb >> 16) & 0xff) as f32 / 255.0,
@@ -41,7 +41,7 @@ impl Colour {
         Self { alpha, ..self }
     }
 
-    /// Returns the linear interpolation between this colour (`part` 0) and `other` (`part` 1).
+    /// Returns the linear interpolation between this colour (at `part` 0) and `other` (at `part` 1).
     pub(crate) fn mix(self, other: Self, part: f32) -> Self {
         let between = |a: f32, b: f32| a + (b - a) * part;
         Self {
@@ -65,7 +65,8 @@ impl Colour {
     }
 }
 
-/// Blends a colour over an opaque pixel. The opacity of the colour is multiplied by `coverage`, 0 to 1.
+/// Blends a colour over an opaque pixel. `coverage` is the fraction of the pixel that the shape covers, 0 to 1; the
+/// opacity of the colour is multiplied by it.
 pub(super) fn blend_pixel(pixel: &mut image::Rgba<u8>, colour: Colour, coverage: f32) {
     let alpha = colour.alpha * coverage;
     for (under, over) in pixel.0.iter_mut().zip([colour.red, colour.green, colour.blue]) {
@@ -73,7 +74,7 @@ pub(super) fn blend_pixel(pixel: &mut image::Rgba<u8>, colour: Colour, coverage:
     }
 }
 
-/// Colours of the colour map viridis, equally spaced.
+/// Equally spaced colours of the colour map viridis, from its low end to its high end.
 const VIRIDIS: [Colour; 9] = [
     Colour::hex(0x440154),
     Colour::hex(0x472d7b),
@@ -86,8 +87,8 @@ const VIRIDIS: [Colour; 9] = [
     Colour::hex(0xfde725),
 ];
 
-/// Colours of materials, which colour-blind people can distinguish (Okabe & Ito). The two colours that force chains
-/// also use come last.
+/// Colours of the materials of grains, which colour-blind people can distinguish (Okabe & Ito). The two colours that
+/// also show contact forces come last.
 pub(super) const MATERIALS: [Colour; 7] = [
     Colour::hex(0xe69f00),
     Colour::hex(0x56b4e9),
@@ -98,8 +99,8 @@ pub(super) const MATERIALS: [Colour; 7] = [
     Colour::hex(0xd55e00),
 ];
 
-/// Returns the colour of the colour map at the fraction `part`, 0 to 1. Values outside this range have the colour of
-/// the nearer end.
+/// Returns the colour of the colour map viridis at the fraction `part` of its range, 0 to 1. Values outside this range
+/// have the colour of the nearer end.
 pub(crate) fn map_colour(part: f64) -> Colour {
     // NaN has the colour of 0.
     let part = if part.is_nan() { 0.0 } else { part.clamp(0.0, 1.0) };

@@ -5,21 +5,21 @@ use super::numbers::{round_above, si_prefix};
 use super::{ColourBy, Style};
 use crate::sim::{GrainView, Snapshot};
 
-/// Number of contacts from which on all grains have the same colour.
+/// Number of contacts of a grain from which on the colour does not change any more.
 pub(super) const MOST_CONTACTS: u32 = 6;
 
-/// A quantity of grains and the values at the two ends of its colour range.
+/// A quantity that the colours of grains show, and its values at the two ends of the colour scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ColourScale {
     pub colour_by: ColourBy,
-    /// Value at the lower end, in the unit that [`ColourBy`] states.
+    /// Value at the lower end of the colour scale, in the unit that [`ColourBy`] states.
     pub low: f64,
     pub high: f64,
 }
 
 impl ColourScale {
-    /// Returns the colour scale of a style. Its range is the range that the style states, or a range that contains the
-    /// whole snapshot.
+    /// Returns the colour scale of a style. Its range of values is stated by the style; otherwise it contains the
+    /// values of all grains of the snapshot.
     pub(crate) fn new(style: &Style, snapshot: &Snapshot) -> Self {
         let (low, high) = match (style.colour_by, style.range) {
             (ColourBy::Coordination, _) => (0.0, f64::from(MOST_CONTACTS)),
@@ -29,7 +29,7 @@ impl ColourScale {
         Self { colour_by: style.colour_by, low, high }
     }
 
-    /// Returns the colour of a grain; `mean_diameter` is in m.
+    /// Returns the colour of a grain; `mean_diameter` is the mean diameter of all grains, m.
     pub(crate) fn colour(&self, grain: &GrainView, mean_diameter: f64) -> Colour {
         match self.colour_by {
             ColourBy::PaperGreys => Colour::grey(grain.tone),
@@ -43,8 +43,8 @@ impl ColourScale {
         }
     }
 
-    /// Returns the name of the quantity for the legend, with its unit, and the factor that converts values to this
-    /// unit.
+    /// Returns the name of the quantity for the legend, with its unit, and the factor that converts the scale's values
+    /// to this unit.
     pub(crate) fn label(&self) -> (String, f64) {
         let (prefix, factor) = si_prefix(self.low.abs().max(self.high.abs()));
         match self.colour_by {
@@ -67,8 +67,8 @@ pub(crate) fn material_colour(number: usize) -> Colour {
     MATERIALS[number % MATERIALS.len()]
 }
 
-/// Returns a range from zero to a round number that contains the values of all grains of the snapshot. The frames of an
-/// animation use the largest of their ranges.
+/// Returns a range of values from zero to a round number that contains the values of all grains of the snapshot. The
+/// pictures of an animation all use the largest range of any of them.
 pub(crate) fn automatic_range(colour_by: ColourBy, snapshot: &Snapshot) -> (f64, f64) {
     let mean_diameter = snapshot.surroundings.mean_diameter;
     let largest = snapshot

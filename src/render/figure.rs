@@ -1,8 +1,8 @@
 //! A figure of several pictures, arranged as in a journal: a grid of panels with labels.
 //!
 //! The sizes of all labels are computed first, and the grid reserves the space that they need. So no label is cut off
-//! or covers another label. A long label breaks at its spaces, and a label with a word that is too long becomes
-//! smaller.
+//! or covers another label. A long label is broken at its spaces, and a label with a word that is too long gets a
+//! smaller font.
 
 use image::{RgbaImage, imageops};
 
@@ -22,11 +22,11 @@ pub struct PanelGrid {
     pub panels: Vec<RgbaImage>,
     /// Title of each panel. A panel has no title if the title is empty or the list is too short.
     pub panel_titles: Vec<String>,
-    /// True if the titles of panels are in the upper left corners of the panels instead of above them.
+    /// True if the title of each panel is in its upper left corner; false if it is above the panel.
     pub titles_inside: bool,
-    /// Labels to the left of the rows; the text runs upwards.
+    /// Labels to the left of the rows, one per row; the text runs upwards.
     pub row_labels: Vec<String>,
-    /// Labels above the columns.
+    /// Labels above the columns, one per column.
     pub column_labels: Vec<String>,
     /// Title above the grid, in bold type.
     pub title: String,
@@ -35,7 +35,7 @@ pub struct PanelGrid {
 }
 
 impl PanelGrid {
-    /// Returns a grid without labels, on white.
+    /// Returns a grid of panels without labels, on a white ground.
     pub fn new(rows: usize, columns: usize, panels: Vec<RgbaImage>) -> Self {
         Self {
             rows,
@@ -53,7 +53,8 @@ impl PanelGrid {
     /// Draws the figure. Its size depends on the panels and the labels.
     ///
     /// # Errors
-    /// Names a list that is too long for the grid, or a panel whose size differs from the first panel.
+    /// Names a list of labels or panels that is too long for the grid, or a panel whose size differs from the first
+    /// panel.
     pub fn draw(&self) -> Result<RgbaImage> {
         let panel = self.validate()?;
         let palette = Theme::Light.palette();
@@ -64,7 +65,7 @@ impl PanelGrid {
         Ok(image)
     }
 
-    /// Checks that the lists fit the grid. Returns the size of a panel, pixels.
+    /// Checks that the lists of panels and labels fit the grid. Returns width and height of a panel, pixels.
     fn validate(&self) -> Result<[u32; 2]> {
         let places = self.rows * self.columns;
         let Some(first) = self.panels.first() else {
@@ -100,10 +101,10 @@ struct GridLayout {
     columns: Vec<Option<TextBlock>>,
     rows: Vec<Option<TextBlock>>,
     panels: Vec<Option<TextBlock>>,
-    /// Width of the widest row label with the gap beside it.
+    /// Width of the widest row label plus the gap to the panels, pixels.
     row_label_width: u32,
     column_label_height: u32,
-    /// Height of the titles above the panels of each row, with the gap below them.
+    /// For each row, the height of the titles above its panels plus the gap below the titles, pixels.
     title_heights: Vec<u32>,
 }
 
@@ -156,7 +157,7 @@ impl GridLayout {
         }
     }
 
-    /// Height of the title or the caption with the gap beside it, pixels.
+    /// Height of the title or the caption plus its gap to the grid, pixels.
     fn outer(&self, block: &Option<TextBlock>) -> u32 {
         block.as_ref().map_or(0, |block| block.height() + self.gap)
     }

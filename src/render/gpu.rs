@@ -15,20 +15,20 @@ use crate::error::{Error, Result};
 pub(crate) struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
-    /// Kind of driver and name of the device.
+    /// Kind of the driver (Vulkan or OpenGL) and name of the device.
     pub name: String,
-    /// Message of the first failure that no function call returned.
+    /// Message of the first failure that the graphics driver reported by a callback; [`Self::check`] returns it.
     failure: Arc<Mutex<Option<String>>>,
 }
 
 impl Gpu {
-    /// Opens a GPU by Vulkan, or by OpenGL if Vulkan fails.
+    /// Opens a GPU with a Vulkan driver, or with an OpenGL driver if Vulkan fails.
     #[cfg(feature = "panels")]
     pub(crate) fn any() -> Result<Self> {
         Self::open(GpuKind::Vulkan).or_else(|_| Self::open(GpuKind::Gl))
     }
 
-    /// Opens the fastest device that has a driver of this kind.
+    /// Opens the fastest device that has a driver of this kind (Vulkan or OpenGL).
     pub(super) fn open(kind: GpuKind) -> Result<Self> {
         let backends = match kind {
             GpuKind::Vulkan => wgpu::Backends::VULKAN,
@@ -70,7 +70,7 @@ impl Gpu {
         Ok(Self { device, queue, name, failure })
     }
 
-    /// Returns an error if anything failed on the device since the last call of this function.
+    /// Returns an error if any operation on the device has failed since the last call of this function.
     pub(crate) fn check(&self) -> Result<()> {
         let Some(message) = self.failure.lock().ok().and_then(|mut first| first.take()) else {
             return Ok(());
@@ -93,19 +93,20 @@ fn missing(kind: GpuKind) -> Error {
     ))
 }
 
-/// Texture format that stores the blended numbers unchanged. An sRGB format would convert them.
+/// Texture format of pictures in memory. It stores the blended colour values unchanged; an sRGB format would convert
+/// them.
 pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// A GPU that draws pictures into memory. The texture and the buffer for reading it back are kept until the size
-/// changes, so that a sequence of pictures reuses them. Rows of the buffer are padded to 256 bytes, as texture copies
-/// require.
+/// A GPU that draws pictures into memory. The texture, and the buffer into which its pixels are copied, are kept until
+/// the size of the pictures changes. Rows of the buffer are padded to 256 bytes, as texture copies require.
 pub(super) struct Offscreen {
     gpu: Gpu,
     painter: Painter,
     target: Option<OffscreenTarget>,
 }
 
-/// The texture and the buffer, which depend on the size of the picture.
+/// The texture into which a picture is drawn, and the buffer into which its pixels are copied; both have the size of
+/// the picture.
 pub(crate) struct OffscreenTarget {
     pub width: u32,
     pub height: u32,
@@ -116,7 +117,7 @@ pub(crate) struct OffscreenTarget {
 }
 
 impl Offscreen {
-    /// Opens the fastest device that has a driver of this kind.
+    /// Opens the fastest device that has a driver of this kind (Vulkan or OpenGL).
     pub(super) fn open(kind: GpuKind) -> Result<Self> {
         let gpu = Gpu::open(kind)?;
         let painter = Painter::new(&gpu.device, FORMAT);
@@ -170,8 +171,8 @@ impl Offscreen {
     }
 }
 
-/// Returns the colour of the ground for the clearing of the texture, as an exact multiple of 1/255, so that all drivers
-/// round it to the same byte.
+/// Returns the colour with which the texture is cleared. It is rounded to an exact multiple of 1/255, so that all
+/// drivers store the same byte.
 fn clear_colour(colour: Colour) -> wgpu::Color {
     let [r, g, b, _] = colour.to_rgba8().0.map(|byte| f64::from(byte) / 255.0);
     wgpu::Color { r, g, b, a: 1.0 }

@@ -1,4 +1,5 @@
-//! The scale bar of a picture, and the strip on its right (the legend) that explains colours and links.
+//! The scale bar of a picture, and the strip on its right (the legend) that explains the colours of grains, the force
+//! lines and the velocity arrows.
 //!
 //! The strip is always drawn on the processor, so that it is the same with every renderer.
 
@@ -20,7 +21,7 @@ const LONGEST: f64 = 0.2;
 pub(crate) struct ScaleBar {
     pub length: f64,
     pub label: String,
-    /// Left end of the bar, pixels from the middle of the picture, y up.
+    /// Left end of the bar, pixels, relative to the middle of the picture, y up.
     pub start: [f32; 2],
     pub end: [f32; 2],
     /// Font size of the label, pixels. The label starts half a font size to the right of `end`.
@@ -44,8 +45,8 @@ impl ScaleBar {
         }
     }
 
-    /// Returns the links (thick lines) of the bar and its end marks. They lie on a plate in the colour of the ground,
-    /// which has space for a label that is `label_width` pixels wide.
+    /// Returns the thick lines of which the bar and its end marks consist. They lie on a rectangle in the colour of the
+    /// ground, which has space for a label that is `label_width` pixels wide.
     pub(super) fn links(&self, palette: &Palette, label_width: f32) -> Vec<LinkInstance> {
         let ([left, y], [right, _]) = (self.start, self.end);
         let half_width = (self.text_px / 16.0).max(0.75);
@@ -72,11 +73,12 @@ pub(crate) struct Legend {
     pub scale: ColourScale,
     /// Names of the materials of the grains.
     pub materials: Vec<String>,
-    /// Fraction by which the colours of grains fade towards the ground, 0 to 1.
+    /// Fraction by which the colours of grains are mixed with the colour of the ground, 0 to 1.
     pub fading: f32,
-    /// The force |N| of a link at full width, N, and half of that width, pixels; `None` if forces are not drawn.
+    /// The contact force |N|, N, that a line of full width shows, and half of that width, pixels; `None` if forces are
+    /// not drawn.
     pub forces: Option<(f64, f32)>,
-    /// The speed that an arrow in the legend stands for, m/s, and the length of the arrow, pixels; `None` if velocities
+    /// The speed of the example arrow in the legend, m/s, and the length of this arrow, pixels; `None` if velocities
     /// are not drawn.
     pub velocities: Option<(f64, f32)>,
     pub palette: Palette,
@@ -135,7 +137,7 @@ impl Legend {
         (sizes * self.text_px).round() as i64
     }
 
-    /// Returns a colour as it appears on faded grains.
+    /// Returns a grain's colour as it appears in the picture, mixed with the colour of the ground.
     fn faded(&self, colour: Colour) -> Colour {
         colour.mix(self.palette.ground, self.fading)
     }
@@ -144,7 +146,7 @@ impl Legend {
         TextStyle::new(self.text_px, self.palette.ink)
     }
 
-    /// Draws a continuous colour bar with ticks and numbers on its right, and the vertical title to the right of the
+    /// Draws a continuous colour bar with ticks and numbers on its right. The vertical title is to the right of the
     /// numbers.
     fn draw_bar(&self, strip: &mut RgbaImage, top: i64, bottom: i64) {
         let (left, right) = (self.em(0.4), self.em(1.5));
@@ -174,7 +176,7 @@ impl Legend {
         self.draw_title(strip, &title, rows, right + self.em(0.5) + widest, (top + bottom) / 2);
     }
 
-    /// Draws one square per colour with its label, from top to bottom, and the vertical title to the right of the
+    /// Draws one square per colour with its label, from top to bottom. The vertical title is to the right of the
     /// labels.
     fn draw_swatches(
         &self,
@@ -202,8 +204,8 @@ impl Legend {
         self.draw_title(strip, &title, count * pitch, x, start + count * pitch / 2);
     }
 
-    /// Draws the key of contact forces: the colours of pull and push, and the force at full width. Returns the y
-    /// position of the key's upper end, pixels.
+    /// Draws the explanation of contact forces: the colours of pull and push, and the force that a line of full width
+    /// shows. Returns the y position of its upper end, pixels.
     fn draw_force_key(
         &self,
         strip: &mut RgbaImage,
@@ -232,7 +234,8 @@ impl Legend {
         y - self.em(1.2)
     }
 
-    /// Draws the key of velocities: an arrow with its speed. Returns the y position of the key's upper end, pixels.
+    /// Draws the explanation of velocities: an arrow with the speed that it shows. Returns the y position of its upper
+    /// end, pixels.
     fn draw_arrow_key(&self, strip: &mut RgbaImage, bottom: i64, speed: f64, length: f32) -> i64 {
         let largest = (strip.width() as f32 - 2.0 * self.text_px).max(1.0);
         // If the arrow is too long, its length and its speed are halved until it fits.
@@ -268,7 +271,7 @@ impl Legend {
         y - self.em(0.8)
     }
 
-    /// Draws a short link at the left of the strip, as an example.
+    /// Draws a short line at the left of the legend's strip, as an example of a contact force.
     fn sample(&self, strip: &mut RgbaImage, y: i64, half_width: f32, colour: Colour) {
         let [width, height] = [self.em(2.4), self.em(1.4)].map(|side| side.max(1) as u32);
         let mut picture = Picture::new(self.palette.ground);
@@ -283,8 +286,8 @@ impl Legend {
         imageops::replace(strip, &sample, self.em(0.2), y - i64::from(height / 2));
     }
 
-    /// Draws the title on one line that runs upwards, starting at (`x`, `y`). The title becomes smaller if it would be
-    /// longer than the colour bar.
+    /// Draws the title on one line that runs upwards, starting at (`x`, `y`), pixels. If the title would be longer than
+    /// the colour bar, its font size is reduced.
     fn draw_title(&self, strip: &mut RgbaImage, title: &str, length: i64, x: i64, y: i64) {
         let style = self.text();
         let shrink = (length as f32 / style.width(title).max(1.0)).min(1.0);
@@ -293,7 +296,7 @@ impl Legend {
     }
 }
 
-/// Fills the visible part of a rectangle.
+/// Fills the part of a rectangle that is inside the image with one colour.
 pub(super) fn fill(
     image: &mut RgbaImage,
     left: i64,

@@ -1,6 +1,6 @@
 //! Round numbers for axes and scale bars, and the text of numbers.
 
-/// Returns the largest number of the form 1, 2 or 5 times a power of ten that is at most `limit`. `limit` must be
+/// Returns the largest number of the form 1, 2 or 5 times a power of ten that is not above `limit`. `limit` must be
 /// positive.
 pub(crate) fn round_below(limit: f64) -> f64 {
     let power = 10f64.powi(limit.log10().floor() as i32);
@@ -12,7 +12,8 @@ pub(crate) fn round_below(limit: f64) -> f64 {
         .unwrap_or(power)
 }
 
-/// Returns a round number slightly above `value`, at which a scale can end. `value` must be positive.
+/// Returns a round number, such as 1.5 or 20, that is at least `value`. A scale can end at it. `value` must be
+/// positive.
 pub(crate) fn round_above(value: f64) -> f64 {
     let power = 10f64.powi(value.log10().floor() as i32);
     [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0]
@@ -22,7 +23,8 @@ pub(crate) fn round_above(value: f64) -> f64 {
         .unwrap_or(10.0 * power)
 }
 
-/// Returns at most `most` round numbers from `low` to `high`, equally spaced, and their spacing.
+/// Returns at most `most` equally spaced round numbers between `low` and `high`, and their spacing, for the ticks of a
+/// scale.
 pub(crate) fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, f64) {
     let span = high - low;
     if !(span > 0.0 && span.is_finite()) {
@@ -44,12 +46,12 @@ pub(crate) fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, f64) {
     ((first..=last).map(|index| index as f64 * step).collect(), step)
 }
 
-/// Largest number of decimals, and of zeros before the decimal point, in a number that is not written as a power of
+/// Largest number of decimals, and of zeros before the decimal point. A number that needs more is written as a power of
 /// ten.
 const MOST_DECIMALS: f64 = 6.0;
 
 /// Returns the text of a number, with enough decimals to distinguish multiples of `step`. If too many digits are
-/// needed, the number is written as a power of ten. The minus sign is U+2212.
+/// needed, the number is written as a power of ten. The minus sign is the typographic one (U+2212).
 pub(crate) fn decimal(value: f64, step: f64) -> String {
     let places = -(step.abs().log10() + 1e-9).floor();
     let is_far = places.abs() > MOST_DECIMALS;
@@ -71,8 +73,9 @@ pub(crate) fn decimal(value: f64, step: f64) -> String {
     }
 }
 
-/// Returns the SI prefix for numbers up to `largest`, and the factor of the prefix. There is no prefix between 0.1 and
-/// 10,000, and none below 0.001 of the smallest prefix, where numbers are written as powers of ten.
+/// Returns the SI prefix with which numbers up to `largest` are written, and the factor of the prefix, such as "k" and
+/// 1000. There is no prefix if `largest` is between 0.1 and 10,000, or below 10⁻¹⁵, where numbers are written as powers
+/// of ten.
 pub(crate) fn si_prefix(largest: f64) -> (&'static str, f64) {
     let largest = largest.abs();
     if largest < 1e-15 || !largest.is_finite() || (0.1..1e4).contains(&largest) {

@@ -1,4 +1,5 @@
-//! Overlays on the grains: contact forces, velocities, and arrows for moving walls and fixed discs.
+//! Overlays that are drawn on the grains: lines for contact forces, arrows for velocities, and arrows for moving walls
+//! and other bodies that are not grains.
 
 use std::f64::consts::TAU;
 
@@ -11,16 +12,17 @@ use super::{Camera, Colour, LinkInstance, Palette, Style};
 use crate::sim::{MotionView, Snapshot, Surroundings};
 use crate::world::Edge;
 
-/// Full width of a link that shows a contact force, in mean diameters.
+/// Width of a line that shows the reference force, in mean diameters. Smaller forces have narrower lines.
 const FORCE_WIDTH: f64 = 0.4;
-/// Smallest drawn force, as a fraction of the reference force. Links of smaller forces would be too thin to be visible.
+/// Smallest force that is drawn, as a fraction of the reference force. Lines of smaller forces would be too thin to be
+/// visible.
 const LEAST_FORCE: f64 = 0.004;
-/// Fraction of contacts whose links are narrower than the full width, if the style states no reference force.
+/// Fraction of contacts whose force lines are narrower than the full width, if the style states no reference force.
 const REFERENCE_QUANTILE: f64 = 0.95;
 
-/// Returns the reference force |N|, N, whose link has the full width. It is the force that the style states, or the
-/// 95th percentile of the snapshot's forces, so that a single huge force does not make all other links invisible. 0 if
-/// there are no forces.
+/// Returns the reference force |N|, N, which is drawn as a line of full width. It is the force that the style states,
+/// or the 95th percentile of the snapshot's forces, so that a single huge force does not make all other lines
+/// invisible. 0 if there are no forces.
 pub(crate) fn force_reference(style: &Style, snapshot: &Snapshot) -> f64 {
     style.force_reference.unwrap_or_else(|| {
         let mut forces: Vec<f64> = snapshot
@@ -35,12 +37,12 @@ pub(crate) fn force_reference(style: &Style, snapshot: &Snapshot) -> f64 {
     })
 }
 
-/// Returns half of the width of a link at the reference force, pixels.
+/// Returns half of the width of the line that shows the reference force, pixels.
 pub(super) fn full_half_width_px(mean_diameter: f64, camera: &Camera) -> f32 {
     camera.pixels(0.5 * FORCE_WIDTH * mean_diameter)
 }
 
-/// Returns the links of all visible contacts, the strongest on top.
+/// Returns the force lines of all visible contacts, the strongest force on top.
 pub(super) fn force_links(
     snapshot: &Snapshot,
     style: &Style,
@@ -81,14 +83,14 @@ pub(super) fn force_links(
 
 /// Length of the velocity arrow at the reference speed, in mean diameters.
 const VELOCITY_LENGTH: f64 = 2.5;
-/// Smallest drawn velocity, as a fraction of the reference speed. Shorter arrows would look like dots.
+/// Smallest velocity that is drawn, as a fraction of the reference speed. Shorter arrows would look like dots.
 const LEAST_VELOCITY: f64 = 0.03;
-/// Half of the width of an arrow's shaft, and length of the two barbs of its head, in mean diameters.
+/// Half of the width of a velocity arrow's shaft, and length of the two barbs of its head, in mean diameters.
 const VELOCITY_HALF_WIDTH: f64 = 0.05;
 const VELOCITY_BARB: f64 = 0.35;
 
-/// Returns the reference speed, m/s, whose arrow has the full length. It is the speed that the style states, or a round
-/// number above the speed of the fastest grain. 0 if nothing moves.
+/// Returns the reference speed, m/s, which is drawn as an arrow of full length. It is the speed that the style states,
+/// or a round number above the speed of the fastest grain. 0 if no grain moves.
 pub(crate) fn speed_reference(style: &Style, snapshot: &Snapshot) -> f64 {
     if let Some(reference) = style.speed_reference {
         return reference;
@@ -100,12 +102,12 @@ pub(crate) fn speed_reference(style: &Style, snapshot: &Snapshot) -> f64 {
     if fastest > least { round_above(fastest) } else { 0.0 }
 }
 
-/// Returns the length of the velocity arrow at the reference speed, m.
+/// Returns the length, in the scene, of the velocity arrow at the reference speed, m.
 pub(super) fn full_length(snapshot: &Snapshot) -> f64 {
     VELOCITY_LENGTH * snapshot.surroundings.mean_diameter
 }
 
-/// Returns the links that form the velocity arrows of all visible grains.
+/// Returns the lines of which the velocity arrows of all visible grains consist.
 pub(super) fn velocity_links(
     snapshot: &Snapshot,
     style: &Style,
@@ -143,27 +145,29 @@ pub(super) fn velocity_links(
 
 // All lengths below are in units of the font size of the picture's labels.
 
-/// Length of an arrow, and length of the two barbs of its head, in font sizes.
+/// Length of an arrow for a moving wall or disc, and length of the two barbs of its head, in font sizes.
 const LENGTH_EM: f64 = 1.7;
 const BARB_EM: f64 = 0.5;
-/// Distance between the two heads of an arrow for a force, in font sizes.
+/// Distance between the two heads of an arrow that shows a driving force, in font sizes.
 const SECOND_HEAD_EM: f64 = 0.42;
-/// Half of the width of an arrow's lines, and width of the border in the ground's colour around them, in font sizes.
+/// Half of the width of an arrow's lines, and width of the border around them, which has the ground's colour, in font
+/// sizes.
 const HALF_WIDTH_EM: f64 = 0.075;
 const HALO_EM: f64 = 0.07;
-/// Smallest distance between two arrows of one motion, in font sizes.
+/// Smallest distance between two arrows that show the same motion, in font sizes.
 const SPACING_EM: f64 = 4.0;
-/// Distance from a wall to an arrow parallel to it, in font sizes.
+/// Distance from a wall to the arrow of its motion parallel to its surface, in font sizes.
 const BESIDE_EM: f64 = 0.75;
-/// Distance from a driven body to the middle of its force's arrow, in font sizes.
+/// Distance from a body that a force drives to the middle of the force's arrow, in font sizes.
 const LOAD_EM: f64 = 1.75;
-/// Radius of the arc around a pivot, in font sizes, its angle, rad, and its number of straight pieces.
+/// Arc that shows a rotation around a pivot: its radius, in font sizes, its angle, rad, and its number of straight
+/// pieces.
 const ARC_EM: f64 = 0.9;
 const ARC_TURN: f64 = 0.75 * TAU;
 const ARC_PIECES: usize = 18;
-/// Speed below which a body counts as at rest, in mean diameters per second.
+/// Speed below which a wall or disc has no arrow, in mean diameters per second.
 const LEAST_DIAMETERS_PER_SEC: f64 = 1e-9;
-/// Cosine of the angle between a motion and a wall above which the motion counts as parallel to the wall.
+/// Smallest cosine of the angle between a wall and its velocity at which the motion counts as parallel to the wall.
 const ALONG: f64 = 0.9;
 
 struct MotionArrows<'a> {
@@ -175,17 +179,17 @@ struct MotionArrows<'a> {
 }
 
 struct Spot {
-    /// Position in the scene, m, and in pixels from the middle of the picture.
+    /// Position of the arrow in the scene, m (`place`), and in pixels from the middle of the picture (`at`).
     place: DVec2,
     at: DVec2,
-    /// For a wall, the unit vector out of the body, and true if there is no solid on the other side.
+    /// On a wall, the unit vector out of the body, and true if neither side of the wall is solid; `None` on a disc.
     normal: Option<(DVec2, bool)>,
 }
 
-/// Returns the links of arrows that show how walls and fixed discs move, in a picture of `size` pixels: arrows on
-/// moving bodies, arrows with two heads on bodies that a force drives, and an arc with a head around a pivot. An arrow
-/// shows the direction, not the speed. Its length depends on the font size, so that the arrow of a slow wall is also
-/// visible.
+/// Returns the lines of the arrows that show how walls and discs that are not grains move, in a picture of `size`
+/// pixels: arrows on moving bodies, arrows with two heads on bodies that a force drives, and an arc with a head around
+/// a pivot. An arrow shows the direction, not the speed. Its length depends on the font size, so that the arrow of a
+/// slow wall is also visible.
 pub(super) fn motion_links(
     surroundings: &Surroundings,
     palette: &Palette,
@@ -234,7 +238,8 @@ impl MotionArrows<'_> {
         }
     }
 
-    /// Returns the positions of a motion's arrows: on all its bodies, but not too close to each other.
+    /// Returns the positions of the arrows that show a motion: on all bodies with this motion, but not too close to
+    /// each other.
     fn spots(&self, motion: &MotionView, surroundings: &Surroundings) -> Vec<Spot> {
         let boundaries =
             motion.boundaries.iter().filter_map(|&index| surroundings.boundaries.get(index));
@@ -256,8 +261,8 @@ impl MotionArrows<'_> {
         spots
     }
 
-    /// Returns the arrow's position on an edge: the middle of the edge or, on an infinite edge, the point nearest to
-    /// the middle of the picture.
+    /// Returns the position of the arrow on an edge: the middle of the edge or, on an infinite edge, the point nearest
+    /// to the middle of the picture.
     fn spot_on(&self, edge: Edge) -> Spot {
         match edge {
             Edge::Endless { point, normal } => {
@@ -274,15 +279,15 @@ impl MotionArrows<'_> {
         }
     }
 
-    /// Returns the offset of an arrow from its position, pixels. The arrow of a wall that moves parallel to its surface
-    /// is drawn beside the wall, inside a solid.
+    /// Returns the offset of an arrow from its position on the body, pixels. If a wall moves parallel to its surface,
+    /// its arrow is drawn beside the wall, on the inner side of a solid.
     fn beside(&self, spot: &Spot, velocity: DVec2) -> DVec2 {
         let Some((normal, _)) = spot.normal else { return DVec2::ZERO };
         let along = velocity.normalize_or_zero().dot(normal.perp()).abs() > ALONG;
         if along { -BESIDE_EM * self.em * normal } else { DVec2::ZERO }
     }
 
-    /// Draws the arrows of a surface that moves along its body, such as a conveyor belt.
+    /// Draws the arrows of a body whose surface moves although the body does not, such as a conveyor belt.
     fn belt(&mut self, spot: &Spot, speed: f64) {
         let Some((normal, is_open)) = spot.normal else {
             return self.arc(spot.at, ARC_EM, speed);
@@ -296,7 +301,7 @@ impl MotionArrows<'_> {
         }
     }
 
-    /// Draws an arrow whose middle is at the pixel position `middle`.
+    /// Draws an arrow in the direction `along`, with one or two heads. Its middle is at the pixel position `middle`.
     fn arrow(&mut self, middle: DVec2, along: DVec2, heads: u32) {
         let along = along.normalize_or_zero();
         let half = 0.5 * LENGTH_EM * self.em * along;
@@ -313,7 +318,8 @@ impl MotionArrows<'_> {
         }
     }
 
-    /// Draws an arc around the pixel position `centre`. The arc runs anticlockwise if `rate` is positive.
+    /// Draws an arc with an arrowhead around the pixel position `centre`. The arc runs anticlockwise if `rate` is
+    /// positive.
     fn arc(&mut self, centre: DVec2, radius_em: f64, rate: f64) {
         if !centre.abs().cmple(self.reach).all() {
             return;

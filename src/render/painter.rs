@@ -2,14 +2,15 @@
 //! order.
 //!
 //! A window and the offscreen target both call [`Painter::prepare`] before their render pass and [`Painter::draw`] in
-//! it. Any render target with the painter's texture format can be used. The vertex index selects the four corners of a
-//! primitive's quad. Instances are in a vertex buffer, because OpenGL ES 3.0 has no storage buffers in vertex shaders.
+//! it. Any render target with the painter's texture format can be used. The vertex index selects the four corners of
+//! the rectangle in which a shape is drawn. Instances are in a vertex buffer, because OpenGL ES 3.0 has no storage
+//! buffers in vertex shaders.
 
 use std::ops::Range;
 
 use super::{Batch, DiscInstance, LinkInstance, Picture};
 
-/// Position of the picture in the render target, in the layout of the shaders: pixels, y down.
+/// Position and size of the picture in the render target, in the layout of the shaders: pixels, y down.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(crate) struct PictureArea {
@@ -18,8 +19,8 @@ pub(crate) struct PictureArea {
 }
 
 impl PictureArea {
-    /// Returns the area of a picture whose upper left corner is at (`left`, `top`). The viewport of the render pass
-    /// must be the same rectangle.
+    /// Returns the area of a picture whose upper left corner is at (`left`, `top`), pixels. The viewport of the render
+    /// pass must be the same rectangle.
     pub(crate) fn new(left: f32, top: f32, width: f32, height: f32) -> Self {
         let half_size = [width / 2.0, height / 2.0];
         Self { centre: [left + half_size[0], top + half_size[1]], half_size }
@@ -32,24 +33,25 @@ pub(crate) struct Painter {
     /// Uniform buffer with the [`PictureArea`], which all shaders read.
     area: wgpu::Buffer,
     area_group: wgpu::BindGroup,
-    /// Pipelines of discs and of links.
+    /// Pipeline of discs, then pipeline of links.
     primitives: [PrimitivePipeline; 2],
-    /// For each batch the index of its pipeline, and its range of bytes in the instance buffer.
+    /// For each batch of shapes in drawing order, the index of its pipeline and its range of bytes in the pipeline's
+    /// instance buffer.
     order: Vec<(usize, Range<u64>)>,
 }
 
 #[derive(Debug)]
 struct PrimitivePipeline {
     name: &'static str,
-    /// Size of one instance, bytes.
+    /// Size of one instance (disc or link) in the buffer, bytes.
     stride: u64,
     pipeline: wgpu::RenderPipeline,
     instances: wgpu::Buffer,
 }
 
 impl Painter {
-    /// Returns a painter for targets of this format. The format must not be sRGB, because colours are blended and
-    /// written as a PNG file stores them.
+    /// Returns a painter for render targets of this texture format. The format must not be sRGB, because colours are
+    /// blended and stored as the numbers of a PNG file.
     pub(crate) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
         let area = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("picture area"),
@@ -146,7 +148,7 @@ impl Painter {
 }
 
 impl PrimitivePipeline {
-    /// Returns a pipeline for instances of type `I`. `shader` is WGSL code with the entry points `vertex` and
+    /// Returns a pipeline that draws instances of type `I`. `shader` is WGSL code with the entry points `vertex` and
     /// `fragment`.
     fn new<I>(
         device: &wgpu::Device,

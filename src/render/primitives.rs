@@ -1,24 +1,24 @@
-//! Input of a renderer: discs and links (straight lines with round ends) in pixels, in drawing order, on an opaque
+//! Input of a renderer: discs and straight lines with round ends (links), in pixels, in drawing order, on an opaque
 //! ground.
 //!
 //! [`super::Camera::project`] converts positions in the scene to pixels in f64, relative to the middle of the picture,
 //! so f32 is sufficient here at any distance from the origin. `shaders/disc.wgsl` and `shaders/link.wgsl` draw the
-//! primitives on a GPU, and [`draw`] evaluates the same distance fields on the processor. [`draw`] rounds to 8 bits
-//! after each primitive, as a GPU does, so its channels differ from every GPU's by at most 3/255.
+//! shapes on a GPU, and [`draw`] evaluates the same distance fields on the processor. [`draw`] rounds to 8 bits after
+//! each shape, as a GPU does, so its colour channels differ from every GPU's by at most 3/255.
 
 use glam::{DVec2, Vec2};
 use image::RgbaImage;
 
 use super::Colour;
 
-/// A list of primitives of one kind that are drawn together, from first to last.
+/// A list of shapes of one kind (discs or links) that are drawn together, from first to last.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Batch {
     Discs(Vec<DiscInstance>),
     Links(Vec<LinkInstance>),
 }
 
-/// All input of a renderer. Later batches cover earlier batches.
+/// All shapes of a picture, as input of a renderer. Later batches of shapes cover earlier batches.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Picture {
     /// Colour of the ground; its opacity is ignored.
@@ -46,7 +46,8 @@ impl Picture {
     }
 }
 
-/// Smallest drawn radius, pixels. A disc with a smaller radius is drawn with this radius in a fainter colour.
+/// Smallest radius with which discs are drawn, pixels. A disc with a smaller radius is drawn with this radius in a
+/// fainter colour.
 const LEAST_RADIUS_PX: f32 = 0.5;
 
 /// A disc. Lengths are in pixels; positions are relative to the middle of the picture, y up.
@@ -57,11 +58,11 @@ pub(crate) struct DiscInstance {
     pub centre: [f32; 2],
     /// Radius including the outline, pixels.
     pub radius: f32,
-    /// Width of the outline, which is inside the radius, pixels; 0 for no outline.
+    /// Width of the outline, which lies inside `radius`, pixels; 0 for no outline.
     pub outline_width: f32,
-    /// Half of the width of the mark from the centre to the outline, pixels; 0 for no mark.
+    /// Half of the width of the line from the centre to the outline that shows the disc's angle, pixels; 0 for no line.
     pub mark_half_width: f32,
-    /// Cosine and sine of the angle that the mark shows.
+    /// Cosine and sine of the disc's angle.
     pub direction: [f32; 2],
     pub fill: Colour,
     pub outline: Colour,
@@ -114,8 +115,8 @@ impl Shade for DiscInstance {
     }
 }
 
-/// Smallest drawn half width, pixels. A link with a smaller half width is drawn with this half width in a fainter
-/// colour.
+/// Smallest half width with which links are drawn, pixels. A link with a smaller half width is drawn with this half
+/// width in a fainter colour.
 const LEAST_HALF_WIDTH_PX: f32 = 0.5;
 
 /// A link: a straight line with round ends. Lengths are in pixels; positions are relative to the middle of the picture,
@@ -161,15 +162,16 @@ impl Shade for LinkInstance {
 
 /// A shape defined by a distance field in the plane of the picture, pixels, y up.
 trait Shade {
-    /// Returns two corners of a box around the shape. Pixels whose centre is outside the box are not affected by the
-    /// shape.
+    /// Returns two opposite corners of a box around the shape, pixels. Pixels whose centre is outside the box are not
+    /// affected by the shape.
     fn bounds(&self) -> [Vec2; 2];
     /// Returns the premultiplied colour of the shape, times the fraction of the pixel with the centre `point` that the
     /// shape covers.
     fn shade(&self, point: Vec2) -> [f32; 4];
 }
 
-/// Returns the covered fraction of a pixel whose centre is `distance` pixels outside an edge.
+/// Returns the fraction of a pixel that a shape covers, 0 to 1. `distance` is the signed distance of the pixel's centre
+/// from the shape's edge, pixels, positive outside.
 fn coverage(distance: f32) -> f32 {
     (0.5 - distance).clamp(0.0, 1.0)
 }
@@ -195,7 +197,7 @@ pub(super) fn draw(picture: &Picture, width: u32, height: u32) -> RgbaImage {
     image
 }
 
-/// Blends a primitive over the pixels of its bounding box.
+/// Blends a shape over the pixels of its bounding box.
 fn draw_one(image: &mut RgbaImage, primitive: &impl Shade) {
     let (width, height) = image.dimensions();
     let middle = Vec2::new(width as f32, height as f32) / 2.0;

@@ -9,8 +9,8 @@ use super::{Picture, primitives};
 use crate::error::{Error, Result};
 
 /// Prevents Mesa's Vulkan driver from writing to stderr on systems without a desktop. A layer of the driver connects to
-/// a Wayland display, and this connection writes a message if `XDG_RUNTIME_DIR` is not set. With a desktop this
-/// function does nothing.
+/// a Wayland display, and the library for this connection writes a message if `XDG_RUNTIME_DIR` is not set. With a
+/// desktop this function does nothing.
 ///
 /// # Safety
 /// Changes the environment, so it must run before the program starts its second thread.
@@ -21,12 +21,12 @@ pub unsafe fn quieten_drivers() {
     }
 }
 
-/// Largest side of a picture that the processor draws, pixels. Most GPUs have the same limit, so a size that works with
-/// one renderer also works with another.
+/// Largest width and height of a picture that the processor draws, pixels. Most GPUs have the same limit, so a size
+/// that works with one renderer also works with another.
 const CPU_LARGEST_SIDE_PX: u32 = 16_384;
 
-/// A renderer, which draws pictures into memory. Keep it between frames, because creating a renderer takes longer than
-/// drawing a frame.
+/// A renderer, which draws pictures into memory. Keep it for all pictures, because creating a renderer takes longer
+/// than drawing a picture.
 pub struct Renderer {
     backend: Backend,
 }
@@ -54,7 +54,7 @@ impl Backend {
 }
 
 impl Renderer {
-    /// Opens the requested renderer.
+    /// Opens the chosen renderer.
     ///
     /// # Errors
     /// Names the missing driver and the package that contains it. `Auto` and `Cpu` cannot fail.
@@ -81,7 +81,7 @@ impl Renderer {
         }
     }
 
-    /// Largest width and height of a picture, pixels.
+    /// Largest width and height of a picture that this renderer can draw, pixels.
     pub(crate) fn largest_side(&self) -> u32 {
         match &self.backend {
             #[cfg(feature = "gpu")]

@@ -1,6 +1,6 @@
 //! The renderers that a user can choose, and the kinds of GPU drivers.
 
-/// The renderer to use.
+/// The renderer that the user chooses.
 #[derive(
     Clone,
     Copy,
@@ -25,7 +25,7 @@ pub enum RendererChoice {
     Cpu,
 }
 
-/// The kinds of GPU drivers that can be requested.
+/// The kinds of GPU drivers that a renderer can use.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum GpuKind {
     Vulkan,

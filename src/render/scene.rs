@@ -1,5 +1,5 @@
-//! Draws a snapshot as a finished picture: first the shapes, then the text, then the legend's strip. Can also draw
-//! several scenes side by side.
+//! Drawing of a snapshot as a finished picture: first the shapes, then the text, then the legend's strip. Several
+//! scenes can also be drawn side by side.
 
 use glam::DVec2;
 use image::{RgbaImage, imageops};
@@ -50,7 +50,7 @@ pub fn draw_scene(
     Ok(whole)
 }
 
-/// Opacity of the lines between scenes.
+/// Opacity of the lines between scenes that are drawn side by side, 0 to 1.
 const FRAME: f32 = 0.25;
 
 /// One scene of a picture that shows several scenes side by side.
@@ -58,13 +58,14 @@ const FRAME: f32 = 0.25;
 pub struct WorldPanel<'a> {
     /// The displayed snapshot.
     pub snapshot: &'a Snapshot,
-    /// Title in the upper left corner.
+    /// Title of the scene, in its upper left corner.
     pub title: &'a str,
-    /// Result in the lower right corner.
+    /// Result of the simulation, such as its slump, in the lower right corner.
     pub note: &'a str,
 }
 
-/// Returns the size of each scene, pixels, in a picture of `size` pixels that has the legend on its right.
+/// Returns width and height of each of `count` scenes, pixels, in a picture of `size` pixels that has the legend on its
+/// right and `columns` scenes per row.
 pub fn panel_size(style: &Style, size: [u32; 2], count: usize, columns: usize) -> [u32; 2] {
     let [width, height] = size;
     let rows = count.div_ceil(columns.max(1)).max(1) as u32;
@@ -129,9 +130,9 @@ pub fn draw_worlds(
     Ok(whole)
 }
 
-/// Fraction by which the colour of periodic borders fades towards the ground.
+/// Fraction by which the colour of periodic borders is mixed with the colour of the ground, 0 to 1.
 const BORDER_FADING: f32 = 0.4;
-/// Radius of the dot at the centre of attraction, as a fraction of the label's font size.
+/// Radius of the dot that marks the centre of an attracting gravity field, in font sizes of the labels.
 const CENTRE_RADIUS_EM: f32 = 0.28;
 
 /// Returns the shapes of a snapshot as a picture without text, which [`super::draw_scene`] adds. `width` and `height`
@@ -202,7 +203,7 @@ pub(crate) fn scene_picture(
     picture
 }
 
-/// Returns a disc of the scene in pixels, or `None` if it is outside a picture of `size` pixels.
+/// Returns a disc of the scene as a shape in pixels, or `None` if it is outside a picture of `size` pixels.
 fn disc(
     style: &Style,
     camera: &Camera,

@@ -1,4 +1,4 @@
-//! Tests of the conversion of snapshots to pictures.
+//! Tests that snapshots are drawn as the right discs, lines and texts.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use super::*;
 use crate::sim::{ContactView, GrainView, Observables, Snapshot, Surroundings};
 use crate::world::{Boundary, Disc, Periodic};
 
-/// Returns a snapshot of four grains in a row with three contacts, which begins at the position `at`, m.
+/// Returns a snapshot of four grains in a row with three contacts. The first grain is at the position `at`, m.
 fn row_of_grains(at: DVec2) -> Snapshot {
     let grain = |k: u32| GrainView {
         position: at + DVec2::new(f64::from(k), 0.25),

@@ -1,4 +1,5 @@
-//! The style of a picture: the quantity that the colours show, and the items that are drawn with the grains.
+//! The style of a picture: the quantity that the colours of the grains show, and the items that are drawn with the
+//! grains.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -6,9 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::camera::Margins;
 use super::{Camera, Colour};
 
-/// Fraction by which grains fade towards the ground if force chains are drawn on them.
+/// Fraction by which the colours of grains are mixed with the ground's colour if contact forces are drawn on the
+/// grains, 0 to 1.
 const FADING: f32 = 0.62;
-/// Free height below the scene for the scale bar, in font sizes.
+/// Height of the free space below the scene for the scale bar, in font sizes.
 const SCALE_BAR_EM: f64 = 1.6;
 
 /// The quantity that the colour of a grain shows.
@@ -35,7 +37,7 @@ pub enum ColourBy {
 }
 
 impl ColourBy {
-    /// True if the colours show numbers and therefore need a scale.
+    /// True if the colours show a quantity with a continuous range and therefore need a scale.
     pub(crate) fn has_scale(self) -> bool {
         !matches!(self, Self::PaperGreys | Self::Coordination | Self::Material)
     }
@@ -60,26 +62,28 @@ pub enum Theme {
 pub struct Style {
     /// Quantity that the colours of the grains show.
     pub colour_by: ColourBy,
-    /// Values at the two ends of the colour scale, in the units of [`ColourBy`]; `None` takes the range from the
-    /// snapshot. Frames of one animation should have one range.
+    /// Values at the two ends of the colour scale, in the units of [`ColourBy`]. If it is `None`, the range is chosen
+    /// from the snapshot. All frames of an animation should have the same range.
     pub range: Option<(f64, f64)>,
-    /// True if contact forces are drawn as links, with paler grains below them.
+    /// True if contact forces are drawn as lines, with paler grains below them.
     pub show_forces: bool,
-    /// Contact force |N| whose link has the full width, N; `None` takes the 95th percentile of the snapshot's forces.
+    /// Contact force |N| that is drawn as a line of full width, N. If it is `None`, the 95th percentile of the
+    /// snapshot's forces is used.
     pub force_reference: Option<f64>,
     /// True if arrows show the velocities of the grains.
     pub show_velocities: bool,
-    /// Speed whose arrow has the full length, m/s; `None` takes a round number above the speed of the fastest grain.
+    /// Speed that is drawn as an arrow of full length, m/s. If it is `None`, a round number above the speed of the
+    /// fastest grain is used.
     pub speed_reference: Option<f64>,
-    /// True if arrows show how walls and fixed discs move, and the forces that drive them.
+    /// True if arrows show how walls and discs that are not grains move, and the forces that drive them.
     pub show_motions: bool,
     /// True if grains have an outline.
     pub outlines: bool,
-    /// True if a mark on each grain shows its angle.
+    /// True if a line from the centre of each grain to its edge shows its angle.
     pub angles: bool,
     /// True if a scale bar is drawn.
     pub scale_bar: bool,
-    /// True if a legend is drawn for colours or links that need one.
+    /// True if a legend is drawn, provided that the colours, lines or arrows need an explanation.
     pub legend: bool,
     /// Colours of the ground and of lines and text.
     pub theme: Theme,
@@ -111,8 +115,8 @@ pub(crate) struct Palette {
     pub outline: Colour,
     pub fixed: Colour,
     pub boundary: Colour,
-    /// Colour of forces that push. `push` and `pull` are a pair of colours that colour-blind people can distinguish
-    /// (Okabe & Ito).
+    /// Colour of contact forces that push. `push` and `pull` are a pair of colours that colour-blind people can
+    /// distinguish (Okabe & Ito).
     pub push: Colour,
     pub pull: Colour,
 }
@@ -144,7 +148,7 @@ impl Theme {
 }
 
 impl Style {
-    /// Returns the font size of the labels of a picture of this size, pixels.
+    /// Returns the font size of the labels, pixels, in a picture of `width` × `height` pixels.
     pub(crate) fn text_px(&self, width: u32, height: u32) -> f32 {
         // The font size is 16 px at 800 × 500. Larger pictures are viewed from a larger distance, but the distance
         // grows more slowly than the size.
@@ -152,28 +156,28 @@ impl Style {
         (16.0 * (side / 800.0).sqrt()).clamp(10.0, 48.0).round() as f32
     }
 
-    /// Returns the fraction by which grains fade towards the ground, 0 to 1. Grains fade if force chains are drawn on
-    /// them.
+    /// Returns the fraction by which the colours of grains are mixed with the ground's colour, 0 to 1; it is above 0 if
+    /// contact forces are drawn on the grains.
     pub(crate) fn fading(&self) -> f32 {
         if self.show_forces { FADING } else { 0.0 }
     }
 
-    /// True if a legend is requested, and if the colours, links or arrows of this style need a legend.
+    /// True if the style has a legend, and if its colours, lines or arrows need an explanation.
     pub(crate) fn has_legend(&self) -> bool {
         let needed =
             self.colour_by != ColourBy::PaperGreys || self.show_forces || self.show_velocities;
         self.legend && needed
     }
 
-    /// Returns the width of the legend's strip on the right, pixels.
+    /// Returns the width of the legend's strip on the right of the picture, pixels; 0 without a legend.
     pub(crate) fn legend_width(&self, width: u32, height: u32) -> u32 {
         let strip = (7.0 * self.text_px(width, height)).ceil() as u32;
         // A picture that is too narrow for scene and legend shows only the scene.
         if self.has_legend() && width > 2 * strip { strip } else { 0 }
     }
 
-    /// Returns the camera that shows the box from `min` to `max` (m) as large as possible on a picture of this size.
-    /// Legend and scale bar have free space and cover no grain.
+    /// Returns the camera that shows the box from `min` to `max` (m) as large as possible in a picture of `width` ×
+    /// `height` pixels. Legend and scale bar have free space and cover no grain.
     pub fn camera(&self, min: DVec2, max: DVec2, width: u32, height: u32) -> Camera {
         let text = f64::from(self.text_px(width, height));
         let margin = text.min(0.05 * f64::from(width.min(height)));

@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 
 use super::*;
 
-/// Opens all GPUs of this machine. If there are none, the test fails, because nothing would be compared.
+/// Opens all GPUs of this machine. If the machine has no GPU, the test fails, because nothing would be compared.
 fn gpus() -> Vec<Renderer> {
     let found: Vec<Renderer> = [RendererChoice::Vulkan, RendererChoice::Gl]
         .into_iter()

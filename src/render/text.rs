@@ -1,8 +1,8 @@
 //! Text on finished pictures. It is drawn on the processor, so that it is the same with every renderer.
 //!
-//! A [`TextBlock`] is laid out once, as a mask of pixel coverage. It can then be measured, turned and drawn at any
-//! position. The font DejaVu Sans Condensed is free and has the Greek letters, superscripts and signs that physics
-//! needs. The font is part of the program, so that text looks the same on every machine.
+//! A [`TextBlock`] is laid out once, as a mask: the fraction of each pixel that letters cover. It can then be measured,
+//! turned and drawn at any position. The font DejaVu Sans Condensed is free and has the Greek letters, superscripts and
+//! signs that physics needs. The font is part of the program, so that text looks the same on every machine.
 
 use std::sync::LazyLock;
 
@@ -83,7 +83,7 @@ impl TextStyle {
         (glyphs, pen)
     }
 
-    /// Returns the shape of a letter that [`Self::set`] placed, moved by (`x`, `y`); `None` for a space.
+    /// Returns the outline of a letter that [`Self::set`] placed, moved by (`x`, `y`), pixels; `None` for a space.
     pub(super) fn shape(&self, mut glyph: Glyph, x: f32, y: f32) -> Option<OutlinedGlyph> {
         glyph.position += point(x, y);
         self.font().outline_glyph(glyph)
@@ -119,12 +119,12 @@ enum Script {
 }
 
 impl Script {
-    /// Size of the letters relative to normal letters.
+    /// Font size of the letters relative to the font size of the line.
     fn size(self) -> f32 {
         if self == Self::Line { 1.0 } else { 0.7 }
     }
 
-    /// Offset below the baseline, in units of the line's font size.
+    /// Distance of the letters below the baseline, in font sizes of the line.
     fn drop(self) -> f32 {
         match self {
             Self::Line => 0.0,
@@ -134,8 +134,8 @@ impl Script {
     }
 }
 
-/// Splits a line into pieces that are normal text, subscripts or superscripts. A brace without its partner is normal
-/// text.
+/// Splits a line into pieces of normal text, subscripts (`_{…}`) and superscripts (`^{…}`). A brace without its partner
+/// is normal text.
 fn runs(line: &str) -> Vec<(&str, Script)> {
     let mut found = Vec::new();
     let mut rest = line;
@@ -150,22 +150,22 @@ fn runs(line: &str) -> Vec<(&str, Script)> {
     found
 }
 
-/// Alignment of a block relative to the point at which it is drawn, in one direction. The same type describes the
+/// Alignment of a text block in one direction, relative to the point at which it is drawn. The same type describes the
 /// alignment of the lines of a block relative to each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Align {
-    /// The point is at the left or top edge of the block.
+    /// The point at which the block is drawn is at its left or top edge.
     #[default]
     Start,
-    /// The point is in the middle of the block.
+    /// The point at which the block is drawn is in its middle.
     Centre,
-    /// The point is at the right or bottom edge of the block.
+    /// The point at which the block is drawn is at its right or bottom edge.
     End,
 }
 
 impl Align {
-    /// Returns the distance from the left or top edge of a block to its alignment point, for a block that is `length`
-    /// pixels long.
+    /// Returns the distance from the left or top edge of a block to the point at which the block is drawn, pixels.
+    /// `length` is the width or height of the block, pixels.
     pub(super) fn share(self, length: u32) -> u32 {
         match self {
             Self::Start => 0,
@@ -175,7 +175,7 @@ impl Align {
     }
 }
 
-/// Text that is laid out: a mask of pixel coverage, and a colour.
+/// Text that is laid out: a mask (the fraction of each pixel that letters cover) and a colour.
 #[derive(Clone, Debug)]
 pub(crate) struct TextBlock {
     width: u32,
@@ -186,7 +186,7 @@ pub(crate) struct TextBlock {
 }
 
 impl TextBlock {
-    /// Lays text out. `\n` ends a line, `_{…}` makes a subscript and `^{…}` a superscript.
+    /// Lays text out as a block. `\n` ends a line, `_{…}` makes a subscript and `^{…}` a superscript.
     pub(crate) fn new(text: &str, style: &TextStyle) -> Self {
         let lines: Vec<&str> = text.split('\n').collect();
         let widest = lines.iter().map(|line| style.width(line)).fold(0.0, f32::max);
@@ -204,8 +204,8 @@ impl TextBlock {
         block
     }
 
-    /// Lays text out and breaks lines at spaces, so that no line is wider than `largest_width_px`. If a single word is
-    /// wider, the font size of the whole block is reduced.
+    /// Lays text out as a block and breaks lines at spaces, so that no line is wider than `largest_width_px`. If a
+    /// single word is wider, the font size of the whole block is reduced.
     pub(crate) fn wrapped(text: &str, style: &TextStyle, largest_width_px: f32) -> Self {
         // A block is up to three pixels wider than its longest line.
         let largest = (largest_width_px - 3.0).max(1.0);
@@ -280,7 +280,7 @@ impl TextBlock {
     }
 
     /// Draws the block at the point (`x`, `y`), in pixels from the upper left corner of the image. `across` and `down`
-    /// align the block at this point. Parts outside the image are left out.
+    /// are the horizontal and vertical alignment of the block at this point. Parts outside the image are left out.
     pub(crate) fn draw(&self, image: &mut RgbaImage, x: i64, y: i64, across: Align, down: Align) {
         let left = x - i64::from(across.share(self.width));
         let top = y - i64::from(down.share(self.height));

@@ -1,8 +1,9 @@
-//! Walls as thin dark lines, solids with short hatching inside their surface, and periodic borders as dashed lines.
+//! Drawing of walls as thin dark lines, of solids with short hatching inside their surface, and of periodic borders as
+//! dashed lines.
 //!
 //! Lines are clipped to the picture in f64, so that an infinite wall, or a wall that starts a million diameters away,
 //! becomes f32 pixels without loss of precision. The strokes of the hatching have fixed positions in the scene, so they
-//! move with the camera.
+//! move in the picture when the view moves.
 
 use glam::DVec2;
 
@@ -12,23 +13,24 @@ use crate::world::{Boundary, Edge, Periodic};
 
 // All lengths below are in units of the font size of the picture's labels, so that prints of all sizes look alike.
 
-/// Half of the width of a wall's line, in font sizes.
+/// Half of the width of a wall's line, in font sizes of the labels.
 const LINE_HALF_WIDTH_EM: f64 = 0.0625;
-/// Half of the width of a hatching stroke, in font sizes.
+/// Half of the width of a hatching stroke, in font sizes of the labels.
 const HATCH_HALF_WIDTH_EM: f64 = 0.033;
-/// Distance between hatching strokes along the wall, in font sizes.
+/// Distance between hatching strokes along the wall, in font sizes of the labels.
 const HATCH_SPACING_EM: f64 = 0.6;
-/// Depth of the hatching in a solid, in font sizes. A stroke is inclined by 45°, so it extends by the same length along
-/// the surface.
+/// Depth to which the hatching extends into a solid, in font sizes of the labels. A stroke is inclined by 45°, so it
+/// extends by the same length along the surface.
 const HATCH_DEPTH_EM: f64 = 0.45;
 
-/// Half of the width of a dash, in font sizes.
+/// Half of the width of a dash of a periodic border, in font sizes of the labels.
 const DASH_HALF_WIDTH_EM: f64 = 0.035;
-/// Length of a dash, and distance between the beginnings of two dashes, in font sizes.
+/// Length of a dash of a periodic border, and distance between the beginnings of two dashes, in font sizes of the
+/// labels.
 const DASH_EM: f64 = 0.45;
 const DASH_SPACING_EM: f64 = 0.9;
 
-/// Converts walls and solids to links (thick lines) of one picture.
+/// Converter of walls and solids to the thick lines (links) of one picture.
 struct WallLines<'a> {
     camera: &'a Camera,
     colour: Colour,
@@ -82,8 +84,8 @@ impl WallLines<'_> {
         }
     }
 
-    /// Draws a surface from `from` to `to`, pixels, with the solid on its right. The hatching strokes are at whole
-    /// multiples of their spacing from `anchor`.
+    /// Draws a surface from `from` to `to`, pixels, with the solid on its right. The distance of each hatching stroke
+    /// from the point `anchor` is a whole multiple of the spacing.
     fn solid_edge(&mut self, anchor: DVec2, from: DVec2, to: DVec2) {
         let Some([start, end]) = clip(from, to, self.reach) else { return };
         self.link(start, end, LINE_HALF_WIDTH_EM);
@@ -108,8 +110,8 @@ impl WallLines<'_> {
     }
 }
 
-/// Returns the part of a segment inside the box from −`reach` to `reach`. `None` if no part is inside or an end is not
-/// finite.
+/// Returns the part of the segment from `from` to `to` inside the box from −`reach` to `reach`. `None` if no part is
+/// inside or an end is not finite.
 pub(super) fn clip(from: DVec2, to: DVec2, reach: DVec2) -> Option<[DVec2; 2]> {
     let span = to - from;
     if !span.is_finite() {

@@ -23,32 +23,32 @@ pub enum Error {
         /// Message of the operating system or of the parser, with the line number if it is known.
         reason: String,
     },
-    /// Options that the command line refuses. The text is the whole message.
+    /// A combination of command-line options that Slump does not accept. The text is the whole message.
     #[error("{0}")]
     Options(String),
-    /// The requested kind of renderer is not available. The text is the whole message.
+    /// A renderer (a graphics driver or the window) that is not available or fails. The text is the whole message.
     #[error("{0}")]
     Renderer(String),
     /// A run that was ended by a signal of the operating system. The results up to this moment have been written.
     #[error("stopped by {signal} at step {step} (t = {time_secs} s)")]
     Interrupted {
-        /// Name of the signal.
+        /// Name of the signal, such as `SIGINT`.
         signal: &'static str,
-        /// Exit code of the program.
+        /// Exit code with which the program ends.
         exit_code: u8,
-        /// Number of the last step.
+        /// Number of steps that the run has computed.
         step: u64,
-        /// Simulated time of the last step, s.
+        /// Simulated time after the last computed step, s.
         time_secs: f64,
     },
     /// A solve that was ended by a signal of the operating system. The impulses of the last sweep have been written.
     #[error("stopped by {signal} after {sweeps} sweeps")]
     SolveInterrupted {
-        /// Name of the signal.
+        /// Name of the signal, such as `SIGINT`.
         signal: &'static str,
-        /// Exit code of the program.
+        /// Exit code with which the program ends.
         exit_code: u8,
-        /// Number of sweeps before the signal.
+        /// Number of sweeps of the solver before the signal.
         sweeps: u32,
     },
     /// A simulation whose positions or velocities are no longer finite.
@@ -60,9 +60,9 @@ pub enum Error {
         ))
     )]
     NonFinite {
-        /// Number of the last step, after which a position or velocity was not finite.
+        /// Number of the step after which a position or velocity was not finite.
         step: u64,
-        /// Simulated time after the last step, s.
+        /// Simulated time after this step, s.
         time_secs: f64,
         /// Bond number in the last step.
         bond: f64,
@@ -77,7 +77,7 @@ pub enum Error {
     },
 }
 
-/// Abbreviation for results with the error type of this crate.
+/// Shorter name of [`std::result::Result`] with the error type [`Error`] of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
@@ -97,8 +97,8 @@ impl Error {
         Self::File { path: path.as_ref().to_owned(), reason }
     }
 
-    /// Returns an error about a file that cannot be read, or that is not a valid file of its kind. The message is
-    /// that of the operating system or parser (`said`), followed by the description of a valid file (`form`).
+    /// Returns an error about a file that cannot be read, or whose content is not valid. The message is that of the
+    /// operating system or parser (`said`), followed by a description of a valid file (`form`).
     pub fn unread(path: impl AsRef<Path>, said: impl std::fmt::Display, form: &str) -> Self {
         Self::file(path, with_allowed(&said.to_string(), form))
     }
@@ -117,8 +117,8 @@ pub fn check(
     if is_sound { Ok(()) } else { Err(Error::value(field, value, allowed)) }
 }
 
-/// Returns the message of a parser (`said`) about a file or text. If the message does not name the allowed values,
-/// the allowed form (`form`) is appended.
+/// Returns the message of a parser (`said`) about a file or text. If the message does not name the allowed values, a
+/// description of a valid file or text (`form`) is appended.
 pub fn with_allowed(said: &str, form: &str) -> String {
     let said = said.trim_end();
     if said.contains("must ") {
@@ -135,7 +135,7 @@ pub fn with_allowed(said: &str, form: &str) -> String {
     format!("{said}, but must be {form}")
 }
 
-/// Replaces the names of Rust types in the message of a parser by words for users.
+/// Replaces the names of Rust types, such as `f64`, in a parser's message by words that users know.
 pub fn in_words(expected: &str) -> String {
     const WORDS: [(&str, &str); 9] = [
         ("f64", "a number"),
@@ -152,8 +152,8 @@ pub fn in_words(expected: &str) -> String {
     known.map_or(expected.to_owned(), |(words, rest)| format!("{words}{rest}"))
 }
 
-/// Largest number of digits that a number in a message may have. Longer numbers are written with an exponent, with
-/// which every f64 fits.
+/// Largest number of digits with which a number is written in a message. A longer number is written with an exponent,
+/// and then every f64 fits into this many digits.
 const MOST_DIGITS: usize = 24;
 /// Largest number of characters of a word in a message. Longer words are cut.
 const MOST_OF_WORD: usize = 120;
@@ -161,8 +161,8 @@ const MOST_OF_WORD: usize = 120;
 /// shorter.
 const MOST_OF_PART: usize = 3000;
 
-/// Returns a part of a message in readable form, whatever text a file or a command line put into it. It escapes
-/// control characters, writes long numbers with an exponent, and cuts text that is too long.
+/// Returns a text from a file or a command line in a form that is readable in an error message, whatever the text
+/// contains: control characters are escaped, long numbers have an exponent, and text that is too long is cut.
 pub fn legible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len().min(MOST_OF_PART));
     for word in text.split_inclusive(' ') {
@@ -181,7 +181,7 @@ pub fn legible(text: &str) -> String {
     shown
 }
 
-/// Writes numbers of more than [`MOST_DIGITS`] digits in a word with an exponent.
+/// Returns a word in which each number of more than [`MOST_DIGITS`] digits is written with an exponent.
 fn short_numbers(word: &str) -> String {
     let is_digit = |char: char| char.is_ascii_digit() || char == '.';
     let mut shown = String::new();
@@ -206,7 +206,8 @@ pub fn place(path: &Path) -> String {
     escaped(&path.to_string_lossy())
 }
 
-/// Escapes the characters of a text that move the cursor or change the writing direction.
+/// Escapes control characters and the characters that change the writing direction, so that a text cannot disturb the
+/// terminal on which it is shown.
 pub fn escaped(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for char in text.chars() {

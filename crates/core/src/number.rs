@@ -1,6 +1,6 @@
-//! Functions on numbers that give the same result with every compiler and in every file. The attribute
-//! `#[serde(with = "number")]` writes infinities and NaN as strings, because JSON does not have such numbers and `null`
-//! could not be read back as a number.
+//! Functions that write numbers to files and round them, with the same result from every compiler. The attribute
+//! `#[serde(with = "number")]` writes infinities and NaN as strings, because JSON does not have such numbers and
+//! `null` could not be read back as a number.
 
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serializer};
@@ -28,7 +28,7 @@ pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D:
     }
 }
 
-/// True if a number is 0. Fields with such numbers are not written to files.
+/// True if a number is 0. For fields of a file: a field with the value 0 is not written.
 pub(crate) fn is_zero<N: Default + PartialEq>(number: &N) -> bool {
     *number == N::default()
 }
@@ -62,7 +62,7 @@ pub(crate) fn rounded_down(number: f64) -> f64 {
     format!("{below:.1e}").parse().unwrap_or(below)
 }
 
-/// Returns a time in milliseconds as text with its unit, with up to four digits.
+/// Returns a time, given in seconds, as text in milliseconds with the unit, such as `12.5 ms`, with up to four digits.
 pub fn millis_text(secs: f64) -> String {
     let millis = 1e3 * secs;
     format!("{} ms", format!("{millis:.3e}").parse().unwrap_or(millis))

@@ -1,9 +1,10 @@
-//! Settings. Each is declared once, with its name, default, allowed values and explanation.
+//! Settings. Each setting is declared once, with its name, default, allowed values and explanation.
 //!
-//! From a list of declarations the macro `settings!` generates the structure of values that the physics reads, the
-//! structure of changes that the command line, scene files and study files fill in ([`Group::Changes`]), the range
-//! checks, and a table ([`About`]) for options, controls of the window and error messages. The macro `words!`
-//! declares the type of a setting whose value is one of a few words.
+//! From a list of declarations the macro `settings!` generates the structure with a value for each setting that the
+//! physics reads, the structure of changes that the command line, scene files and study files fill in
+//! ([`Group::Changes`]: some settings with new values), the range checks, and a table ([`About`]) for options,
+//! controls of the window and error messages. The macro `words!` declares the type of a setting whose value is one of
+//! a few words.
 
 use std::fmt;
 
@@ -12,7 +13,8 @@ use serde::ser::SerializeMap;
 
 use crate::error;
 
-/// Declaration of a setting, in a form that does not depend on the type of its value.
+/// Declaration of a setting (name, help text, kind of value, control), in a form that does not depend on the Rust type
+/// of its value.
 #[derive(Clone, Copy, Debug)]
 pub struct About {
     /// Name of the setting on the command line, in studies and in error messages.
@@ -23,7 +25,7 @@ pub struct About {
     pub help: &'static str,
     /// Heading under which the help of the command line lists the setting.
     pub heading: &'static str,
-    /// Kind of the values: number, count, switch or word.
+    /// Type of the value: number, count, switch or word.
     pub kind: Kind,
     /// The feature that a scene must have, because the setting has no effect without it.
     pub needs: Needs,
@@ -34,7 +36,7 @@ pub struct About {
 /// The feature that a scene must have for a setting to have an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Needs {
-    /// No feature is needed.
+    /// The setting has an effect in every scene.
     Nothing,
     /// Contacts with friction.
     Friction,
@@ -46,12 +48,12 @@ pub enum Needs {
     Direction,
 }
 
-/// Control of a setting in the window.
+/// Slider, check box or list in the window with which the user changes a setting.
 #[derive(Clone, Copy, Debug)]
 pub struct Control {
     /// Label of the control.
     pub label: &'static str,
-    /// Short name by which scripts set the control.
+    /// Short name of the setting, such as `Δt`, by which titles, explanations and window tests refer to it.
     pub symbol: &'static str,
     /// Unit of the value, or an empty string.
     pub unit: &'static str,
@@ -59,14 +61,15 @@ pub struct Control {
     pub hint: &'static str,
     /// Smallest and largest value of the slider of a number. Values outside can be typed.
     pub range: [f64; 2],
-    /// Largest number that can be typed. A larger number is taken as a typing error.
+    /// Largest number that can be typed. Slump refuses a larger number as a typing error.
     pub most: f64,
     /// True if the scale of the slider is logarithmic.
     pub logarithmic: bool,
 }
 
 impl Control {
-    /// A control without a label or a hint, with values from 0 to 1. Declarations override some of its fields.
+    /// A control without a label or a hint, with slider values from 0 to 1. Declarations of settings start from it and
+    /// override some of its fields.
     pub(crate) const PLAIN: Self = Self {
         label: "",
         symbol: "",
@@ -78,12 +81,12 @@ impl Control {
     };
 }
 
-/// Returns a control with this label and hint. Its other fields have default values.
+/// Returns a control with this label and hint. Its other fields are those of [`Control::PLAIN`].
 pub(crate) const fn shown(label: &'static str, hint: &'static str) -> Option<Control> {
     Some(Control { label, hint, ..Control::PLAIN })
 }
 
-/// Declaration of a setting of type `T`: the fields of [`About`] and the check of the range.
+/// Declaration of a setting with a value of type `T`: the fields of [`About`] and the check that a value is allowed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Declaration<T> {
     pub name: &'static str,
@@ -91,15 +94,15 @@ pub(crate) struct Declaration<T> {
     pub help: &'static str,
     /// Description of the allowed values, for error messages.
     pub allowed: &'static str,
-    /// Returns true if a value is allowed. It must return false for NaN.
+    /// Returns true if the setting may have this value. It must return false for NaN.
     pub holds: fn(T) -> bool,
     pub needs: Needs,
     pub control: Option<Control>,
 }
 
 impl<T: Settable> Declaration<T> {
-    /// A declaration that allows any value and has no control in the window. Declarations override some of its
-    /// fields.
+    /// A declaration that allows any value and has no control in the window. Declarations of settings start from it
+    /// and override some of its fields.
     pub(crate) const ANY: Self = Self {
         name: "",
         value_name: T::VALUE_NAME,
@@ -110,7 +113,8 @@ impl<T: Settable> Declaration<T> {
         control: None,
     };
 
-    /// Returns this declaration as a row of the table of settings.
+    /// Returns this declaration as an [`About`], which does not depend on the type of the value. `heading` is the
+    /// heading of the setting in the help of the command line.
     pub(crate) const fn about(&self, heading: &'static str) -> About {
         About {
             name: self.name,
@@ -133,11 +137,11 @@ pub enum Value {
     Count(u32),
     /// A switch: true is on, false is off.
     Switch(bool),
-    /// One of a few words.
+    /// One of the few words that the setting allows.
     Word(&'static str),
 }
 
-/// Formats the value as the command line and files write it.
+/// Formats the value of a setting as the command line and files write it.
 impl fmt::Display for Value {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -149,7 +153,7 @@ impl fmt::Display for Value {
     }
 }
 
-/// Kind of the values of a setting.
+/// Type of the value of a setting, with the allowed words if it is a word.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// A real number.
@@ -165,21 +169,22 @@ pub enum Kind {
 /// One of the words that a setting can have as its value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
-    /// The word itself, as on the command line and in files.
+    /// The word itself, as it is written on the command line and in files.
     pub name: &'static str,
-    /// Explanation of the word, one line.
+    /// Explanation of the word in one line.
     pub hint: &'static str,
 }
 
-/// A type that the value of a setting can have.
+/// A Rust type that the value of a setting can have: `f64`, `u32`, `bool` or an enum of words.
 pub trait Settable: Copy + PartialEq {
-    /// The kind of the values of this type.
+    /// Type of the setting's value, as a [`Kind`].
     const KIND: Kind;
     /// Default placeholder for the value in the help of the command line.
     const VALUE_NAME: &'static str = "";
     /// Converts a value of this type to a [`Value`].
     fn value(self) -> Value;
-    /// Converts a [`Value`] to this type. `None` if it is of another kind.
+    /// Converts a [`Value`] to this Rust type. `None` if the value has another type, such as a word instead of a
+    /// number.
     fn of(value: Value) -> Option<Self>;
 }
 
@@ -206,14 +211,14 @@ settable!(bool, Switch, "BOOL");
 
 /// A structure whose fields are settings.
 pub trait Group: Sized + 'static {
-    /// The structure of changes: the same settings, each optional.
+    /// The structure of changes to these settings: each setting is an `Option`, and `None` leaves it unchanged.
     type Changes: Changes<Group = Self>;
-    /// The declarations of the settings, in their order.
+    /// The declarations of the settings, in the order of the fields.
     const ABOUT: &'static [About];
     /// Returns the value of the setting with this name. `None` if no setting has the name.
     fn get(&self, name: &str) -> Option<Value>;
-    /// Sets the setting with this name. Returns false if no setting has this name, or if the value is of another
-    /// kind.
+    /// Sets the setting with this name. Returns false if no setting has this name, or if the value has the wrong type,
+    /// such as a word instead of a number.
     fn set(&mut self, name: &str, value: Value) -> bool;
     /// Checks that each setting is in its range.
     ///
@@ -222,32 +227,34 @@ pub trait Group: Sized + 'static {
     fn validate_each(&self) -> error::Result<()>;
 }
 
-/// Changes of settings: some of the settings of a group, accessed by the names that files and the command line use.
+/// Changes of settings: new values for some settings of a group. Files and the command line access the settings by
+/// name.
 pub trait Changes: Default {
     /// The structure whose settings are changed.
     type Group: Group<Changes = Self>;
     /// Returns changes that set all settings to the values of `group`.
     fn all_of(group: &Self::Group) -> Self;
-    /// Sets the settings of `group` that these changes contain.
+    /// Sets those settings of `group` for which these changes have a value.
     fn apply(&self, group: &mut Self::Group);
-    /// Adds the change of one setting. Returns false if no setting has this name, or if the value is of another kind.
+    /// Adds the change of one setting. Returns false if no setting has this name, or if the value has the wrong type,
+    /// such as a word instead of a number.
     fn set(&mut self, name: &str, value: Value) -> bool;
     /// Reads the value of the setting `name` from a file and adds it to the changes. Returns false if no setting has
     /// this name.
     ///
     /// # Errors
-    /// If the value in the file is of another kind.
+    /// If the value in the file has the wrong type, such as a word instead of a number.
     fn read<'de, A: MapAccess<'de>>(&mut self, name: &str, map: &mut A) -> Result<bool, A::Error>;
-    /// Writes the settings that these changes contain.
+    /// Writes the settings for which these changes have a value as entries of `map`, a table of a file.
     ///
     /// # Errors
-    /// If the writer fails.
+    /// If the file cannot be written.
     fn write<S: SerializeMap>(&self, map: &mut S) -> Result<(), S::Error>;
 }
 
-/// Declares a structure of settings and the structure of their changes. The declaration of a field consists of its
-/// type and default, of the name, placeholder and help text of its option (the help text is also its documentation),
-/// and of further fields of [`crate::setting::Declaration`].
+/// Declares a structure of settings and the structure of their changes. Each field is declared by its type and
+/// default, the name, placeholder and help text of its command-line option, and further fields of
+/// [`crate::setting::Declaration`]. The help text is also the documentation of the field.
 macro_rules! settings {
     (
         $(#[$meta:meta])* $vis:vis struct $Name:ident, changes $Changes:ident, heading $heading:literal {
@@ -403,12 +410,12 @@ macro_rules! words {
             const WORDS: &'static [$crate::setting::Word] =
                 &[$($crate::setting::Word { name: $word, hint: $hint }),*];
 
-            /// Returns the word as on the command line and in files.
+            /// Returns the word as it is written on the command line and in files.
             pub const fn name(self) -> &'static str {
                 Self::WORDS[self as usize].name
             }
 
-            /// Returns the explanation of the word, one line.
+            /// Returns the explanation of the word in one line.
             pub const fn hint(self) -> &'static str {
                 Self::WORDS[self as usize].hint
             }

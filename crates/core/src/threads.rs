@@ -1,5 +1,6 @@
 //! Parallel loops and sums whose results are bitwise the same for any number of threads. Each item of a list is
-//! computed independently. Sums are computed over ranges of fixed length, and these partial sums are added in order.
+//! computed independently of the others. A sum is divided into partial sums over a fixed number of items, and these
+//! partial sums are added in order.
 
 use std::cell::Cell;
 use std::hint::spin_loop;
@@ -10,32 +11,34 @@ use crate::error::{Error, Result, check};
 use rayon::Yield;
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
-/// Number of items per partial sum.
+/// Number of items that are added to one partial sum. It does not depend on the number of threads, so that results do
+/// not.
 const STRETCH: usize = 4096;
-/// Smallest number of items (grains or contacts) for which several threads are faster than one. With two threads, a
-/// step of 40 sweeps took 0.7 of the time of one thread in a pile of 10,000 grains. But it took 1.2 times as long
-/// with 10,000 discs that had fewer contacts, and with 5,000 grains. With 50,000 discs it took 0.7 to 0.8 of the
-/// time.
+/// Smallest number of items (grains or contacts) for which a loop runs on several threads. Loops over fewer items run
+/// on one thread, because several threads may take longer. With two threads, a step of 40 sweeps took 0.7 of the time
+/// of one thread in a pile of 10,000 grains, and 0.7 to 0.8 with 50,000 discs. But it took 1.2 times as long with
+/// 10,000 discs that had fewer contacts, and with 5,000 grains.
 const WORTH_IT: usize = 16_384;
 /// Time for which a thread without work waits for more work before it sleeps. It is longer than the serial work
-/// between two sweeps. When threads slept between sweeps, waking a thread took as long as the work that it then did.
+/// between two sweeps of the solver. When threads slept between sweeps, waking them took as long as their work in the
+/// sweep.
 const PATIENCE: Duration = Duration::from_micros(200);
 
 thread_local! {
     /// True if loops and sums of this thread are divided among several threads.
     static SHARES: Cell<bool> = const { Cell::new(false) };
-    /// True if this thread is in the waiting loop that keeps it awake.
+    /// True if this thread is already in the loop of [`stay_awake`], in which it waits for work.
     static IS_AWAKE: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Largest allowed number of threads. The largest machines have fewer cores.
+/// Largest allowed number of threads. It is larger than the number of cores of the largest machines.
 const MOST_THREADS: usize = 1024;
 const ASKED: &str = "RAYON_NUM_THREADS";
 
-/// Checks the number of threads that the environment variable `RAYON_NUM_THREADS` requests.
+/// Checks the number of threads that the environment variable `RAYON_NUM_THREADS` sets.
 ///
 /// # Errors
-/// If the number is too large. The error names the environment variable.
+/// If the number is above 1,024. The error names the environment variable.
 pub fn check_threads() -> Result<()> {
     let asked = std::env::var(ASKED).unwrap_or_default();
     let is_sound = !asked.parse::<usize>().is_ok_and(|asked| asked > MOST_THREADS);
@@ -58,9 +61,10 @@ pub fn make_threads() -> Result<()> {
     }
 }
 
-/// Runs `work` on `count` items, with several threads if that is faster than one thread. If the caller is already on
-/// a thread of a pool, as when a study runs many simulations at the same time, the work stays on this thread.
-/// Otherwise a thread that waits for a part of its work could begin a whole other simulation.
+/// Runs `work` on `count` items, with several threads if that is faster than one thread. If the caller is already on a
+/// thread of a pool, as when a study runs many simulations at the same time, the whole work stays on this thread.
+/// Otherwise the thread, while it waits for other threads, could start another simulation and return only when that
+/// simulation ends.
 pub(crate) fn together<R: Send>(count: usize, work: impl FnOnce() -> R + Send) -> R {
     // Check the count first, because asking for the number of threads creates the pool.
     let is_alone = || rayon::current_thread_index().is_some() || rayon::current_num_threads() == 1;
@@ -75,7 +79,8 @@ pub(crate) fn together<R: Send>(count: usize, work: impl FnOnce() -> R + Send) -
     })
 }
 
-/// Runs `work`, which must be on a thread of a pool, and divides its loops and sums among the threads of the pool.
+/// Runs `work` and divides its loops and sums among the threads of the pool. The caller must be on a thread of the
+/// pool.
 pub(crate) fn share<R>(work: impl FnOnce() -> R) -> R {
     struct Before(bool);
     impl Drop for Before {
@@ -100,9 +105,9 @@ pub(crate) fn rouse() {
     }
 }
 
-/// Executes work of the pool until there has been no work for [`PATIENCE`]. So a thread that runs this function while
-/// it waits for another thread returns soon. The function is never called with a single thread, as in a browser,
-/// where programs do not have this clock.
+/// Executes tasks of the thread pool until there has been no task for [`PATIENCE`]. If another thread waits for this
+/// one, it waits hardly longer than that. The function is never called with a single thread, as in a browser, where
+/// `Instant` does not exist.
 fn stay_awake() {
     if IS_AWAKE.replace(true) {
         return;

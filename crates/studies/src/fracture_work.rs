@@ -1,4 +1,5 @@
-//! Computes the work that breaks a bond between two grains, and finds settings with a prescribed work.
+//! Computes the work that breaks a cohesive bond between two grains, and finds settings with which breaking a bond
+//! takes a prescribed work.
 
 use crate::scene::Scene;
 use crate::sim::{Settings, Stepper};
@@ -11,9 +12,9 @@ pub(super) fn fracture_work(scene: &Scene, settings: Settings) -> Option<f64> {
     Some(scene.simulation().ok()?.fracture_work()?.joules).filter(|joules| *joules > 0.0)
 }
 
-/// Returns the settings, changed so that breaking a bond between two grains of mean size takes the work `joules`, J.
-/// The stepper `range` gets another debonding distance, the stepper `dem` another contact stiffness. The settings are
-/// returned unchanged if they have another stepper or no attraction.
+/// Returns changed settings, with which breaking a bond between two grains of mean size takes the work `joules`, J. For
+/// the stepper `range` the debonding distance is changed, for the stepper `dem` the contact stiffness. For other
+/// steppers, or without attraction, the settings are returned unchanged.
 pub(super) fn with_fracture_work(scene: &Scene, mut settings: Settings, joules: f64) -> Settings {
     match settings.stepper {
         Stepper::Dem => {

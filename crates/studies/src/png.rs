@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::output::{PendingFile, Texts};
 
 /// Writes a picture to a PNG file that also contains `texts`. The function does not wait until the disk has stored the
-/// file, because a lost picture can be drawn again.
+/// file, because a picture that is lost in a power failure can be drawn again.
 ///
 /// # Errors
 /// If the file cannot be written. The error names the file and gives the message of the operating system.

@@ -6,19 +6,20 @@ use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::sim::{Observables, RunEnding, Simulation, Snapshot, Tally};
 
-/// An observer of a run: gets the results of every step and the snapshots.
+/// An observer of a run: receives the results of every step, and the snapshots of the grains at requested times.
 pub trait Recorder {
-    /// Receives the observables after every step. The run ends if the function returns `Break`.
+    /// Receives the observables (measured numbers, such as the slump) after every step. The run ends if the function
+    /// returns `Break`.
     fn step(&mut self, observables: &Observables) -> Result<ControlFlow<()>>;
 
-    /// Receives the complete state of the simulation, and the sums over all steps so far, at the start and after every
-    /// step. If a snapshot is due after the step, this function is called before `picture`.
+    /// Receives the complete state of the simulation, and the statistics of all steps so far, at the start and after
+    /// every step. If a snapshot is due after the step, this function is called before `picture`.
     fn state(&mut self, _simulation: &Simulation, _tally: &Tally) -> Result<()> {
         Ok(())
     }
 
     /// Receives the snapshot of the step that is nearest to a requested time. `number` is the position of that time in
-    /// the list of requested times, from 0.
+    /// the list of requested times, counted from 0.
     fn picture(&mut self, number: usize, snapshot: Snapshot) -> Result<()>;
 }
 
@@ -27,9 +28,9 @@ pub trait Recorder {
 pub struct OnItsWay {
     /// The simulation in its present state.
     pub simulation: Simulation,
-    /// Sums over the steps that are already computed.
+    /// Statistics of the steps that are already computed, such as the number of sweeps and the mean overlap.
     pub tally: Tally,
-    /// Number of the next snapshot in the list of requested times, from 0.
+    /// Position of the next snapshot's time in the list of requested times, counted from 0.
     pub next_picture: usize,
 }
 
@@ -38,11 +39,12 @@ pub struct OnItsWay {
 pub struct Recorded {
     /// The simulation in its final state.
     pub simulation: Simulation,
-    /// Sums over all steps of the run.
+    /// Statistics of all steps of the run, such as the number of sweeps and the mean overlap.
     pub tally: Tally,
     /// True if the recorder ended the run early.
     pub interrupted: bool,
-    /// The error that ended the run early, if any: the state was no longer finite, or the recorder failed.
+    /// The error that ended the run early, if any: positions or velocities became NaN or infinite, or the recorder
+    /// failed.
     pub failure: Option<Error>,
 }
 

@@ -1,5 +1,5 @@
-//! Provides the initial states of runs that begin with a newly made pile. Each pile is left to settle only once. Its
-//! grains are kept in memory and on disk, and all runs share them.
+//! Provides the initial states of runs that begin with a newly made pile. The grains of each pile fall and come to rest
+//! only once. They are kept in memory and on disk, and all runs share them.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -18,8 +18,8 @@ pub(super) struct States {
 }
 
 impl States {
-    /// Reads the settled grains of all new piles that `configs` request from `folder`. Piles that are not in the folder
-    /// are left to settle now and are stored in the folder.
+    /// Reads the grains at rest of all new piles that `configs` describe from `folder`. Piles that are not in the
+    /// folder are made now (their grains fall and come to rest) and are stored in the folder.
     pub(super) fn of<'a>(
         folder: PathBuf,
         configs: impl Iterator<Item = &'a Config>,
@@ -54,8 +54,8 @@ impl States {
         Ok(Self { settled: settled? })
     }
 
-    /// Returns the scene of a config. If the config requests a new pile, the scene contains the settled grains of that
-    /// pile.
+    /// Returns the scene that a config describes. If the config asks for a new pile, the scene contains the grains of
+    /// that pile at rest.
     pub(super) fn scene(&self, config: &Config) -> Result<Scene> {
         match config.new_pile()?.and_then(|pile| self.settled.get(&name(&pile))) {
             Some(grains) => config.scene_from(grains.clone()),
@@ -64,9 +64,9 @@ impl States {
     }
 }
 
-/// Returns the settled grains of a pile. If `folder` contains a file of this pile, the grains are read from the file.
-/// Otherwise the pile is left to settle, and the file is written. A file gives back every number bit for bit, so both
-/// ways return the same grains.
+/// Returns the grains of a pile at rest. If `folder` contains a file of this pile, the grains are read from the file.
+/// Otherwise the grains fall until they are at rest, and the file is written. Numbers in the file are exact to the last
+/// bit, so the grains are the same whether they are simulated or read.
 ///
 /// # Errors
 /// Returns the errors of [`settle`]. Also fails if the folder cannot be read or written.
@@ -85,7 +85,8 @@ pub fn settled_pile(
     Ok(grains)
 }
 
-/// Reads grains from a file. Returns `None` if the file is missing or damaged; a damaged file is reported.
+/// Reads the grains of a pile at rest from a file. Returns `None` if the file is missing or damaged; a damaged file is
+/// reported on the terminal.
 fn read(path: &Path) -> Result<Option<Vec<Grain>>> {
     let bytes = match std::fs::read(path) {
         Ok(bytes) => bytes,

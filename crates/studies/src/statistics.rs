@@ -4,10 +4,10 @@
 use glam::{DMat3, DVec3};
 use statrs::distribution::{Beta, ContinuousCDF, StudentsT};
 
-/// Confidence level: the fraction of intervals that contain the true value.
+/// Default confidence level: the fraction of confidence intervals that contain the true value.
 const CONFIDENCE: f64 = 0.95;
 
-/// Returns the p-value of the claim that at least one of two claims is true, from the p-values of the two claims
+/// Returns the p-value of the statement that at least one of two claims is true, from the p-values of the two claims
 /// (Bonferroni).
 pub(super) fn p_of_either(one: f64, other: f64) -> f64 {
     (2.0 * one.min(other)).min(1.0)
@@ -63,7 +63,7 @@ impl Mean {
         1.0 - student.cdf((self.mean - bound) / self.standard_error)
     }
 
-    /// Returns the standard deviation of the values; infinite for fewer than two values.
+    /// Returns the standard deviation of the averaged values; infinite for fewer than two values.
     pub(super) fn spread(&self) -> f64 {
         self.standard_error * (self.count as f64).sqrt()
     }
@@ -74,7 +74,8 @@ impl Mean {
         Self { mean: -self.mean, ..*self }.p_above(-bound)
     }
 
-    /// Formats the mean and its interval with signs and with `decimals` decimals, as in "+0.12 (+0.10 … +0.14)".
+    /// Formats the mean and its confidence interval with signs and with `decimals` decimals, as in "+0.12 (+0.10 …
+    /// +0.14)".
     pub(super) fn signed(&self, decimals: usize) -> String {
         let Self { mean, low, high, .. } = self;
         format!("{mean:+.decimals$} ({low:+.decimals$} … {high:+.decimals$})")

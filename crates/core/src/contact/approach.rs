@@ -3,7 +3,8 @@
 //! **Time of impact.** The bodies are convex, so along a straight path the gap is a convex function of time. Its
 //! tangent never exceeds it, so Newton's iteration approaches the first zero of the gap from below and never passes
 //! it. If the bodies accelerate, the parabola with the present gap, speed and acceleration replaces the tangent. If
-//! the gap stops closing, the two bodies pass each other. The tangent at the beginning alone cannot show this.
+//! the gap begins to open before it is zero, the two bodies pass each other. The tangent at the beginning alone cannot
+//! show this, so the iteration is needed.
 
 use glam::DVec2;
 
@@ -13,14 +14,14 @@ use super::pair::Contact;
 use crate::number::Parts;
 use crate::world::World;
 
-/// Limit for Newton's iterations to the time of impact. The iterations converge quadratically, except if the two
-/// bodies graze each other: then each of the first iterations only halves the error.
+/// Largest number of Newton's iterations for one time of impact. The iterations converge quadratically, except if the
+/// two bodies graze each other. In that case each of the first iterations only halves the error.
 const MOST_STEPS: u32 = 60;
-/// Gap that counts as zero because of rounding, in radii of the grain.
+/// Gap, in radii of the grain, below which two bodies touch. It allows for rounding.
 const ROUNDING_IN_RADII: f64 = 1e-13;
 
-/// Returns the normal and the gap (m) between a disc with the given centre and radius (m) and another body. `None` if
-/// the nearest point is a corner that another feature (another part of a boundary) reports.
+/// Returns the normal and the gap (m) between another body and a disc with the given centre and radius (m). `None` if
+/// the nearest point is a shared corner at which another feature (part of a boundary) reports the contact.
 #[inline(always)]
 pub(super) fn approach(
     world: &World,
@@ -59,8 +60,8 @@ fn disc_gap(offset: DVec2, radii: f64, axes: usize) -> (DVec2, f64) {
 }
 
 impl Contact {
-    /// Returns the gap of the pair at the present positions, m. `None` if the grain now touches another feature
-    /// (another part of a boundary) instead.
+    /// Returns the gap of the contact at the present positions of its bodies, m. `None` if the grain now touches
+    /// another feature (part of a boundary) instead.
     pub(crate) fn gap_now(&self, world: &World, near: &Candidates, axes: usize) -> Option<f64> {
         let (grain, other) = (self.grain as usize, Numbering::of(world).other(self.other));
         let (position, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
@@ -68,34 +69,35 @@ impl Contact {
     }
 }
 
-/// Criterion by which pairs that do not touch yet are contacts too, because they may touch within the step.
+/// Criterion for adding pairs of bodies that do not touch yet to the contact list, because they may touch within the
+/// step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LookAhead {
     /// Time step Δt, s.
     pub time_step_secs: f64,
-    /// Distance, m. Pairs that would approach each other to less than this distance within the step are contacts.
+    /// Distance, m. A pair is added if the gap would shrink to less than this distance within the step.
     pub distance: f64,
-    /// Largest gap, m. Pairs with a larger gap are not contacts, unless they are bonded.
+    /// Largest gap, m. A pair with a larger gap is not added, unless it is bonded.
     pub reach: f64,
-    /// Criterion by which a contact is in touch, so that it can pull.
+    /// Criterion by which a contact counts as in touch, so that cohesion can pull.
     pub in_touch: InTouch,
 }
 
-/// Criterion by which a contact is in touch, so that it can pull. The grains of contacts that are not in touch are
-/// only near each other.
+/// Criterion by which a contact counts as in touch, so that cohesion can pull. The bodies of other contacts are only
+/// near each other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum InTouch {
     /// A pair is in touch if it touches when the step begins.
     Touching,
-    /// A pair is in touch if it has touched. It remains bonded, and in the contact list, until the bond breaks.
+    /// A pair is in touch if it has touched before. It remains bonded, and in the contact list, until the bond breaks.
     Bonded,
     /// A pair is in touch if its gap is at most this length (m) when the step begins.
     Within(f64),
 }
 
 impl LookAhead {
-    /// Returns a copy of this criterion in which all pairs with a gap of at most `range` (m) are in touch, so that
-    /// they can pull.
+    /// Returns a copy of this criterion with another rule for cohesion: all pairs with a gap of at most `range` (m)
+    /// are in touch, so that cohesion can pull.
     pub(crate) fn pulling_within(self, range: f64) -> Self {
         Self {
             distance: self.distance.max(range),
@@ -105,11 +107,11 @@ impl LookAhead {
         }
     }
 
-    /// Returns the gap that a grain of this velocity (m/s) may close by its own speed within the step, m. If pairs
-    /// stay bonded, it is half of `reach` (the largest gap of a contact), because bonds may be open even if their
-    /// grains are slow.
+    /// Returns the search margin of a grain with this velocity (m/s), m: the gap that the grain may close by its own
+    /// speed within the step. If pairs stay bonded, it is half of `reach` (the largest gap of a contact), because
+    /// bonds may be open even if their grains are slow.
     pub(crate) fn way_of_grain(&self, velocity: DVec2) -> f64 {
-        /// Factor that allows for the rounding of a speed.
+        /// Factor that makes up for the rounding of a speed.
         const ROUNDING: f64 = 1.0 + 1e-9;
         match self.in_touch {
             InTouch::Bonded => 0.5 * self.reach,
@@ -120,8 +122,8 @@ impl LookAhead {
         }
     }
 
-    /// Returns the detection distance for walls and fixed discs, m. The fastest wall moves by `way_of_walls` (m) in
-    /// the step.
+    /// Returns the search margin of walls and fixed discs, m. `way_of_walls` is the distance by which the fastest of
+    /// them moves in the step, m.
     pub(crate) fn way_of_others(&self, way_of_walls: f64) -> f64 {
         let of_bonds =
             if matches!(self.in_touch, InTouch::Bonded) { 0.5 * self.reach } else { 0.0 };
@@ -132,27 +134,27 @@ impl LookAhead {
 /// Motion of a grain relative to the other body of a contact during a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RelativeMotion {
-    /// Relative position at time 0 of the motion, minus the present relative position, m.
+    /// Relative position at the time 0 of this motion, minus the present relative position, m.
     pub offset: DVec2,
-    /// Relative velocity v, m/s, at time 0.
+    /// Relative velocity v at the time 0 of this motion, m/s.
     pub velocity: DVec2,
-    /// Relative acceleration a, m/s².
+    /// Relative acceleration a, m/s², constant during the motion.
     pub acceleration: DVec2,
 }
 
 impl RelativeMotion {
-    /// Returns the relative displacement after `secs` seconds from the present relative position, m.
+    /// Returns the relative displacement from the present relative position after `secs` seconds, m.
     fn way(&self, secs: f64) -> DVec2 {
         self.offset + secs * (self.velocity + 0.5 * secs * self.acceleration)
     }
 
-    /// Relative velocity after `secs` seconds, m/s.
+    /// Returns the relative velocity after `secs` seconds, m/s.
     pub(crate) fn velocity_at(&self, secs: f64) -> DVec2 {
         self.velocity + secs * self.acceleration
     }
 
-    /// Returns the normal and the gap (m) after `secs` seconds. `None` if the nearest point is a corner that another
-    /// feature (another part of a boundary) reports.
+    /// Returns the normal and the gap (m) of the two bodies after `secs` seconds. `None` if the nearest point is a
+    /// shared corner at which another feature (part of a boundary) reports the contact.
     pub(crate) fn approach(
         &self,
         world: &World,

@@ -1,29 +1,29 @@
 //! Search for nearby discs, with a grid if the discs have similar sizes and with a tree otherwise.
 //!
-//! **The grid** is a cell list over a hashed uniform grid: points sorted by cell, in linear time and memory. The
-//! cells are squares, as wide as the largest distance at which pairs are searched. So the two points of a pair lie in
-//! the same cell or in neighbouring cells. Each point is compared with the points of its own cell and of half of the
-//! 8 cells around it (on a line, of half of 2), so each pair is found once. The index of a cell is hashed into about
-//! as many buckets as there are points. So a grain that flies far away costs one bucket instead of a larger grid, and
-//! a scene far from the origin costs nothing. Points are sorted by bucket with a counting sort. The stored cell of
-//! each point distinguishes points of different cells in the same bucket.
+//! **The grid** is a cell list over a hashed uniform grid: points sorted by cell, in linear time and memory. The cells
+//! are squares, as wide as the largest distance at which pairs are searched. So the two points of a pair lie in the
+//! same cell or in neighbouring cells. Each point (the centre of a disc) is compared with the points of its own cell
+//! and of half of the 8 cells around it (on a line, of half of 2), so each pair is found once. The index of a cell is
+//! hashed into about as many buckets as there are points. So a grain that flies far away costs one bucket instead of a
+//! larger grid, and a scene far from the origin costs nothing. Points are sorted by bucket with a counting sort. The
+//! stored cell of each point distinguishes points of different cells in the same bucket.
 //!
-//! **The tree** is parry's bounding volume hierarchy, for discs of very different sizes. Grid cells are as wide as
-//! the largest disc, so each small disc would be compared with very many others. A tree does not need a common cell
-//! width. The tree is built once. After that, its bounding boxes are adjusted to the moved discs, and its structure
-//! is improved a little in each search. According to `cargo bench --bench broad_phase`, building the tree again for
-//! each search is slower than the grid.
+//! **The tree** is parry's bounding volume hierarchy, for discs of very different sizes. Grid cells are as wide as the
+//! largest disc, so each small disc would be compared with very many others. A tree does not need a common cell width.
+//! The tree is built once. After that, its bounding boxes are adjusted to the moved discs, and its structure is
+//! improved a little in each search. According to `cargo bench --bench broad_phase`, building the tree again for each
+//! search is slower than the grid.
 
 use glam::DVec2;
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 
-/// Ratio of the largest to the smallest disc, with or without skins, above which the tree finds the pairs. Otherwise
-/// the grid finds them. At a ratio of 1.5 both take about the same time. At 20 the grid takes 1.2 to 18 times as long
-/// as the tree (`cargo bench --bench broad_phase`).
+/// Ratio of the largest to the smallest disc above which the search uses the tree. Below it, the search uses the grid.
+/// The sizes are the radii, with or without search margins. At a ratio of 1.5 both take about the same time. At 20 the
+/// grid takes 1.2 to 18 times as long as the tree (`cargo bench --bench broad_phase`).
 const SIZE_RATIO_OF_TREE: f64 = 4.0;
 
-/// Search for pairs of nearby discs.
+/// Search for pairs of nearby discs, by a grid or a tree.
 #[derive(Clone, Debug, Default)]
 pub struct BroadPhase {
     radii_differ: bool,
@@ -43,7 +43,7 @@ impl Default for PairFinder {
 }
 
 impl BroadPhase {
-    /// Prepares the search for discs of these radii, m. The radii decide between grid and tree.
+    /// Prepares the search for discs of these radii, m. The radii decide if the search uses a grid or a tree.
     pub fn of(radii: &[f64]) -> Self {
         let (radii_differ, _) = spread(radii.iter().copied());
         Self { radii_differ, ..Self::default() }
@@ -87,7 +87,8 @@ impl BroadPhase {
     }
 }
 
-/// Returns true if the sizes differ so much that the tree is used, and the largest size (m).
+/// Returns true if the sizes of the discs (radii, or radii plus search margins, m) differ so much that the search uses
+/// the tree. Also returns the largest size, m.
 fn spread(sizes: impl Iterator<Item = f64> + Clone) -> (bool, f64) {
     let largest = sizes.clone().fold(0.0, f64::max);
     let smallest = sizes.fold(f64::INFINITY, f64::min);
@@ -101,11 +102,12 @@ type GridCell = [i64; 2];
 #[derive(Clone, Debug, Default)]
 pub struct Grid {
     cells_per_metre: f64,
-    /// Bucket b contains the entries `starts[b] .. starts[b + 1]`. The number of buckets is a power of two.
+    /// For each bucket b, the start of its points in `entries`: it contains `entries[starts[b] .. starts[b + 1]]`. The
+    /// number of buckets is a power of two.
     starts: Vec<u32>,
     /// Indices of the points, bucket by bucket, in increasing order within a bucket.
     entries: Vec<u32>,
-    /// Grid cell of the point in each entry.
+    /// Grid cell of the point at each position of `entries`.
     cells: Vec<GridCell>,
 }
 
@@ -143,7 +145,7 @@ impl Grid {
     /// Calls `found` once for every pair of points that are in the same cell or in neighbouring cells. These include
     /// all pairs within one cell width.
     pub fn pairs<const AXES: usize>(&self, mut found: impl FnMut(u32, u32)) {
-        /// Offsets to half of the neighbouring cells. On a line only the first exists.
+        /// Offsets from a grid cell to half of its neighbouring cells. On a line only the first neighbour exists.
         const FORWARD: [GridCell; 4] = [[1, 0], [-1, 1], [0, 1], [1, 1]];
         let forward = if AXES == 1 { &FORWARD[..1] } else { &FORWARD };
         for (slot, (&point, &cell)) in self.entries.iter().zip(&self.cells).enumerate() {

@@ -1,12 +1,12 @@
 //! The candidates: pairs of bodies that may touch soon. The list is kept until a grain has moved so far that another
 //! pair could touch.
 //!
-//! Each body has a search margin, its *skin* (m). A pair is a candidate if its gap is below the sum of its two skins.
-//! No pair outside the list can touch before one of its bodies has moved by its own skin, so the list is rebuilt only
-//! then. A skin is a fraction of the mean diameter, but not larger than the disc. So each disc has few candidates
-//! among discs of its size and larger discs, and the list grows in proportion to the number of discs, whatever their
-//! sizes are. Candidates are sorted by the numbers of their bodies (i, other), so the order of contacts depends only
-//! on positions and numbering and not on the time at which the list was built.
+//! Each body has a search margin, its *skin* (m). A pair of bodies is a candidate if the gap is below the sum of the
+//! two skins. No pair outside the list can touch before one of its bodies has moved by its own skin, so the list is
+//! rebuilt only then. A skin is a fraction of the mean diameter, but not larger than the disc. So each disc has few
+//! candidates among discs of its size and larger discs, and the list grows in proportion to the number of discs,
+//! whatever their sizes are. Candidates are sorted by the numbers of their bodies (i, other), so the order of contacts
+//! depends only on positions and numbering and not on the time at which the list was built.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -19,12 +19,12 @@ use super::seam_search;
 use crate::error::{Error, Result};
 use crate::world::{Carry, World};
 
-/// Search distances of the candidate search, m.
+/// Lengths that decide which pairs of bodies are candidates and which touch, m.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reach {
-    /// Search distance, m: pairs with a smaller gap are candidates. If a disc is smaller than this distance, its
-    /// pairs are candidates only up to a smaller gap.
+    /// Search distance, m: pairs of bodies with a smaller gap are candidates, because they may touch soon. Pairs with
+    /// a disc that is smaller than this distance are candidates only up to a smaller gap.
     pub skin: f64,
     /// Largest gap of a touching pair, m. It is 0 or a small tolerance for rounding.
     pub gap_tolerance: f64,
@@ -32,7 +32,7 @@ pub struct Reach {
 
 /// The candidate pairs of a world: pairs of bodies that may touch soon.
 ///
-/// A saved file contains the pairs and the positions at which they were found, because these determine when the list
+/// A saved file contains the pairs, and the positions, search margins and displacements that determine when the list
 /// is next rebuilt. All other fields are recomputed from the world.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -43,25 +43,26 @@ pub struct Candidates {
     /// The index of the boundary to which each feature (half-space, segment or polygon) belongs.
     #[serde(skip)]
     boundary_of: Vec<usize>,
-    /// Largest displacement of a feature near any grain since the list was last built, m.
+    /// Upper bound, m, for the displacement of the surface of any feature (half-space, segment or polygon) near any
+    /// grain since the list was last built.
     way_of_features: f64,
-    /// Largest displacement of a fixed disc since the list was last built, m.
+    /// Largest displacement, since the list was last built, of a fixed disc with a prescribed or driven motion, m.
     way_of_discs: f64,
-    /// Displacement of periodic images beyond a sheared border relative to their discs since the list was last built,
-    /// m.
+    /// Displacement along x, since the list was last built, of the periodic images beyond a sheared border, relative
+    /// to the discs themselves, m.
     way_of_images: f64,
     #[serde(skip)]
     broad_phase: BroadPhase,
     /// Radii of the grains, then of the fixed discs, m.
     #[serde(skip)]
     radii: Vec<f64>,
-    /// Skins (search margins) of the grains and fixed discs when the list was last built, m: the distance that each
-    /// may move before the list is rebuilt.
+    /// Skin (search margin) of each grain and fixed disc when the list was last built, m. The list is rebuilt when a
+    /// disc has moved farther than its skin.
     skins: Vec<f64>,
     skin_of_features: f64,
     /// Centres of the grains and fixed discs when the list was last built, m.
     centres: Vec<DVec2>,
-    /// Pairs of discs, in the order in which the search found them.
+    /// Candidate pairs of two discs, in the order in which the search found them.
     #[serde(skip)]
     pairs: Vec<(u32, u32)>,
     /// Start indices in `others`: grain i has the candidates `others[starts[i] .. starts[i + 1]]`, in increasing
@@ -71,7 +72,8 @@ pub struct Candidates {
 }
 
 impl Candidates {
-    /// Prepares the search for candidate pairs in a world. The list of pairs is still empty.
+    /// Prepares the search for candidate pairs (bodies that may touch soon) in a world. The list of pairs is still
+    /// empty.
     ///
     /// # Errors
     /// If a boundary does not have a valid shape.
@@ -102,7 +104,7 @@ impl Candidates {
         })
     }
 
-    /// Returns candidates with the same search distances, but with an empty list.
+    /// Returns candidates with the same search distances, but for `world` and with an empty list of pairs.
     ///
     /// # Errors
     /// The errors of [`Self::new`].
@@ -110,7 +112,8 @@ impl Candidates {
         Self::new(world, self.reach)
     }
 
-    /// Completes candidates that were read from a file, with the data of the world to which they belong.
+    /// Completes candidates that were read from a file with the fields that the file does not contain. `world` is the
+    /// world to which the candidates belong.
     ///
     /// # Errors
     /// If the candidates refer to bodies that do not exist.
@@ -169,9 +172,9 @@ impl Candidates {
         self.boundary_of[feature]
     }
 
-    /// Moves the features (half-spaces, segments, polygons) with their boundaries, which have just moved. `carry_of`
-    /// returns the displacement of the boundary with a given index, or `None` for a boundary at rest. Fixed discs
-    /// have moved by at most `way_of_discs` (m).
+    /// Moves the features (half-spaces, segments, polygons) after their boundaries have moved. `carry_of` returns the
+    /// displacement of the boundary with a given index, or `None` for a boundary at rest. `way_of_discs` is the
+    /// largest displacement of a fixed disc in the same time, m.
     pub(crate) fn follow<'a>(
         &mut self,
         world: &World,
@@ -196,12 +199,13 @@ impl Candidates {
         self.way_of_discs += way_of_discs;
     }
 
-    /// Adds `way` (m) to the displacement of periodic images beyond a sheared border relative to their discs.
+    /// Adds `way` (m) to the displacement of the periodic images beyond a sheared border relative to the discs
+    /// themselves.
     pub(crate) fn slide(&mut self, way: f64) {
         self.way_of_images += way.abs();
     }
 
-    /// The gap below which a pair touches, m.
+    /// Gap below which a pair of bodies touches, m.
     pub(crate) fn gap_tolerance(&self) -> f64 {
         self.reach.gap_tolerance
     }
@@ -248,9 +252,9 @@ impl Candidates {
         !still_good
     }
 
-    /// Sets the skin (search margin) of each body to at least twice its expected displacement, so that the list can
-    /// be used for more than one step. `of_grain` returns the displacement of a grain, and `of_others` is the
-    /// displacement of fixed discs and features (half-spaces, segments, polygons), m.
+    /// Sets the skin (search margin, m) of each body to at least twice its expected displacement in the next step, so
+    /// that the list of candidates can be used for more than one step. `of_grain` returns the displacement of a grain,
+    /// and `of_others` is the displacement of fixed discs and features (half-spaces, segments, polygons), m.
     fn set_skins(&mut self, grains: usize, of_grain: impl Fn(usize) -> f64, of_others: f64) {
         let usual = 0.5 * self.reach.skin;
         self.skin_of_features = usual.max(2.0 * of_others);
@@ -291,7 +295,7 @@ impl Candidates {
         self.add_features(world);
     }
 
-    /// Sorts the pairs by their first grain into `others`, with a counting sort.
+    /// Sorts the pairs by the index of their first grain into `others`, with a counting sort.
     fn sort_pairs(&mut self, grain_count: usize) {
         self.starts.clear();
         self.starts.resize(grain_count + 1, 0);
@@ -317,8 +321,8 @@ impl Candidates {
         }
     }
 
-    /// Adds the features (half-spaces, segments, polygons) within reach of each grain to the candidates of that
-    /// grain.
+    /// Adds the features (half-spaces, segments, polygons) near each grain, within the two search margins, to the
+    /// candidates of that grain.
     fn add_features(&mut self, world: &World) {
         if self.features.is_empty() {
             return;

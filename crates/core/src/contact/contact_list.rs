@@ -1,4 +1,5 @@
-//! The list of the contacts of one step. A contact that existed in the previous step keeps its impulses.
+//! The list of the contacts of one step. A contact that existed in the previous step starts with its previous
+//! impulses.
 
 use std::ops::Range;
 
@@ -20,7 +21,7 @@ use crate::world::World;
 /// many grains.
 const GRAINS_IN_PART: usize = 2048;
 
-/// The columns of a [`ContactList`] that a stepper reads or changes.
+/// The columns (arrays with one entry per contact) of a [`ContactList`] that a stepper reads or changes.
 pub(crate) struct ContactParts<'a> {
     pub contacts: &'a [Contact],
     pub found_in: &'a [u64],
@@ -29,48 +30,51 @@ pub(crate) struct ContactParts<'a> {
     pub sums: &'a mut StepSums,
 }
 
-/// The contacts of a step, sorted by their bodies (i, other), with their impulses and other data, one column for each
-/// kind. The list keeps its allocated memory from step to step.
+/// The contacts of a step, sorted by the indices of their two bodies (i, other), with their impulses and other data.
+/// Each quantity has its own array (column) with one entry per contact. The list keeps its allocated memory from step
+/// to step.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactList {
     now: ContactColumns,
-    /// Contacts of the previous step while the present contacts are searched for. Afterwards only its allocated
-    /// memory is used.
+    /// The contacts of the previous step, while the contacts of the present step are searched for. After the search
+    /// only the allocated memory of this field is used.
     #[serde(skip)]
     before: ContactColumns,
-    /// Contacts that each thread finds. Kept between steps for the allocated memory only.
+    /// The contacts that each thread has found, before they are joined to one list. Kept between steps for the
+    /// allocated memory only.
     #[serde(skip)]
     parts: Vec<ContactColumns>,
-    /// True if the list also contains pairs that do not touch yet (pairs with a gap).
+    /// True if the list also contains pairs of bodies that do not touch yet but may touch within the step.
     looks_ahead: bool,
-    /// Index of the present step, which contacts record when they are found.
+    /// Index of the present step. It is stored with each contact that is new in this step.
     step: u64,
-    /// Sums of the impulses that each pair transmits in a step that is divided into shorter steps (pieces). Empty if
-    /// the step is undivided.
+    /// For each pair of bodies, the sum of its contact impulses over a step that is divided into shorter steps
+    /// (pieces). Empty if the step is undivided.
     sums: StepSums,
-    /// True if the impulses of the present step are summed, because it is divided into shorter steps (pieces).
+    /// True if the contact impulses of the present step are summed, because the step is divided into shorter steps
+    /// (pieces).
     #[serde(skip)]
     is_summed_up: bool,
 }
 
 impl ContactList {
-    /// Begins the step with this index. Contacts found from now on record the index. The sums of the previous step
-    /// are cleared.
+    /// Begins the step with this index. The index is stored with each contact that is new in this step. The impulse
+    /// sums of the previous step are cleared.
     pub(crate) fn begin_step(&mut self, step: u64) {
         self.step = step;
         self.sums.clear();
         self.is_summed_up = false;
     }
 
-    /// Declares that the present step is divided into shorter steps (pieces), so that the impulses of these are
-    /// summed.
+    /// Declares that the present step is divided into shorter steps (pieces), so that the contact impulses of the
+    /// pieces are summed.
     pub(crate) fn begin_sums(&mut self) {
         self.is_summed_up = true;
     }
 
-    /// Adds the impulses of the present piece to the sums of the step if the step is divided into shorter steps
-    /// (pieces). Does nothing in an undivided step.
+    /// Adds the contact impulses of the present piece to the sums over the step, if the step is divided into shorter
+    /// steps (pieces). Does nothing in an undivided step.
     pub(crate) fn sum_up(&mut self) {
         if self.is_summed_up {
             for index in 0..self.now.contacts.len() {
@@ -79,26 +83,26 @@ impl ContactList {
         }
     }
 
-    /// Adds an impulse of the contact with this index to the sums of the step. The impulse acts along `normal`, which
-    /// may have turned since the contact was found.
+    /// Adds an impulse (N·s) of the contact with this index to the impulse sums of the step. The impulse acts along
+    /// `normal`, which may have turned since the contact was found.
     pub(crate) fn add_to_sums(&mut self, index: usize, normal: DVec2, impulse: Impulse) {
         let ContactColumns { contacts, found_in, .. } = &self.now;
         self.sums.add(Transmitted::of(contacts[index], found_in[index], normal, impulse));
     }
 
-    /// Returns the total impulse that the pair of a contact has transmitted in the present step, which is divided
-    /// into shorter steps (pieces).
+    /// Returns the total impulse between the two bodies of a contact in the present step, which is divided into
+    /// shorter steps (pieces).
     pub(crate) fn sum_of(&self, contact: &Contact) -> Impulse {
         self.sums.of(contact.pair())
     }
 
-    /// True if sums of impulses over the parts of the step exist. Then the sums belong to the whole step, and the
-    /// impulses in the list only to its last part.
+    /// True if the step is divided into shorter steps (pieces) and impulse sums over the pieces exist. Then the sums
+    /// belong to the whole step, and the impulses in the list only to its last piece.
     pub(crate) fn has_sums(&self) -> bool {
         !self.sums.pairs.is_empty()
     }
 
-    /// Returns the impulses transmitted in the last step, sorted by pair, with each pair once. If the step was
+    /// Returns the contact impulses of the last step, one entry per pair of bodies, sorted by pair. If the step was
     /// divided into shorter steps (pieces), these are the sums over the pieces.
     pub(crate) fn transmitted_in_step(&self) -> impl Iterator<Item = Transmitted> + '_ {
         let ContactColumns { contacts, impulses, found_in, .. } = &self.now;
@@ -110,8 +114,8 @@ impl ContactList {
         self.sums.pairs.iter().copied().chain(of_contacts)
     }
 
-    /// Returns the impulses transmitted in the last step, sorted by pair, with each pair once. The second item is the
-    /// index of the contact, or `None` if the pair is no longer in the contact list.
+    /// Returns the contact impulses of the last step, one entry per pair of bodies, sorted by pair. The second item of
+    /// an entry is the index of the contact in the list, or `None` if the pair is no longer in the list.
     pub(crate) fn transmitted(&self) -> Vec<(Transmitted, Option<usize>)> {
         let ContactColumns { contacts, impulses, found_in, .. } = &self.now;
         let whole = !self.has_sums();
@@ -133,7 +137,7 @@ impl ContactList {
         all
     }
 
-    /// The contacts, sorted by their bodies (i, other).
+    /// The contacts, sorted by the indices of their two bodies (i, other).
     pub fn contacts(&self) -> &[Contact] {
         &self.now.contacts
     }
@@ -143,69 +147,72 @@ impl ContactList {
         &self.now.impulses
     }
 
-    /// Moment impulse on grain i of the contact with this index, N·m·s. It resists rolling.
+    /// Rolling impulse of the contact with this index, N·m·s: the time integral over the step of the moment on grain i
+    /// that resists rolling.
     pub fn rolling(&self, index: usize) -> f64 {
         self.now.rolling.get(index).copied().unwrap_or(0.0)
     }
 
-    /// Moment impulses that resist rolling, N·m·s, to be filled in by the solver. The list has one number per
-    /// contact, or is empty without rolling friction.
+    /// Rolling impulses, N·m·s: time integrals over the step of the moments that resist rolling, for the solver to
+    /// fill in. The list has one number per contact, or is empty without rolling friction.
     pub(crate) fn rolling_mut(&mut self) -> &mut Vec<f64> {
         &mut self.now.rolling
     }
 
-    /// The impulses, N·s, one per contact, mutable. The solver fills them in.
+    /// The impulses of the contacts, N·s, one per contact, for the solver to fill in.
     pub fn impulses_mut(&mut self) -> &mut [Impulse] {
         &mut self.now.impulses
     }
 
-    /// Data that the stepper keeps about each contact, one entry per contact.
+    /// Data that the stepper keeps about each contact from one step to the next, one entry per contact.
     pub fn memories(&self) -> &[ContactMemory] {
         &self.now.memories
     }
 
-    /// Returns the contacts and the steps in which they were found, with mutable impulses, memories and sums.
+    /// Returns the contacts and the steps in which they were found, and mutable references to their impulses, stepper
+    /// data and impulse sums.
     pub(crate) fn parts_mut(&mut self) -> ContactParts<'_> {
         let ContactColumns { contacts, impulses, memories, found_in, .. } = &mut self.now;
         ContactParts { contacts, found_in, impulses, memories, sums: &mut self.sums }
     }
 
-    /// Index of the step in which each contact was first found, one per contact.
+    /// For each contact, the index of the step in which it was first found.
     pub(crate) fn found_in(&self) -> &[u64] {
         &self.now.found_in
     }
 
-    /// The bonds, one per contact. They have a meaning only under the law `range` or if the list contains pairs with
-    /// a gap.
+    /// State of the bond of each contact. It has a meaning only under the law `range`, or if the list also contains
+    /// pairs that do not touch yet.
     pub(crate) fn bonds(&self) -> &[Bond] {
         &self.now.bonds
     }
 
-    /// The bonds, one per contact, mutable.
+    /// State of the bond of each contact, mutable.
     pub(crate) fn bonds_mut(&mut self) -> &mut [Bond] {
         &mut self.now.bonds
     }
 
-    /// True if the list also contains pairs that do not touch yet (pairs with a gap).
+    /// True if the list also contains pairs of bodies that do not touch yet but may touch within the step.
     pub(crate) fn looks_ahead(&self) -> bool {
         self.looks_ahead
     }
 
-    /// True if the pair of the contact with this index touches or is bonded. False if its grains are only near each
+    /// True if the two bodies of the contact with this index touch or are bonded. False if they are only near each
     /// other.
     pub fn is_in_touch(&self, index: usize) -> bool {
         !self.looks_ahead || self.now.bonds[index].alive
     }
 
-    /// Clears the memories of the stepper, the rolling moments and the sums of impulses. Called when the stepper
-    /// changes, because the new stepper did not write these data.
+    /// Clears the data that the stepper keeps about contacts, the rolling impulses, and the impulse sums of the step.
+    /// Called when the stepper changes, because the new stepper did not write these data.
     pub(crate) fn forget(&mut self) {
         self.now.memories.fill(ContactMemory::default());
         self.now.rolling.clear();
         self.sums.clear();
     }
 
-    /// Multiplies all impulses by `factor`, so that the contact forces stay the same when the time step changes.
+    /// Multiplies all impulses by `factor`. If the factor is the ratio of the new to the old time step, the contact
+    /// forces stay the same.
     pub(crate) fn scale_impulses(&mut self, factor: f64) {
         for impulse in &mut self.now.impulses {
             impulse.normal *= factor;
@@ -214,7 +221,8 @@ impl ContactList {
         self.now.rolling.iter_mut().for_each(|impulse| *impulse *= factor);
     }
 
-    /// Removes the contacts of a body and decreases all body indices above `body` by one.
+    /// Removes the contacts of a body that is removed from the world, and decreases all body indices above `body` by
+    /// one.
     pub(crate) fn remove_body(&mut self, body: u32) {
         let ContactColumns { contacts, impulses, memories, bonds, found_in, rolling } =
             &mut self.now;
@@ -235,14 +243,14 @@ impl ContactList {
         }
     }
 
-    /// Iterates over the contacts of the list and over the contacts in the sums of the step.
+    /// Iterates over the contacts of the list and over the contacts that belong to the impulse sums of the step.
     fn all_mut(&mut self) -> impl Iterator<Item = &mut Contact> {
         let earlier = self.sums.pairs.iter_mut().map(|pair| &mut pair.contact);
         self.now.contacts.iter_mut().chain(earlier)
     }
 
-    /// Increases all body indices from `body` on by one, so that a new body can have this index. The new body has no
-    /// contacts yet.
+    /// Increases all body indices from `body` on by one, so that a new body, which has no contacts yet, can have the
+    /// index `body`.
     pub(crate) fn insert_body(&mut self, body: u32) {
         for contact in self.all_mut() {
             contact.grain += u32::from(contact.grain >= body);
@@ -250,8 +258,9 @@ impl ContactList {
         }
     }
 
-    /// Returns true if all columns have the same length and all indices refer to existing bodies. `bodies` is the
-    /// number of all bodies, and the first `grains` of them are grains.
+    /// Returns true if the list is consistent: all columns have the same length, all body indices refer to existing
+    /// bodies, and no contact was found after the present step. `bodies` is the number of all bodies, and the first
+    /// `grains` of them are grains.
     pub(crate) fn is_sound(&self, bodies: usize, grains: usize) -> bool {
         let ContactColumns { contacts, impulses, memories, bonds, found_in, rolling } = &self.now;
         let lengths = [impulses.len(), memories.len(), bonds.len(), found_in.len()];
@@ -265,8 +274,8 @@ impl ContactList {
             && found_in.iter().all(is_past)
     }
 
-    /// Finds the contacts at the present positions: candidate pairs with a gap below the gap tolerance. A contact
-    /// that existed in the previous step starts from its previous impulses and memory. All other contacts start from
+    /// Finds the contacts at the present positions: candidate pairs with a gap below the gap tolerance. A contact that
+    /// existed in the previous step starts with its previous impulses and stepper data. All other contacts start with
     /// zero.
     pub fn detect<const AXES: usize>(&mut self, world: &World, candidates: &Candidates) {
         self.looks_ahead = false;
@@ -274,8 +283,9 @@ impl ContactList {
         self.find::<AXES>(world, candidates, |contact, _| contact.gap < gap_tolerance);
     }
 
-    /// Finds the pairs that touch, are bonded, or may touch within the step. `normal_velocity_of_wall` returns the
-    /// normal velocity (m/s) of the wall or fixed disc of a contact.
+    /// Finds the contacts of a step, including pairs that do not touch yet: pairs that touch, are bonded, or may touch
+    /// within the step. `normal_velocity_of_wall` returns the velocity (m/s) of the wall or fixed disc of a contact
+    /// along the normal.
     pub(crate) fn detect_ahead<const AXES: usize>(
         &mut self,
         world: &World,
@@ -315,8 +325,8 @@ impl ContactList {
         });
     }
 
-    /// Replaces the contacts by all candidate pairs for which `keep` returns true. `keep` receives the contact and
-    /// its bond, which it may change.
+    /// Replaces the contacts by all candidate pairs for which `keep` returns true. `keep` receives the contact and the
+    /// state of its bond, which it may change.
     #[inline(always)]
     fn find<const AXES: usize>(
         &mut self,
@@ -340,10 +350,10 @@ impl ContactList {
         now.take_all(parts);
     }
 
-    /// Separates bodies that overlap by more than `allowed` (m), one pair after the other. Each of the two grains of
-    /// a pair moves in proportion to the mass of the other grain. Velocities, and so the kinetic energy, stay the
-    /// same. Returns true if such overlaps existed. Then another pass may be needed, because separating one pair may
-    /// push others together.
+    /// Separates bodies that overlap by more than `allowed` (m), one pair after the other. Each of the two grains of a
+    /// pair moves in proportion to the mass of the other grain. Velocities, and so the kinetic energy, stay the same.
+    /// Returns true if any overlap was larger than `allowed`. Then another pass may be needed, because separating one
+    /// pair may push others together.
     pub(crate) fn separate(
         &self,
         world: &mut World,
@@ -384,9 +394,10 @@ struct ContactColumns {
     impulses: Vec<Impulse>,
     memories: Vec<ContactMemory>,
     bonds: Vec<Bond>,
-    /// Index of the step in which each contact was first found.
+    /// For each contact, the index of the step in which it was first found.
     found_in: Vec<u64>,
-    /// Moment impulses on grain i that resist rolling, N·m·s. Empty without rolling friction.
+    /// Rolling impulses, N·m·s: time integrals over the step of the moments on grain i that resist rolling. Empty
+    /// without rolling friction.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     rolling: Vec<f64>,
 }
@@ -402,7 +413,7 @@ impl ContactColumns {
         rolling.clear();
     }
 
-    /// Replaces the contents by the concatenation of `parts`.
+    /// Replaces all entries by those of `parts`, one part after the other.
     fn take_all(&mut self, parts: &[Self]) {
         fn join<'a, T: Copy + 'a>(all: &mut Vec<T>, parts: impl Iterator<Item = &'a Vec<T>>) {
             parts.for_each(|part| all.extend_from_slice(part));
@@ -431,13 +442,13 @@ struct ContactSearch<'a> {
     candidates: &'a Candidates,
     /// The contacts of the previous step.
     before: &'a ContactColumns,
-    /// True if the list also contains pairs that do not touch yet (pairs with a gap).
+    /// True if pairs of bodies that do not touch yet, but may touch within the step, are also searched for.
     looks_ahead: bool,
     step: u64,
 }
 
 impl ContactSearch<'_> {
-    /// Writes the contacts of a range of grains to `now`, in the order of the grains.
+    /// Writes the contacts of a range of grains to `now`, sorted by the indices of their bodies.
     #[inline(always)]
     fn find<const AXES: usize>(
         &self,

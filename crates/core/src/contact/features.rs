@@ -1,5 +1,5 @@
-//! Boundaries (fixed shapes), divided into features: half-spaces, segments and convex polygons. A disc touches each
-//! feature in at most one point.
+//! Boundaries (shapes, other than discs, that grains cannot move), divided into features: half-spaces, segments and
+//! convex polygons. A disc touches each feature in at most one point.
 
 use glam::DVec2;
 use parry2d_f64::query::{PointQuery, PointQueryWithLocation};
@@ -45,7 +45,7 @@ impl Feature {
     /// Divides a boundary into features (half-spaces, segments, polygons) and appends them to `features`.
     ///
     /// # Errors
-    /// If a part of the boundary is not a valid shape. The error names the boundary (`field`) and that part.
+    /// If the boundary is not a valid shape. The error names the boundary (`field`) or its invalid point.
     pub(crate) fn collect(
         boundary: &Boundary,
         field: &str,
@@ -89,8 +89,8 @@ impl Feature {
         Ok(())
     }
 
-    /// Checks a chain of points and appends its segments to `features`. `name` returns the name of a point in error
-    /// messages, by its index.
+    /// Checks a chain of points and appends the segments between them to `features`. `name` returns the name of a
+    /// point in error messages from its index in the chain.
     fn collect_chain(
         points: &[DVec2],
         field: &str,
@@ -169,8 +169,8 @@ impl Feature {
     }
 
     /// Returns the distance of `centre` from the surface, m, negative inside solids. Unlike [`Self::distance`], this
-    /// includes corners that another feature (part of a boundary) reports at present, because this feature may report
-    /// them a moment later.
+    /// includes corners at which another feature (part of a boundary) reports the contact at present, because this
+    /// feature may have to report it after a small motion of the disc.
     pub(crate) fn distance_to_any_point(&self, centre: DVec2) -> f64 {
         match self {
             Feature::Segment { shape, .. } => shape.distance_to_local_point(centre, false),
@@ -185,7 +185,8 @@ impl Feature {
     }
 
     /// Returns the unit normal towards `centre`, and the distance of `centre` from the surface (m, negative inside
-    /// solids). `None` if the nearest point is a corner that another feature (part of a boundary) reports.
+    /// solids). `None` if the nearest point is a shared corner at which another feature (part of a boundary) reports
+    /// the contact.
     pub(crate) fn distance(&self, centre: DVec2) -> Option<(DVec2, f64)> {
         match self {
             Feature::HalfSpace { point, shape } => {
@@ -238,9 +239,9 @@ impl Feature {
     }
 }
 
-/// Finds that side of a convex polygon from whose line a point has the largest signed distance (negative inside the
-/// polygon, positive outside). For a point inside, this is the nearest side. Returns the outward normal of the side,
-/// and the signed distance, m.
+/// Finds the side of a convex polygon from whose line the point `place` has the largest signed distance (negative
+/// inside the polygon, positive outside). For a point inside, this is the nearest side. Returns the outward normal of
+/// the side, and the signed distance, m.
 fn way_out(sides: &[Segment], place: DVec2) -> (DVec2, f64) {
     let lines = sides.iter().map(|side| (-left_of(side), (place - side.a).dot(-left_of(side))));
     lines.fold(

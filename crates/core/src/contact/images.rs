@@ -2,8 +2,8 @@
 //!
 //! **Discs.** Discs near the left border are repeated one period further right, beyond the right border. Discs near
 //! the lower border are repeated one period higher, and discs near the corners are repeated diagonally. A pair is
-//! reported only for those images whose offset is the shortest, so that each pair is reported once, however large the
-//! search distance is.
+//! reported only for the two nearest images of its discs, so that each pair is reported once, however large the search
+//! distance is.
 //!
 //! With sheared borders, images above the cell are shifted sideways. They are wrapped into the cell along x before
 //! images beside the cell are searched for.
@@ -17,8 +17,8 @@ use super::broad_phase::BroadPhase;
 use super::features::Feature;
 use crate::world::{Periodic, World};
 
-/// Offsets, in periods, from a disc to those of its periodic images that are searched. They are half of the images
-/// around the cell, because either disc of a pair across a border can be the disc in the cell.
+/// Offsets, in periods, from a disc to those of its periodic images that the search visits. They are only half of the
+/// images around the cell, because a pair across a border is found from either of its two discs.
 const HALF_AROUND: [DVec2; 4] = [DVec2::X, DVec2::Y, DVec2::ONE, DVec2::new(-1.0, 1.0)];
 
 /// Calls `found` once for every pair of discs, given by their indices, whose nearest periodic images are closer than
@@ -73,8 +73,8 @@ pub(super) fn pairs<const AXES: usize>(
     });
 }
 
-/// Returns true if the disc at the coordinate `at` (m) is so near to a border that its periodic image, which is
-/// `periods` periods away along this axis, can be within `reach` (m) of another disc.
+/// Returns true if a disc with the coordinate `at` (m) is so near to a border that one of its periodic images can be
+/// within `reach` (m) of another disc. This image is `periods` periods away along the axis.
 fn near_border(borders: Option<[f64; 2]>, at: f64, periods: f64, reach: f64) -> bool {
     match borders {
         _ if periods == 0.0 => true,
@@ -84,8 +84,8 @@ fn near_border(borders: Option<[f64; 2]>, at: f64, periods: f64, reach: f64) -> 
     }
 }
 
-/// Returns the normal and the distance (m) of the nearest periodic image of a feature (half-space, segment or
-/// polygon), as in [`Feature::distance`].
+/// Returns the normal and the distance (m) between a disc and the nearest periodic image of a feature (half-space,
+/// segment or polygon), as in [`Feature::distance`].
 pub(super) fn distance(
     feature: &Feature,
     periodic: Periodic,
@@ -98,8 +98,8 @@ pub(super) fn distance(
     distances.min_by(|(_, one), (_, other)| one.total_cmp(other))
 }
 
-/// Returns the smallest [`Feature::distance_to_any_point`] (m) over the periodic images of a feature (half-space,
-/// segment or polygon). Without periodic borders only the feature itself counts.
+/// Returns the distance (m) between a point and the nearest periodic image of a feature (half-space, segment or
+/// polygon), as in [`Feature::distance_to_any_point`]. Without periodic borders only the feature itself counts.
 pub(super) fn distance_to_any_point(feature: &Feature, world: &World, centre: DVec2) -> f64 {
     match world.periodic {
         Some(periodic) if !feature.is_half_space() => {

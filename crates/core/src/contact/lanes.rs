@@ -1,13 +1,13 @@
-//! Trait for the number types of contact arithmetic: a scalar, or a vector register with several numbers.
+//! Trait for the numbers of contact arithmetic: a single number, or a vector register with several numbers.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
 use fearless_simd::{Select, Simd, SimdBase, f64x4};
 
-/// A number, or a vector register with one number per lane. Each lane gives exactly the same bits as the scalar code,
-/// also for signed zeros and NaN. For this, operations are done in the order of the code, and a multiplication and an
-/// addition are never fused.
+/// A number, or a vector register with one number per lane. Each lane gives exactly the same bits as the code for a
+/// single number, also for signed zeros and NaN. For this, operations are done in the order of the code, and a
+/// multiplication and an addition are never fused.
 pub trait Lanes:
     Copy
     + Debug
@@ -21,13 +21,13 @@ pub trait Lanes:
     + SubAssign
     + 'static
 {
-    /// Returns a value that has `number` in each lane.
+    /// Returns a number of this type that has the value `number` in each lane.
     fn same(self, number: f64) -> Self;
-    /// Returns the larger of two numbers in one machine instruction; `other` if either is NaN.
+    /// Returns the larger of two numbers, lane by lane, in one machine instruction; `other` if either is NaN.
     fn larger(self, other: Self) -> Self;
-    /// Returns the smaller of two numbers in one machine instruction; `other` if either is NaN.
+    /// Returns the smaller of two numbers, lane by lane, in one machine instruction; `other` if either is NaN.
     fn smaller(self, other: Self) -> Self;
-    /// Returns the absolute value.
+    /// Returns the absolute value, lane by lane.
     fn magnitude(self) -> Self;
 }
 

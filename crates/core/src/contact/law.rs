@@ -20,13 +20,14 @@
 use super::lanes::Lanes;
 use crate::world::FrictionCone;
 
-/// Parameters of the contact law that all contacts of a step share.
+/// Parameters of the contact law that are the same for all contacts of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ContactLaw {
     /// Friction coefficient μ.
     pub friction: f64,
     capture_speed: f64,
-    /// Tip c of the friction cone, m/s.
+    /// Position c of the tip of the friction cone on the axis of the shifted normal impulse σ, m/s: friction is
+    /// possible for σ > c.
     tip: f64,
     cone: FrictionCone,
 }
@@ -43,39 +44,41 @@ impl ContactLaw {
         Self { friction, capture_speed, tip, cone }
     }
 
-    /// Returns this law with another capture speed (the opening speed that cohesion cancels in one step), m/s.
+    /// Returns this law with another capture speed, m/s. The capture speed is the opening speed that cohesion cancels
+    /// in one step.
     #[inline(always)]
     pub(crate) fn with_capture_speed(self, capture_speed: f64) -> Self {
         Self::new(self.friction, capture_speed, self.cone)
     }
 
-    /// Capture speed C₀Δt/m_ij = Bond·a·Δt, m/s: the opening speed that cohesion cancels in one step. 0 in a scene
-    /// without cohesion.
+    /// Capture speed C₀Δt/m_ij = Bond·a·Δt, m/s: the opening speed that cohesion cancels in one step (C₀: cohesion
+    /// force, m_ij: effective mass, a: acceleration of cohesion, Δt: time step). 0 in a scene without cohesion.
     #[inline(always)]
     pub fn capture_speed(&self) -> f64 {
         self.capture_speed
     }
 
-    /// The friction cone: it determines which part of the normal force bounds friction.
+    /// The friction cone, which determines the part of the normal force that bounds friction.
     pub fn cone(&self) -> FrictionCone {
         self.cone
     }
 
-    /// True if the whole shifted impulse σ (normal impulse plus cohesion) bounds friction, because the tip of the
-    /// cone is at 0.
+    /// True if the whole shifted normal impulse σ (normal impulse plus cohesion) bounds friction, because the tip of
+    /// the cone is at σ = 0.
     #[inline(always)]
     pub(crate) fn all_rubs(&self) -> bool {
         self.tip == 0.0
     }
 
-    /// Returns the part of the shifted normal impulse σ that bounds friction, σ − c, m/s (c: tip of the cone).
-    /// Negative if the contact has no friction.
+    /// Returns the part σ − c of the shifted normal impulse σ that bounds friction, m/s (c: tip of the friction cone).
+    /// If it is negative, friction is not possible.
     #[inline(always)]
     pub(crate) fn rubbing<T: Lanes>(&self, shifted_impulse: T) -> T {
         shifted_impulse - shifted_impulse.same(self.tip)
     }
 
-    /// Returns the largest tangential reduced impulse |λ_t| (m/s) that a shifted normal impulse σ (m/s) allows.
+    /// Returns the largest tangential reduced impulse |λ_t| (m/s) that the friction cone allows at a shifted normal
+    /// impulse σ (m/s).
     #[inline(always)]
     pub fn friction_bound<T: Lanes>(&self, shifted_impulse: T) -> T {
         shifted_impulse.same(self.friction) * signorini(self.rubbing(shifted_impulse))
@@ -88,7 +91,7 @@ pub(crate) fn cohesion_force(bond: f64, effective_mass: f64, acceleration: f64) 
     bond * effective_mass * acceleration
 }
 
-/// Projects a shifted normal impulse σ (m/s) onto σ ≥ 0.
+/// Projects a shifted normal impulse σ (m/s) onto the allowed values σ ≥ 0.
 #[inline(always)]
 pub(crate) fn signorini<T: Lanes>(shifted_impulse: T) -> T {
     shifted_impulse.larger(shifted_impulse.same(0.0))

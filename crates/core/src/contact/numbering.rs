@@ -3,14 +3,14 @@
 
 use crate::world::World;
 
-/// The second body of a contact, with its index among the bodies of its kind.
+/// The second body of a contact, as its type and its index among the bodies of this type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Other {
     /// A grain.
     Grain(usize),
-    /// A fixed disc.
+    /// A fixed disc (a disc that grains cannot move).
     FixedDisc(usize),
-    /// A feature (a half-space, segment or polygon) of the boundaries.
+    /// A feature of a boundary: a half-space, segment or polygon.
     Feature(usize),
 }
 
@@ -22,8 +22,8 @@ impl Other {
     }
 }
 
-/// Converts between the index of a body in the joint numbering and its kind and index. The joint numbering has grains
-/// first, then fixed discs, then features of the boundaries.
+/// Converts the number of a body in the joint numbering to its type and its index among the bodies of this type, and
+/// back. The joint numbering has grains first, then fixed discs, then features of the boundaries.
 #[derive(Clone, Copy, Debug)]
 pub struct Numbering {
     grains: usize,
@@ -42,7 +42,8 @@ impl Numbering {
         Self { grains, fixed_discs: 0 }
     }
 
-    /// Returns the kind and index of the body that has this number in the joint numbering.
+    /// Returns the type of the body that has this number in the joint numbering, with its index among the bodies of
+    /// this type.
     #[inline(always)]
     pub fn other(self, number: u32) -> Other {
         let index = number as usize;

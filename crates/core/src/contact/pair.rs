@@ -1,4 +1,4 @@
-//! The data of one contact: geometry, impulses, and values that steppers keep about it.
+//! The data of one contact: geometry, impulses, and the data that steppers keep about it.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -7,13 +7,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
-    /// Index of grain i.
+    /// Index of grain i, the first body of the contact.
     pub grain: u32,
-    /// Index of body j in the joint numbering of grains, fixed discs and features ([`Numbering`](super::Numbering)).
+    /// Index of body j, the second body, in the joint numbering of grains, fixed discs and features
+    /// ([`Numbering`](super::Numbering)).
     pub other: u32,
-    /// Unit normal n, from j to i. In scenes on a line its y component is 0.
+    /// Unit normal n, from body j to grain i. In scenes on a line its y component is 0.
     pub normal: DVec2,
-    /// Gap between the surfaces, m; negative for an overlap.
+    /// Gap between the surfaces of the two bodies, m; negative for an overlap.
     pub gap: f64,
 }
 
@@ -34,17 +35,17 @@ pub struct Impulse {
     pub tangential: f64,
 }
 
-/// Data that a stepper keeps about a contact from one substep to the next. The solvers of the contact problem neither
-/// read nor write these data.
+/// Data that a stepper keeps about a contact from one substep to the next. The solvers of the contact problem do not
+/// use these data.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactMemory {
-    /// Stretch of the tangential spring, m; positive in the direction of a positive tangential velocity v_t.
+    /// Stretch of the tangential spring of the contact, m. It grows if the tangential velocity v_t is positive.
     pub tangential_displacement: f64,
     /// Normal force N in the last substep, newton.
     pub normal_force: f64,
     /// Tangential force T in the last substep, newton.
     pub tangential_force: f64,
-    /// Penalty stiffness along the normal and along the tangent, N/m.
+    /// Stiffness of the penalty springs of the contact along the normal and along the tangent, N/m.
     pub stiffness: [f64; 2],
 }

@@ -1,11 +1,12 @@
-//! The contact laws of all pairs of materials of a world, and the selection of the pair of materials of a contact.
+//! The contact laws of a world with several materials, and the choice of the law for a contact from the materials of
+//! its two bodies.
 
 use super::{Candidates, Contact, Numbering, Other, law};
 use crate::world::{
     Cohesion, Grains, Material, PairNumbers, Parameters, Physics, World, materials_of,
 };
 
-/// The coefficients of the contact law of one contact. A contact is a row in the problem of a step.
+/// The coefficients of the contact law of one contact.
 #[derive(Clone, Copy, Debug)]
 pub struct RowNumbers {
     /// Friction coefficient μ.
@@ -18,15 +19,15 @@ pub struct RowNumbers {
     pub cohesion_per_mass: f64,
 }
 
-/// Contact laws by pairs of materials. A world has them if some pairs of its materials have coefficients that differ
-/// from the parameters of the run.
+/// Contact laws, one for each pair of materials. A world has them only if the scene gives some pairs of its materials
+/// coefficients of their own, instead of the parameters of the run.
 #[derive(Clone, Debug)]
 pub(crate) struct PairLaws {
-    /// Number of materials.
+    /// Number of materials of the world.
     count: usize,
-    /// The coefficients of the pair of materials a and b are at index `count` · a + b.
+    /// Coefficients of the contact laws. The pair of the materials a and b is at index `count` · a + b.
     numbers: Vec<PairNumbers>,
-    /// Index of the material of each fixed disc. `of_boundary` has the index for each boundary.
+    /// Index of the material of each fixed disc. `of_boundary` lists the index for each boundary.
     of_disc: Vec<u8>,
     of_boundary: Vec<u8>,
     /// Acceleration a in the cohesion force C₀ = Bond · m_ij · a, m/s².
@@ -34,7 +35,8 @@ pub(crate) struct PairLaws {
 }
 
 impl PairLaws {
-    /// Returns the laws of a world. `None` if all contacts have the coefficients of the parameters.
+    /// Returns the contact laws of the pairs of materials of a world. `None` if all contacts have the coefficients in
+    /// `parameters`.
     pub(crate) fn of(world: &World, parameters: &Parameters, physics: Physics) -> Option<Self> {
         let World { materials, pairs, .. } = world;
         if pairs.is_empty() {
@@ -56,7 +58,8 @@ impl PairLaws {
         })
     }
 
-    /// Returns the coefficients of the law of a contact. `effective_mass` is the effective mass of the contact, kg.
+    /// Returns the coefficients of the contact law that holds for the materials of a contact. `effective_mass` is the
+    /// effective mass of the contact, kg.
     pub(crate) fn numbers(
         &self,
         world: &World,
@@ -83,8 +86,8 @@ impl PairLaws {
         RowNumbers { friction, rolling_friction, restitution, cohesion_per_mass }
     }
 
-    /// Returns the largest friction coefficient, the largest coefficient of rolling friction and the largest cohesion
-    /// per effective mass C₀/m_ij (m/s²) of all pairs, for two grains of the mean mass.
+    /// Returns three maxima over all pairs of materials: of the friction coefficient, of the coefficient of rolling
+    /// friction, and of the cohesion per effective mass C₀/m_ij (m/s²) between two grains of the mean mass.
     pub(crate) fn largest(&self, grains: &Grains) -> [f64; 3] {
         let effective_mass = 0.5 * grains.masses.iter().sum::<f64>() / grains.len() as f64;
         self.numbers.iter().fold([0.0; 3], |[friction, rolling, cohesion], &pair| {

@@ -9,10 +9,10 @@
 //! **Earlier laws of finite range.** The wet law of LMGC90, `IQS_WET_DS_CLB` (its manual, *Contact laws*), applies
 //! Signorini's and Coulomb's laws to R_n + C₀ (normal force plus cohesion force) for every pair whose gap is at most
 //! the thickness W_thk when the step begins: a constant pull over a finite range, and the shifted friction cone. In
-//! `xQS_WET_DS_CLB` broken bonds stay broken, and in `RST_WET_CLB` grains bounce. All three laws depend on the gap
-//! and pull during the whole step, as in `examples/wet_law.rs`. In the law `range` a pair pulls only after it has
-//! touched, and the pull depends on how far the bond has been stretched since then. Breaking a bond takes the same
-//! work at every time step Δt, and collisions bounce.
+//! `xQS_WET_DS_CLB` broken bonds stay broken, and in `RST_WET_CLB` grains bounce. All three laws depend on the gap and
+//! pull during the whole step, as in `examples/wet_law.rs`. In the law `range` a pair pulls only after it has touched,
+//! and the pull depends on how far the bond has been stretched since then. Breaking a bond takes the same work at
+//! every time step Δt, and collisions bounce.
 //!
 //! **Why the impulse of a bond is bounded in each step.** The bond alone would break or close in the time √(2δ_c
 //! m_ij/C₀). A step that is much longer than this time sees only the beginning of the break. If N ≥ −C₀ were the only
@@ -21,8 +21,9 @@
 //! So its impulse is bounded by C₀·min(Δt, τ), with τ (s) the time at which the bond has opened by δ_c.
 //!
 //! **The time τ in a step.** Let the bond be stretched by s (m) and open with the speed v (m/s) at the beginning of
-//! the step, after the shocks of the step (`sim::steppers::range::bonds`). Let the other forces on the two grains
-//! change this speed evenly by J (m/s) during the step. With C = C₀Δt/m_ij, the pair opens as
+//! the step, after the collisions of the step, which are solved first (`sim::steppers::range::bonds`). Let the forces
+//! on the two grains, other than the bond itself, change this speed evenly by J (m/s) during the step. With C =
+//! C₀Δt/m_ij, the pair opens as
 //!
 //! > s(t) = s + v t + ½ a t²,  a = (J − C)/Δt,
 //!
@@ -30,52 +31,52 @@
 //!
 //! > τ = 2D / (v + √(v² + 2aD)),
 //!
-//! or infinite if the root is not real or the denominator is not positive. This formula distinguishes a shock (v)
-//! from a load (J). A load below C₀ alone (v = 0, J < C) never breaks the bond, however long the step is. A shock is
-//! stopped only if the kinetic energy ½ m_ij v² is below the remaining work. For an isolated pair the formula is
-//! exact: the step ends with the speed of the continuous motion.
+//! or infinite if the root is not real or the denominator is not positive. This formula distinguishes a shock, which
+//! gives the speed v, from a load, which gives the change J. A load below C₀ alone (v = 0, J < C) never breaks the
+//! bond, however long the step is. A shock is stopped only if the kinetic energy ½ m_ij v² is below the remaining
+//! work. For an isolated pair the formula is exact: the step ends with the speed of the continuous motion.
 //!
 //! If the step does not break the bond, the stretch s grows by Δt·(v + v^n)/2, where v^n is the opening speed at the
 //! end of the step. This is exact for a constant force. The bond stores the stretch s and not the gap, which differs
-//! from s by the order of Δt². So the work C₀·s equals the work of the impulses. A pair that rotates about itself
-//! does not tear its bond, although its gap opens by (Δt v_t)²/2d in every step and closes in the next step (v_t:
+//! from s by the order of Δt². So the work C₀·s equals the work of the impulses. A pair that rotates about itself does
+//! not tear its bond, although its gap opens by (Δt v_t)²/2d in every step and closes in the next step (v_t:
 //! tangential velocity, d: diameter).
 
 use serde::{Deserialize, Serialize};
 
 use super::law;
 
-/// Gaps and overlaps below this many mean diameters count as rounding and solver tolerance: the solver does not close
-/// such a gap or push out such an overlap, and the contact bounces. Without this allowance every contact of a bonded
-/// network, which has more contacts than its grains have degrees of freedom, would demand a gap of exactly zero,
-/// which is impossible.
+/// Gap or overlap, in mean diameters, below which a contact counts as exactly closed, because rounding and the
+/// tolerance of the solver cause gaps of this size. The solver does not close such a gap or push out such an overlap,
+/// and the contact bounces. Without this allowance every contact of a bonded network, which has more contacts than its
+/// grains have degrees of freedom, would demand a gap of exactly zero, which is impossible.
 pub(crate) const TOUCH_IN_DIAMETERS: f64 = 1e-4;
 
-/// The bond of one contact under the law `range`.
+/// State of the bond of one contact under the law `range`: whether it exists, and how far it is stretched.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Bond {
-    /// True if the pair has touched since it last separated.
+    /// True if the pair has touched since it last separated, so that the bond exists.
     pub alive: bool,
-    /// Stretch s: how far the bond has been opened against its pull, m; 0 if the pair touches.
+    /// Stretch s of the bond, m: the distance by which the pair has been pulled apart. 0 if the pair touches.
     pub stretch: f64,
 }
 
-/// The opening of one bond during one step.
+/// Data on how one bond opens during one step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OpeningMotion {
-    /// Remaining opening before the bond breaks, D = δ_c − s, m.
+    /// Opening that remains before the bond breaks, D = δ_c − s, m (δ_c: debonding distance, s: stretch).
     pub left: f64,
-    /// Opening speed v, m/s.
+    /// Opening speed v of the pair at the beginning of the step, m/s.
     pub speed: f64,
-    /// Load J: change of the opening speed by the other forces during the step, m/s.
+    /// Load J, m/s: change of the opening speed during the step by all forces other than the bond itself.
     pub load: f64,
 }
 
 impl OpeningMotion {
     /// Returns the largest reduced impulse (impulse per effective mass) of the bond in a step, C·min(1, τ/Δt) in m/s.
-    /// The step lasts `time_step_secs` (Δt). The force of the bond alone would change the speed in it by
-    /// `capture_speed` (C, m/s). The bond breaks after the time τ.
+    /// `time_step_secs` is the time step Δt. `capture_speed` is C, the change of speed (m/s) that the force of the
+    /// bond causes in a whole step. The bond breaks after the time τ.
     pub(crate) fn bound(&self, capture_speed: f64, time_step_secs: f64) -> f64 {
         let Self { left, speed, load } = *self;
         let acceleration = (load - capture_speed) / time_step_secs;
@@ -91,14 +92,15 @@ impl OpeningMotion {
     }
 }
 
-/// Returns the escape speed √(2C₀δ_c/m_ij), m/s, with C₀/m_ij = Bond · `acceleration` (m/s²) and the debonding
-/// distance δ_c (m). A pair that is thrown apart faster separates.
+/// Returns the escape speed √(2C₀δ_c/m_ij), m/s, from the cohesion force per effective mass C₀/m_ij = `bond` ·
+/// `acceleration` (m/s²) and the debonding distance δ_c (m). Two bonded grains that are thrown apart faster than this
+/// separate.
 pub fn escape_speed(bond: f64, acceleration: f64, debonding_distance: f64) -> f64 {
     (2.0 * law::cohesion_force(bond, 1.0, acceleration) * debonding_distance).sqrt()
 }
 
 /// Returns the time √(2δ_c m_ij/C₀), s, in which the pull of a bond alone would open or close it by the debonding
-/// distance δ_c (m). Infinite without cohesion.
+/// distance δ_c (m), with C₀/m_ij = `bond` · `acceleration` (m/s²). Infinite without cohesion.
 pub(crate) fn bond_time_secs(bond: f64, acceleration: f64, debonding_distance: f64) -> f64 {
     (2.0 * debonding_distance / law::cohesion_force(bond, 1.0, acceleration)).sqrt()
 }

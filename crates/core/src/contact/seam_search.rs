@@ -1,4 +1,5 @@
-//! The search for corners that separate boundaries share (`contact::seams`).
+//! Search for corners that two separate boundaries share. The rule for contacts at such corners is in
+//! `contact::seams`.
 
 use glam::DVec2;
 use parry2d_f64::query::PointQuery;

@@ -1,15 +1,15 @@
 //! Corners that two separate boundaries share (*seams*), and the rule by which a disc touches a shared corner only
 //! once.
 //!
-//! A floor may consist of several segments or polygons (*pieces*) that lie end to end. While a disc of radius r
-//! slides towards the end of one piece, its distance from the corner of the next piece is √(x² + r²). This is hardly
-//! more than r if the distance x to the corner is short. If the disc overlaps the floor a little, it touches that
-//! corner too early, and the corner slows the disc down.
+//! A floor may consist of several segments or polygons (*pieces*) that lie end to end. While a disc of radius r slides
+//! towards the end of one piece, its distance from the corner of the next piece is √(x² + r²). This is hardly more
+//! than r if the distance x to the corner is short. If the disc overlaps the floor a little, it touches that corner
+//! before it reaches the next piece, and the corner slows the disc down.
 //!
 //! A point that several pieces share is the nearest point of their union only if it is the nearest point of each
-//! piece. Otherwise one of the pieces has a point that is nearer. So a disc touches a shared corner only if the
-//! corner is the nearest point of every piece to which it belongs. The last of these pieces reports the contact, so
-//! that the contact exists once. Within a polyline, `Feature::distance` follows the same rule.
+//! piece. Otherwise one of the pieces has a point that is nearer. So a disc touches a shared corner only if the corner
+//! is the nearest point of every piece to which it belongs. The last of these pieces reports the contact, so that the
+//! contact exists once. Within a polyline, `Feature::distance` follows the same rule.
 //!
 //! A corner may also lie on a side of another piece, or on a half-space. Such a corner is never the nearest point of
 //! the union.
@@ -30,15 +30,16 @@ pub(crate) struct Seams(pub(super) Vec<Seam>);
 pub(super) struct Seam {
     /// Index of the corner in its own feature.
     pub corner: usize,
-    /// The other piece, on which the corner lies.
+    /// The feature (half-space, segment or polygon) of another boundary on which the corner lies.
     pub other: Piece,
-    /// Index of the corner in the other piece. `None` if the corner lies on a side of that piece.
+    /// Index of the corner among the corners of that other feature. `None` if the corner lies on a side of it.
     pub other_corner: Option<usize>,
-    /// True if the feature of this corner comes before the other piece in the list of features.
+    /// True if the feature with this corner comes before the other feature in the list of all features. Only the last
+    /// feature with a shared corner reports a contact with it.
     pub is_earlier: bool,
 }
 
-/// Shape of the feature on which a shared corner lies.
+/// Shape of the other feature on which a shared corner lies.
 #[derive(Clone, Debug)]
 pub(super) enum Piece {
     HalfSpace,
@@ -47,7 +48,7 @@ pub(super) enum Piece {
 }
 
 impl Seams {
-    /// True if no corner of the feature (segment or polygon) lies on a feature of another boundary.
+    /// True if the feature does not share corners: none of its corners lies on a feature of another boundary.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -66,8 +67,8 @@ impl Seams {
         })
     }
 
-    /// Moves the stored shapes of those features that share corners with this feature. Features that share a corner
-    /// always move together.
+    /// Moves the stored shapes of the other features that share corners with this feature (segment or polygon) by the
+    /// displacement `carry`. Features that share a corner always move together.
     pub(super) fn carry(&mut self, carry: &Carry) {
         for Seam { other, .. } in &mut self.0 {
             let segments = match other {

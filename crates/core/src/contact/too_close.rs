@@ -1,12 +1,12 @@
 //! Check that discs of an initial state do not overlap too deeply.
 //!
-//! If the centres of n discs keep a distance, each disc touches few others, and the number of contacts and the
-//! computing time grow in proportion to n. If all n discs are at one point, all n²/2 pairs touch. A pair is too close
-//! if its centres are nearer than half the smaller radius.
+//! If the centres of n discs keep a minimum distance from each other, each disc touches few others, and the number of
+//! contacts and the computing time grow in proportion to n. If all n discs are at one point, all n²/2 pairs touch. So
+//! discs count as too close if their centres are nearer than half the smaller radius.
 //!
-//! The search goes level by level through the sizes. For radii from 2^e to 2^(e + 1) the cells are 2^e wide, so all
-//! discs that are too close to a disc are in its own cell and in the 8 cells around it. The discs are sorted by cell,
-//! so these nine cells are three ranges of the list.
+//! The search handles one range of radii after the other, from 2^e to 2^(e + 1) for an integer e, on a grid with cells
+//! of width 2^e. Such a cell is so wide that all discs that are too close to a disc are in its own cell and in the 8
+//! cells around it. The discs are sorted by cell, so these nine cells are three ranges of the list.
 
 use glam::DVec2;
 
@@ -14,17 +14,19 @@ use crate::error::{Error, Result};
 use crate::world::World;
 
 /// Smallest allowed distance between the centres of a grain and another disc, in radii of the smaller disc. In
-/// compressed packings the distance is more than 1.8 in practice. Two discs of the scene `overlap` start with 1.
+/// compressed packings the distance is more than 1.8 radii in practice. In the scene `overlap` two discs start at a
+/// distance of 1 radius.
 const LEAST_DISTANCE_IN_RADII: f64 = 0.5;
-/// Largest number of fixed discs that may be closer than [`LEAST_DISTANCE_IN_RADII`] to one fixed disc. Overlapping
-/// fixed discs can form a smooth wall, but a grain would touch all of them at once.
+/// Largest number of fixed discs (discs that grains cannot move) that may be closer to one fixed disc than
+/// [`LEAST_DISTANCE_IN_RADII`]. Overlapping fixed discs can form a smooth wall, but a grain would touch all of them at
+/// once.
 const MOST_FIXED_TOO_CLOSE: usize = 1000;
 
-/// Checks that no grain is too close to another disc, and that not too many fixed discs are close together. Time and
-/// memory are proportional to the number of discs.
+/// Checks that no grain is too close to another disc, and that not too many fixed discs are close together. Computing
+/// time and memory are proportional to the number of discs.
 ///
 /// # Errors
-/// If two discs are too close. The error names both.
+/// If two discs are too close. The error names both discs.
 pub(crate) fn check_distances(world: &World) -> Result<()> {
     let grains = &world.grains;
     let fixed = world.fixed_discs.iter().map(|disc| (disc.position, disc.radius));
@@ -106,7 +108,7 @@ fn first_too_close(discs: &[(DVec2, f64)], grain_count: usize) -> Option<(usize,
 mod tests {
     use super::*;
 
-    /// Returns `count` discs of many sizes on a lattice, none too close to another.
+    /// Returns `count` discs of seven sizes on a lattice, none of which is too close to another.
     fn apart(count: usize) -> Vec<(DVec2, f64)> {
         let place = |k: usize| DVec2::new((k % 100) as f64, (k / 100) as f64);
         (0..count).map(|k| (place(k), 0.5 / (1 + k % 7) as f64)).collect()

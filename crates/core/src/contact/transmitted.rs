@@ -1,41 +1,43 @@
-//! Sums of the impulses that pairs transmit in a step that is divided into shorter steps (pieces). The contacts are
-//! found again in each piece, and their normals turn from piece to piece, so the impulses must be added up.
+//! Sums of the contact impulses between pairs of bodies over a step that is divided into shorter steps (pieces). The
+//! contacts are found again in each piece, and their normals turn from piece to piece, so the impulses must be added
+//! up as vectors, too.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::pair::{Contact, Impulse};
 
-/// The impulses that one pair has transmitted since the step began.
+/// The contact impulses between two bodies, summed since the step began.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Transmitted {
     /// The contact as it was first found in the step.
     pub contact: Contact,
-    /// Index of the step in which the pair was first found to touch.
+    /// Index of the step in which the two bodies were first found to touch.
     pub found_in: u64,
-    /// Sums of the normal and of the tangential impulses, N·s. Each impulse acts along the normal or tangent at its
-    /// own time.
+    /// Sums of the normal and of the tangential impulses, N·s. Each impulse is measured along the normal or tangent
+    /// that the contact had when the impulse acted.
     pub sums: Impulse,
-    /// Sum of the impulses on grain i as vectors, N·s.
+    /// Sum of the impulse vectors on grain i, N·s.
     pub vector: DVec2,
 }
 
 impl Transmitted {
-    /// Returns the entry of one contact: its impulse, and the impulse as a vector for the given unit normal.
+    /// Returns the entry of one contact, with its impulse (N·s) as normal and tangential component, and as a vector
+    /// for the given unit normal.
     pub(crate) fn of(contact: Contact, found_in: u64, normal: DVec2, impulse: Impulse) -> Self {
         let vector = impulse.normal * normal + impulse.tangential * normal.perp();
         Self { contact, found_in, sums: impulse, vector }
     }
 }
 
-/// The transmitted impulses of a step, one entry per pair, sorted by pair like the contacts.
+/// The impulse sums of a step, with one entry per pair of bodies, sorted like the contacts.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct StepSums {
     pub(super) pairs: Vec<Transmitted>,
-    /// Index at which the next pair is looked for first. Except in shocks, pairs are added in the order of the list,
-    /// so this index is usually right.
+    /// Index at which [`Self::add`] looks first for the pair of the next impulse. Except in collisions, impulses are
+    /// added in the order of the list, so this index is usually right.
     #[serde(skip)]
     next: usize,
 }
@@ -46,7 +48,7 @@ impl StepSums {
         self.next = 0;
     }
 
-    /// Returns the total impulse that a pair has transmitted in the step, zero if the pair is not in the list.
+    /// Returns the total impulse between two bodies in the step, zero if the pair is not in the list.
     pub(super) fn of(&self, pair: (u32, u32)) -> Impulse {
         self.place_of(pair).map_or_else(|_| Impulse::default(), |place| self.pairs[place].sums)
     }
@@ -55,7 +57,7 @@ impl StepSums {
         self.pairs.binary_search_by_key(&pair, |there| there.contact.pair())
     }
 
-    /// Adds the impulse of a contact to the sums of its pair.
+    /// Adds the impulse of a contact to the sums of its two bodies.
     pub(crate) fn add(&mut self, added: Transmitted) {
         let pair = added.contact.pair();
         let at_next = self.pairs.get(self.next).map(|there| there.contact.pair());

@@ -1,4 +1,5 @@
-//! Advice for each alarm: the change most likely to help, under the settings of the run.
+//! Chooses the advice that an alarm (a warning of a failure) gives: the change of the settings or of the scene that is
+//! most likely to help.
 
 use crate::setting::words;
 use crate::sim::settings::{Settings, SpringDashpot, Stepper, stable_substeps};
@@ -6,8 +7,8 @@ use crate::sim::state::State;
 use crate::solver::{FrictionModel, Method, SolverSettings};
 use crate::world::{FrictionCone, Periodic, Physics, World};
 
-/// Tolerance (in the unit of any stop criterion) that no step of a pile reaches because of rounding. If the tolerance
-/// of the settings is smaller, the advice on an unsolved step is a larger tolerance.
+/// Solver tolerance, in the unit of the stop criterion, that no step of a pile reaches because of rounding. If the
+/// tolerance of the settings is smaller, the advice on an unsolved step is a larger tolerance.
 const BELOW_ROUNDING: f64 = 1e-15;
 
 words! {
@@ -40,8 +41,8 @@ words! {
     }
 }
 
-/// Returns the advice on grains placed in overlap. Only `moreau` supports the remedy `push-out`, which moves them
-/// apart.
+/// Returns the advice if grains were placed in overlap: under `moreau`, the remedy `push-out`, which moves the grains
+/// apart; under other steppers, which do not support this remedy, to place the grains apart.
 pub(super) fn on_placed(settings: &Settings) -> Advice {
     match settings.stepper {
         Stepper::Moreau => Advice::PushOut,
@@ -49,8 +50,7 @@ pub(super) fn on_placed(settings: &Settings) -> Advice {
     }
 }
 
-/// Returns the advice on a cohesion force that is 0 although the Bond number is above 0; `None` if there is no such
-/// problem.
+/// Returns the advice if the cohesion force is 0 although the Bond number is above 0; `None` if this is not the case.
 pub(super) fn on_no_cohesion(
     settings: &Settings,
     world: &World,
@@ -65,7 +65,8 @@ pub(super) fn on_no_cohesion(
     }
 }
 
-/// Returns the advice on bonds that ended because their pairs turned. `range` does not support the compressive cone.
+/// Returns the advice if bonds ended because their pairs of grains turned: a stepper whose bonds do not depend on
+/// turning. This is `dem` with the compressive friction cone, which `range` does not support, and `range` otherwise.
 pub(super) fn on_turned_bonds(settings: &Settings) -> Advice {
     match settings.parameters.cone {
         FrictionCone::Compressive => Advice::BondsOfDem,
@@ -73,7 +74,7 @@ pub(super) fn on_turned_bonds(settings: &Settings) -> Advice {
     }
 }
 
-/// Returns the advice on a state that is no longer finite.
+/// Returns the advice if a position, a velocity or the kinetic energy is no longer finite.
 pub(super) fn on_overflow(state: &State, settings: &Settings) -> Advice {
     match has_too_few_substeps(state, settings) {
         true => Advice::StableSubsteps,
@@ -81,8 +82,9 @@ pub(super) fn on_overflow(state: &State, settings: &Settings) -> Advice {
     }
 }
 
-/// Returns the advice on bodies that overlap too deeply and, if their springs are too soft, the present stiffness of
-/// the springs (N/m). Springs yield at any time step; under all other laws the contact was detected too late.
+/// Returns the advice if bodies overlap too deeply. If the springs of `dem` are too soft, also returns their present
+/// stiffness, N/m. Springs yield at any time step. Under all other steppers the overlap is deep because the contact was
+/// detected too late, so the advice is a shorter time step.
 pub(super) fn on_depth(state: &State, settings: &Settings) -> (Advice, Option<f64>) {
     if settings.stepper != Stepper::Dem {
         return (Advice::TimeStep, None);
@@ -95,15 +97,16 @@ pub(super) fn on_depth(state: &State, settings: &Settings) -> (Advice, Option<f6
     (Advice::Stiffness, Some(stiffness))
 }
 
-/// True if the stepper is `dem` and the requested number of substeps is smaller than the stable number.
+/// True if the stepper is `dem` and the number of substeps in the settings is smaller than the number for which its
+/// springs are stable.
 fn has_too_few_substeps(state: &State, settings: &Settings) -> bool {
     let (parameters, asked) = (&settings.parameters, settings.parameters.substeps);
     let stable = stable_substeps(&state.world, state.physics, parameters);
     settings.stepper == Stepper::Dem && asked > 0 && f64::from(asked) < stable
 }
 
-/// Returns the advice on contacts that created energy in a solved step. Under `moreau` and `range` contacts can create
-/// energy only with friction.
+/// Returns the advice if contacts created energy in a solved step: a restitution of 0 or, if it is 0 already, a shorter
+/// time step. Under `moreau` and `range` contacts can create energy only with friction.
 pub(super) fn on_created_energy(settings: &Settings) -> Advice {
     match settings.parameters.restitution > 0.0 {
         true => Advice::NoRestitution,
@@ -111,7 +114,7 @@ pub(super) fn on_created_energy(settings: &Settings) -> Advice {
     }
 }
 
-/// Returns the advice on unsolved steps. `stalled` is true if the residual of the last unsolved step had stopped
+/// Returns the advice if steps are unsolved. `stalled` is true if the residual of the last unsolved step had stopped
 /// decreasing.
 pub(super) fn on_unsolved(state: &State, settings: &Settings, stalled: bool) -> Advice {
     let Settings { stepper, parameters, solver, .. } = settings;

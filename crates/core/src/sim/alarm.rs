@@ -12,26 +12,26 @@ use crate::sim::losses::{Losses, NewLosses};
 use crate::sim::state::State;
 use crate::sim::{Observables, Settings};
 
-/// Number of consecutive unsolved steps that raises an alarm. With a smaller number, a few hard steps, which do no
-/// harm, would raise the alarm.
+/// Number of consecutive unsolved steps that raises an alarm. With a smaller number, a few steps that are hard to
+/// solve, and do no harm, would raise the alarm.
 const STEPS_AT_LIMIT: u32 = 100;
 /// Overlap that raises an alarm, in diameters of the smaller disc. The distance that the two grains travel in one step
-/// is subtracted first. A smaller value warns of errors within a solver's tolerance. With a larger value, an alarm on
-/// discs that sink into each other in unsolved steps comes later.
+/// is subtracted from the overlap first. With a smaller value, errors within a solver's tolerance would raise the
+/// alarm. With a larger value, the alarm comes later if discs sink into each other because steps are not solved.
 const LARGEST_OVERLAP: f64 = 0.05;
-/// Upper limit for the travel of two grains that is subtracted from their overlap, in diameters of the smaller disc. A
-/// contact is detected one step late, so contacts of a falling pile overlap by up to this travel (138 grains without
-/// cohesion, Δt = 5 ms, six initial states: 0.43 to 0.56 mean diameters). With a larger value, grains pass through each
-/// other without an alarm.
+/// Upper limit for the distance that is subtracted from an overlap, because the two grains travel it in one step, in
+/// diameters of the smaller disc. A contact is detected up to one step late, so contacts of a falling pile overlap by
+/// up to this distance (0.43 to 0.56 mean diameters in simulations of 138 grains without cohesion, Δt = 5 ms, six
+/// initial states). With a larger value, grains pass through each other without an alarm.
 const LARGEST_TRAVEL: f64 = 0.75;
-/// Growth of an overlap with which grains were placed that counts as a new overlap, in diameters of the smaller disc.
-/// With a smaller value, errors that a solver's tolerance allows count as new overlaps.
+/// Growth of the overlap that raises an alarm if grains were placed in overlap, in diameters of the smaller disc. With
+/// a smaller value, errors that a solver's tolerance allows would raise the alarm.
 const GROWTH_OF_OVERLAP: f64 = 0.01;
-/// Energy that contacts may create without an alarm, divided by the largest kinetic energy of the run. With smaller
-/// values, errors within a solver's tolerance raise the alarm.
+/// Energy that contacts may create without an alarm, divided by the largest kinetic energy of the run. With a smaller
+/// value, errors within a solver's tolerance would raise the alarm.
 const ENERGY_OF_MOTION: f64 = 0.01;
-/// Height by which contacts may lift all grains without an alarm, in mean diameters. With smaller values, a stepper
-/// that pushes out overlap raises the alarm.
+/// Additional energy that contacts may create without an alarm, as the height to which it would lift all grains, in
+/// mean diameters. With a smaller value, a stepper that pushes overlap out, and so lifts grains, would raise the alarm.
 const ENERGY_OF_HEIGHT: f64 = 0.1;
 
 words! {
@@ -68,7 +68,7 @@ pub struct Alarm {
     /// Present stiffness of the springs, N/m, if a larger stiffness would help; otherwise `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness: Option<f64>,
-    /// Number of occurrences of the failure so far; `None` if failures of this kind are not counted.
+    /// Number of occurrences of the failure so far; `None` for kinds of failure that are not counted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub count: Option<u64>,
 }
@@ -80,7 +80,8 @@ impl Alarm {
         Self { kind, step, time_secs, advice, longest_time_step_secs, stiffness, count }
     }
 
-    /// Returns one sentence with the failure, its first step, and the change most likely to help. Times are in seconds.
+    /// Returns one sentence that names the failure, its first step, and the change most likely to help. Times are in
+    /// seconds.
     pub fn message(&self, settings: &Settings) -> String {
         self.sentence(&format!("{:.4} s", self.time_secs), &self.advice_in_words(settings))
     }
@@ -126,8 +127,8 @@ impl Alarm {
     }
 }
 
-/// Data with which a running simulation is checked for failures. They are saved with the simulation, so that a
-/// restarted run raises the same alarms.
+/// Data with which a running simulation is checked for failures. A file of the simulation contains them, so that a run
+/// that continues from the file raises the same alarms.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Watch {
@@ -137,12 +138,12 @@ pub(super) struct Watch {
     pub losses: Losses,
     /// True if grains were placed (at the start, or moved by the user) and no step has been taken since.
     are_placed: bool,
-    /// Largest overlap of any contact, in diameters of the contact's smaller disc: the smallest value since grains were
-    /// placed.
+    /// Largest overlap of any contact minus the travel of its grains ([`DeepestContact`]), in diameters of the smaller
+    /// disc: the minimum over the time since grains were last placed.
     placed_overlap: f64,
     /// Longest distance that each grain has moved in a single step so far, m.
     travels: Vec<f64>,
-    /// Number of bonds that have ended because their pairs turned.
+    /// Number of bonds that have ended since the start because their pairs of grains turned.
     turned_bonds: u64,
     energy: ContactEnergy,
 }
@@ -151,7 +152,7 @@ pub(super) struct Watch {
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ContactEnergy {
-    /// Work of all contacts since the start, J, without the work of moving walls and of bonds.
+    /// Work of all contacts since the start, J, except the work of moving walls and of bonds.
     work: f64,
     /// Smallest value of `work` so far, J.
     least_work: f64,
@@ -160,7 +161,7 @@ struct ContactEnergy {
 }
 
 impl Watch {
-    /// Begins the checks for a state at time 0 whose contacts have been found.
+    /// Creates the data for the checks of a simulation from its state at time 0, after contact detection.
     pub(super) fn new(state: &State) -> Self {
         let losses = Losses::new(&state.world, state.candidates.features(), state.physics);
         let mut watch = Self { losses, ..Self::default() };
@@ -168,13 +169,14 @@ impl Watch {
         watch
     }
 
-    /// Records that the grains were placed at their present positions. Call this after the contacts have been found.
+    /// Records that grains were placed at their present positions (at the start or by the user). Call this after
+    /// contact detection.
     pub(super) fn place(&mut self, state: &State) {
         self.losses.place(&state.world.grains.positions);
         (self.are_placed, self.placed_overlap) = (true, DeepestContact::new(state, &[]).overlap);
     }
 
-    /// Deletes the data of a grain that is removed.
+    /// Deletes the data of the grain with the index `grain`, which is being removed from the world.
     pub(super) fn remove(&mut self, grain: usize) {
         self.losses.remove(grain);
         if grain < self.travels.len() {
@@ -182,8 +184,8 @@ impl Watch {
         }
     }
 
-    /// Returns the alarm that grains were placed in overlap, or `None`. `observables` are the measurements before the
-    /// next step.
+    /// Returns the alarm that reports grains placed in overlap; `None` if there is no such overlap or if the remedy
+    /// `push-out` is on. `observables` are the measurements before the next step.
     pub(super) fn of_placed(
         &self,
         observables: &Observables,
@@ -195,7 +197,8 @@ impl Watch {
             .then(|| Alarm::new(kind, observables, advice::on_placed(settings)))
     }
 
-    /// Before a step: raises alarms on conditions that the step cannot improve.
+    /// Checks the state before a step: raises an alarm if grains were placed in overlap, because the step cannot undo
+    /// this.
     pub(super) fn look_ahead(&mut self, observables: &Observables, settings: &Settings) {
         if let Some(alarm) = self.of_placed(observables, settings) {
             self.add(alarm);
@@ -203,7 +206,8 @@ impl Watch {
         self.are_placed = false;
     }
 
-    /// After a step: checks the state for failures, and excludes lost grains from the slump.
+    /// Checks the state after a step, and raises alarms. Counts the grains that went through a wall or left the world
+    /// in `observables`, and excludes them from the slump.
     pub(super) fn look(
         &mut self,
         state: &State,
@@ -253,8 +257,8 @@ impl Watch {
         self.placed_overlap = self.placed_overlap.min(overlap);
     }
 
-    /// Adds the work of the contacts in a step, and raises an alarm if contacts have created energy. Only for contact
-    /// laws whose contacts store no energy.
+    /// Adds the work of the contacts in the last step to the total of the run, and raises an alarm if contacts have
+    /// created energy. May be called only under contact laws whose contacts store no energy.
     pub(super) fn count_work(
         &mut self,
         state: &State,
@@ -283,7 +287,8 @@ impl Watch {
         }
     }
 
-    /// Returns the advice on a state that is no longer finite, as text.
+    /// Returns the advice of the alarm on a state that is no longer finite, as text; an empty text without such an
+    /// alarm.
     pub(super) fn advice_on_overflow(&self, settings: &Settings) -> String {
         let mut alarms = self.alarms.iter().filter(|alarm| alarm.kind == AlarmKind::NotFinite);
         alarms.next().map(|alarm| alarm.advice_in_words(settings)).unwrap_or_default()
@@ -315,7 +320,8 @@ impl Watch {
         }
     }
 
-    /// Raises an alarm on bodies that overlap too deeply. `sinks` is true if the reason is that steps are not solved.
+    /// Raises an alarm of this kind because bodies overlap too deeply. `sinks` is true if they overlap because steps
+    /// are not solved.
     fn raise_on_depth(
         &mut self,
         kind: AlarmKind,
@@ -347,9 +353,9 @@ impl Watch {
         self.add(Alarm { longest_time_step_secs, ..alarm });
     }
 
-    /// Adds `more` to the number of bonds that ended because their pairs turned. Raises an alarm once this number
-    /// exceeds half the number of contacts. Fewer such bonds are normal, because a few bonds end this way in most
-    /// moving cohesive piles.
+    /// Adds `more` to the number of bonds that ended because their pairs of grains turned. Raises an alarm once this
+    /// number exceeds half the number of contacts. Fewer such bonds are normal: in most moving cohesive piles a few
+    /// bonds end this way.
     pub(super) fn count_turned_bonds(
         &mut self,
         settings: &Settings,
@@ -379,18 +385,19 @@ impl Watch {
     }
 }
 
-/// The contact with the largest relative overlap, after the travel of its two grains in one step is subtracted.
+/// The contact with the largest overlap relative to the smaller disc, after the distance that its two grains travel in
+/// one step is subtracted.
 struct DeepestContact {
-    /// Overlap minus the travel of both grains in one step, in diameters of the smaller disc. At a wall, the diameter
-    /// is that of the grain.
+    /// Overlap minus the distance that both grains travel in one step, in diameters of the smaller disc. At a wall, the
+    /// diameter is that of the grain.
     overlap: f64,
     /// Number of the step in which this contact was first found.
     found_in: u64,
 }
 
 impl DeepestContact {
-    /// Returns the deepest contact of a state. Each grain has moved by up to `travels` (m) in one step; an empty slice
-    /// stands for no travel.
+    /// Finds the deepest contact of a state. `travels` contains the longest distance that each grain has moved in one
+    /// step, m; if it is empty, no distance is subtracted from overlaps.
     fn new(state: &State, travels: &[f64]) -> Self {
         let State { world, contacts, .. } = state;
         let (radii, numbering) = (&world.grains.radii, Numbering::of(world));

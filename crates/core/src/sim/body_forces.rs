@@ -12,7 +12,7 @@ impl Simulation {
     }
 
     /// Sets a body force on each grain in addition to gravity, N. The forces act from the next step on until they are
-    /// replaced, and their work is part of `gravity_work`. A grain added later has no body force.
+    /// replaced. Their work is part of the observable `gravity_work`. A grain added later has no body force.
     ///
     /// # Errors
     /// The error says why `forces` are not valid: their number differs from the number of grains, a force is not

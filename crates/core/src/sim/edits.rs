@@ -1,8 +1,8 @@
 //! Interactive edits of a world between two steps: adding or removing a grain, and dragging a wall.
 //!
-//! An edit does not change measurements, or forces and bonds of other contacts. The slump Δy_G counts an added grain
-//! from the height at which it was added. For a removed grain the slump counts neither the initial nor the present
-//! height.
+//! An edit changes neither the measurements nor the forces and bonds of contacts between other bodies. In the slump
+//! Δy_G (relative drop of the grains' mean height), the initial height of an added grain is the height at which it was
+//! added. A removed grain no longer contributes to the slump, neither with its initial nor with its present height.
 
 use std::sync::Arc;
 
@@ -28,19 +28,19 @@ pub enum Edit {
     Add(Disc),
     /// Removes the grain with this index; the indices of later grains decrease by one.
     Remove(u32),
-    /// Drags a boundary: its point [`place_of`] moves straight to the target and stays there until the boundary is
-    /// released.
+    /// Drags a boundary: the point that [`place_of`] returns for it moves straight to the target, together with the
+    /// whole boundary, and stays there until the user releases the boundary.
     Draw {
         /// Index of the dragged boundary.
         boundary: u32,
         /// Point to which the boundary is dragged, m.
         to: DVec2,
     },
-    /// Releases the dragged boundary, which then stays at its place.
+    /// Releases the dragged boundary, which then stays at its present position.
     LetGo,
 }
 
-/// Returns the point of a boundary by which the user drags it, m.
+/// Returns the point at which the user drags a boundary, m.
 pub fn place_of(boundary: &Boundary) -> DVec2 {
     match boundary.edges().first() {
         Some(Edge::Endless { point, .. }) => *point,
@@ -49,14 +49,15 @@ pub fn place_of(boundary: &Boundary) -> DVec2 {
     }
 }
 
-/// Speed of a dragged wall, in √(g·d). In a scene with d = 5 mm and Δt = 1 ms the wall moves a fiftieth of a diameter
-/// per step, which every stepper tolerates.
+/// Speed of a dragged wall, in √(g·d) with gravity g and the mean diameter d. In a scene with d = 5 mm and Δt = 1 ms
+/// the wall moves a fiftieth of a diameter per step, which every stepper tolerates.
 const SPEED_OF_HAND: f64 = 0.5;
-/// Largest overlap of a new grain with another body that counts as rounding, in mean diameters.
+/// Largest overlap of a new grain with another body that is allowed because it may be due to rounding, in mean
+/// diameters.
 const ROUNDING: f64 = 1e-9;
 
 impl Simulation {
-    /// Applies an edit to the world. The next step is the first to show its effects.
+    /// Applies an edit to the world. The next step is the first step that shows its effects.
     ///
     /// # Errors
     /// The error says in one sentence why the edit is impossible. The simulation is then unchanged.
@@ -81,8 +82,8 @@ impl Simulation {
         self.surroundings = Arc::new(Surroundings::of(&self.state.world, time_step_secs));
     }
 
-    /// Sets the centres of all grains, m. Velocities and impulses do not change. Walls between the old and the new
-    /// position of a grain do not count as passed through.
+    /// Sets the centres of all grains, m. Velocities and impulses do not change. A grain that is moved to the other
+    /// side of a wall does not count as a grain that went through the wall.
     ///
     /// # Errors
     /// The error says why `positions` are not valid: their number differs from the number of grains, a position is not
@@ -121,7 +122,7 @@ impl Simulation {
     }
 
     /// Copies `vectors`, one vector per grain, into `there`. The error names `name` if the number of vectors is wrong,
-    /// a vector is not finite, or a vector changes its y in a scene with one axis.
+    /// a vector is not finite, or a vector differs from the old vector along y in a scene with one axis.
     pub(super) fn replace(&self, name: &str, there: &mut [DVec2], vectors: &[DVec2]) -> Result<()> {
         let (count, on_line) = (there.len(), self.state.physics.axes == 1);
         error::check(vectors.len() == count, name, vectors.len(), format!("{count}, one a grain"))?;
@@ -135,7 +136,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Returns the number of edits so far.
+    /// Returns the number of interactive edits since the start.
     pub fn edits(&self) -> usize {
         self.edits as usize
     }
@@ -184,7 +185,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Returns the name of a body that the disc would overlap, or `None` if the disc has room.
+    /// Returns the name of a body that a disc would overlap; `None` if there is room for the disc.
     fn in_the_way(&self, disc: Disc) -> Option<&'static str> {
         let (world, candidates) = (&self.state.world, &self.state.candidates);
         let reach = disc.radius - ROUNDING * world.mean_diameter;

@@ -1,4 +1,4 @@
-//! Sums of impulses and stresses over many steps, from which mean forces between two moments follow.
+//! Sums of contact impulses and grain stresses over many steps, from which mean forces over these steps follow.
 
 use glam::{DMat2, DVec2};
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,8 @@ use crate::sim::moment::OtherBody;
 use crate::sim::simulation::Simulation;
 use crate::sim::state::State;
 
-/// Impulses that pairs transmit, summed over consecutive steps, including all shocks and pieces of these steps.
+/// Contact impulses of all pairs of bodies, summed over consecutive steps. If a step computes collisions separately or
+/// is divided into shorter pieces, the impulses of all collisions and pieces count.
 ///
 /// ```
 /// use slump_core::sim::ForceSums;
@@ -28,18 +29,19 @@ use crate::sim::state::State;
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ForceSums {
-    /// Number of the last step in these sums, and number of edits until then; `None` before the first step.
+    /// Number of the last step in these sums, and number of interactive edits of the world up to that step; `None`
+    /// before the first step.
     come_to: Option<(u64, usize)>,
     /// Total duration of the summed steps, s.
     pub secs: f64,
-    /// Pairs that transmitted an impulse, in the order of the contacts.
+    /// Sums for each pair of bodies with an impulse in at least one step, sorted by grain i and then by body j.
     pub pairs: Vec<PairSum>,
     /// Stress sum of each grain, J·s: Σ P ⊗ ℓ over its contacts, with the impulse P and the vector ℓ from the contact
     /// point to the centre of the grain.
     pub stresses: Vec<DMat2>,
 }
 
-/// Sums for one pair of bodies.
+/// Sums of impulses, moments and work for one pair of bodies.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PairSum {
@@ -47,25 +49,29 @@ pub struct PairSum {
     pub grain: u32,
     /// Body j of the pair.
     pub other: OtherBody,
-    /// Number of body j among grains, fixed discs and boundary features, by which pairs are sorted.
+    /// Number of body j if grains, fixed discs and boundary features (parts of boundaries) are numbered in this order;
+    /// pairs are sorted by it.
     number: u32,
-    /// Number of steps in which the pair transmitted an impulse.
+    /// Number of steps in which the pair had an impulse.
     pub steps: u64,
     /// Sum of the impulses on grain i, N·s.
     pub impulse: DVec2,
-    /// Sum of the normal impulses on grain i, each along the normal of its step, N·s; negative if the pair pulls.
+    /// Sum of the normal impulses on grain i, N·s, each along the contact normal of its step; negative if the pair
+    /// pulls.
     pub normal: f64,
-    /// Sum of the tangential impulses on grain i, each along the tangent (−n_y, n_x) of its step, N·s.
+    /// Sum of the tangential impulses on grain i, N·s, each along the tangent (−n_y, n_x) of its step.
     pub tangential: f64,
-    /// Sum of the moments r × P about the origin, N·m·s, with the impulse P and the contact point r on grain i.
+    /// Sum of the moments r × P about the origin, N·m·s, with the impulse P on grain i and the touched point r of body
+    /// j's surface.
     pub moment: f64,
-    /// Work that the moving surface of body j does on grain i, J.
+    /// Work that the moving surface of body j does on grain i, J; 0 if body j is not a moving wall.
     pub work: f64,
 }
 
 impl ForceSums {
-    /// Adds the last step of a run. Call this method at the start and after each step. If a step was left out, or an
-    /// edit has changed the indices of bodies, the sums start again from zero.
+    /// Adds the impulses of the last step of `simulation`. Call this method once before the first step, and then after
+    /// each step. If a step was left out, or an edit of the world has changed the indices of bodies, the sums start
+    /// again from zero.
     pub fn follow(&mut self, simulation: &Simulation) {
         let (step, edits) = (simulation.observables().step, simulation.edits());
         match self.come_to.replace((step, edits)) {
@@ -75,7 +81,7 @@ impl ForceSums {
         }
     }
 
-    /// Returns the sums so far, and starts new sums from zero.
+    /// Returns the sums so far, and sets them to zero for the next steps.
     pub fn take(&mut self) -> Self {
         let fresh = Self { come_to: self.come_to, ..Self::default() };
         std::mem::replace(self, fresh)

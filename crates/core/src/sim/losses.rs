@@ -1,10 +1,11 @@
 //! Finds lost grains: grains that passed through a wall, or left the world.
 //!
 //! A wall may be thin, so the path of a grain's centre decides, not its position. A centre that moves from one side of
-//! a segment to the other, or through a polygon, was at places that no disc can reach. Half-spaces and polygons push
-//! grains out again unless the grains are deep inside. A path is examined when its length has reached a quarter of the
-//! grain's radius. A disc that moves around the end of a wall keeps one radius away from that end, so such a short path
-//! does not cut the wall. If walls move, paths are measured relative to the walls and are examined in every step.
+//! a segment to the other, or through a polygon, was at points that the centre of no disc can reach. Half-spaces and
+//! polygons push grains out again, so there only a grain deep inside counts as lost. A path is examined when its length
+//! has reached a quarter of the grain's radius. A disc that moves around the end of a wall keeps one radius away from
+//! that end, so such a short path does not cut the wall. If walls move, paths are measured relative to the walls and
+//! are examined in every step.
 
 use glam::DVec2;
 use parry2d_f64::shape::Segment;
@@ -13,23 +14,24 @@ use serde::{Deserialize, Serialize};
 use crate::contact::Feature;
 use crate::world::{Disc, Physics, World};
 
-/// Distance of the world's edges from the initial bounding box of grains and fixed bodies, in longest sides of this
-/// box. A grain beyond the edges is lost.
+/// Distance of the world's edges from the smallest rectangle around all grains and fixed bodies at the start, divided
+/// by the longest side of this rectangle. A grain beyond the edges has left the world.
 const ROOM_IN_SIDES: f64 = 3.0;
-/// Depth at which a grain is lost, in its diameters: the depth of its centre inside a solid, or below everything that
-/// was present at the start. A half-space may push the grain out again, but the grain stays lost, because it was
-/// outside the scene.
+/// Depth at which a grain counts as lost, in diameters of the grain: the depth of its centre inside a half-space or
+/// polygon, or below the lowest body of the initial state. A half-space may push the grain out again, but the grain
+/// stays lost, because it was outside the scene.
 const LOST_DEPTH: f64 = 1.0;
 /// Length of the path of a grain at which the path is examined, in radii of the grain. A longer path around the end of
-/// a wall might cut the wall. With a shorter length, paths are examined more often, and every step costs as much as a
-/// step of a collapse, in which grains move fast.
+/// a wall might cut the wall although the grain does not. With a shorter length, paths are examined so often that every
+/// step costs as much as a step of a collapse, in which grains move fast.
 const WAY_IN_RADII: f64 = 0.25;
 
-/// Data to find the lost grains of a world: the path of each grain since its last examination, and the world's edges.
+/// Data to find grains that pass through a wall or leave the world: the path of each grain since its last examination,
+/// and the world's edges.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Losses {
-    /// Beginning of each grain's path that has not been examined yet, m.
+    /// Point at which the unexamined part of each grain's path begins, m.
     from: Vec<DVec2>,
     pub lost: Vec<bool>,
     pub count: u32,
@@ -38,11 +40,11 @@ pub(super) struct Losses {
     world: Edges,
     /// True in a scene with one axis, which has no slump.
     on_line: bool,
-    /// True after all grains have been examined once. A grain that is in a wall in the first examination was placed
-    /// there.
+    /// True after all grains have been examined once. A grain that is inside a wall in this first examination was
+    /// placed there.
     begun: bool,
-    /// Two points of each wall at the last examination, m, by which paths relative to moving walls are computed. Empty
-    /// unless the scene has motions or the user drags a wall.
+    /// Two points of each wall at the last examination, m. They show how the wall has moved since, so that paths can be
+    /// measured relative to it. Empty unless the scene has motions or the user drags a wall.
     frames: Vec<[DVec2; 2]>,
 }
 
@@ -50,29 +52,31 @@ pub(super) struct Losses {
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Edges {
-    /// Two opposite corners of the world, m. `None` if there are no fixed bodies, if there is open ground, or if fixed
-    /// bodies move: grains may then be anywhere.
+    /// Two opposite corners of the world, m. `None` if grains may be anywhere: without fixed bodies, with an endless
+    /// ground (a half-space), or if boundaries or fixed discs move.
     corners: Option<[DVec2; 2]>,
-    /// Downward direction, and the lowest position along it of all bodies at the start, m. `None` in a world without a
-    /// bottom.
+    /// Unit vector that points down, and the position of the lowest body at the start along this vector, m. `None` in a
+    /// world without a bottom, for example if gravity turns.
     bottom: Option<(DVec2, f64)>,
 }
 
-/// Losses found in one examination, by kind.
+/// Losses found in one examination of all grains: which kinds of loss occurred.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct NewLosses {
     /// True if a grain went through a wall.
     pub through_wall: bool,
     /// True if a grain left the world.
     pub left: bool,
-    /// Largest speed of the grains that left the world below a fixed disc, in their own diameters per second.
+    /// Largest speed among the grains that left the world below a fixed disc, in diameters of the grain per second; 0
+    /// without such grains.
     pub diameters_per_second: f64,
     /// True if a grain was placed inside a wall.
     pub placed: bool,
 }
 
 impl Losses {
-    /// Begins the search for lost grains in a world whose boundaries consist of `features`.
+    /// Prepares the search for lost grains at time 0. The boundaries of the world consist of `features`: half-spaces,
+    /// segments and polygons.
     pub(super) fn new(world: &World, features: &[Feature], physics: Physics) -> Self {
         let positions = &world.grains.positions;
         Self {
@@ -90,8 +94,8 @@ impl Losses {
         }
     }
 
-    /// Examines the paths of the grains, and returns the losses since the last examination. `features` are the
-    /// boundaries at their present places; `walls_move` is true if they may have moved.
+    /// Examines the paths of the grains, and returns the losses since the last examination. `features` are the parts of
+    /// boundaries at their present positions; `walls_move` is true if they may have moved.
     pub(super) fn look(
         &mut self,
         world: &World,
@@ -158,8 +162,9 @@ impl Losses {
         new
     }
 
-    /// Returns the slump Δy_G (paper eq. 11) of the remaining grains: both sums exclude lost grains. Returns NaN if all
-    /// grains are lost, because the mean height of no grains is undefined.
+    /// Returns the slump Δy_G (relative drop of the mean height, paper eq. 11) of all grains that are not lost: both
+    /// sums in its formula exclude lost grains. Returns NaN if all grains are lost, because the mean height of no
+    /// grains is undefined.
     pub(super) fn slump(&self, world: &World) -> f64 {
         if self.count as usize == self.lost.len() {
             return f64::NAN;
@@ -170,13 +175,13 @@ impl Losses {
         if self.on_line || initial == 0.0 { 0.0 } else { (initial - heights) / initial }
     }
 
-    /// True if these data belong to a world with `grains` grains.
+    /// True if these data fit a world with `grains` grains: one entry per grain, and a correct number of lost grains.
     pub(super) fn is_of(&self, grains: usize) -> bool {
         [self.from.len(), self.lost.len(), self.initial_heights.len()] == [grains; 3]
             && self.lost.iter().filter(|&&lost| lost).count() == self.count as usize
     }
 
-    /// Starts new paths of all grains at `positions`, m.
+    /// Makes the path of each grain start again at its new position in `positions`, m.
     pub(super) fn place(&mut self, positions: &[DVec2]) {
         self.from = positions.to_vec();
     }
@@ -193,7 +198,7 @@ impl Losses {
         self.lost.push(false);
     }
 
-    /// Prepares for walls that move from now on: the edges of the world become unknown.
+    /// Prepares for walls that move from now on: records their positions, and makes the edges of the world unknown.
     pub(super) fn let_walls_move(&mut self, features: &[Feature]) {
         self.world = Edges::default();
         if self.frames.is_empty() {
@@ -241,14 +246,14 @@ impl Edges {
         }
     }
 
-    /// True if `place` is beyond the corners, or more than `depth` (m) below the bottom.
+    /// True if the point `place` (m) is outside the world's corners, or more than `depth` (m) below the world's bottom.
     fn is_outside(&self, place: DVec2, depth: f64) -> bool {
         let Self { corners, bottom } = self;
         corners.is_some_and(|[min, max]| !(place.cmpge(min).all() && place.cmple(max).all()))
             || bottom.is_some_and(|(down, lowest)| place.dot(down) > lowest + depth)
     }
 
-    /// True if a grain of this radius (m) at `place` is straight below a fixed disc.
+    /// True if a grain of this radius (m) with its centre at `place` (m) is straight below a fixed disc.
     fn is_below_a_disc(&self, world: &World, place: DVec2, radius: f64) -> bool {
         self.bottom.is_some_and(|(down, _)| {
             let is_above = |disc: &Disc| {
@@ -260,18 +265,18 @@ impl Edges {
     }
 }
 
-/// Result of examining a grain's path at a wall, in increasing order of severity.
+/// Result of comparing a grain's path with a wall, in increasing order of severity.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Fate {
     There,
-    /// The centre has entered a solid polygon. When it leaves the polygon, the examination shows if the grain passed
-    /// through.
+    /// The centre has entered a solid polygon. A later examination, after the centre has left the polygon, shows if the
+    /// grain passed through.
     Inside,
     Lost,
 }
 
-/// Returns two points that move with a wall, m. For a half-space the two points are equal, because no path across it is
-/// examined.
+/// Returns two points that move with a wall, m. For a half-space both are the same point, because only the present
+/// depth of a grain inside it is examined, not the path.
 fn frame(feature: &Feature) -> [DVec2; 2] {
     match feature {
         Feature::HalfSpace { point, .. } => [*point; 2],
@@ -280,8 +285,9 @@ fn frame(feature: &Feature) -> [DVec2; 2] {
     }
 }
 
-/// Returns the place that `place` would have now if it had moved with a wall, m. `before` and `now` are two points of
-/// the wall, before and after the motion. A path across a moving wall is measured relative to the wall.
+/// Returns the point (m) that `place` (m) would have become if it had moved with a wall. `before` and `now` are two
+/// points of the wall before and after its motion. From this point, the path of a grain is measured relative to the
+/// wall.
 fn carried(place: DVec2, before: [DVec2; 2], now: [DVec2; 2]) -> DVec2 {
     let [then, along_now] = [before, now].map(|[from, to]| to - from);
     if before == now || then == DVec2::ZERO {
@@ -292,8 +298,8 @@ fn carried(place: DVec2, before: [DVec2; 2], now: [DVec2; 2]) -> DVec2 {
     now[0] + local.x * along_now + local.y * along_now.perp()
 }
 
-/// Returns the result, at one wall, for a grain that moved from `from`, a point outside all polygons, to `to`. `deep`
-/// is the negative depth at which a grain is lost, m.
+/// Compares the path of a grain's centre from `from`, a point outside all polygons, to `to` (m) with one wall. `deep`
+/// is the negative of the depth inside a solid at which a grain is lost, m.
 fn fate(feature: &Feature, from: DVec2, to: DVec2, deep: f64) -> Fate {
     let if_lost = |lost: bool| if lost { Fate::Lost } else { Fate::There };
     match feature {
@@ -313,14 +319,14 @@ fn fate(feature: &Feature, from: DVec2, to: DVec2, deep: f64) -> Fate {
     }
 }
 
-/// Returns the unit normal on the right of a segment. For a side of an anticlockwise polygon this normal points
-/// outward.
+/// Returns the unit normal that points to the right of a segment, seen along the segment. For a side of an
+/// anticlockwise polygon this normal points outward.
 fn outward(side: &Segment) -> DVec2 {
     -(side.b - side.a).perp().normalize_or_zero()
 }
 
-/// True if the path from `from` to `to` crosses a segment. A point shared by two consecutive segments counts as on one
-/// side of the path, so that no path passes between the segments.
+/// True if the path from `from` to `to` crosses a segment. A point shared by two consecutive segments is assigned to
+/// one side of the path, so that no path passes between the segments.
 fn crosses(from: DVec2, to: DVec2, wall: &Segment) -> bool {
     let is_left = |a: DVec2, b: DVec2, place: DVec2| (b - a).perp_dot(place - a) >= 0.0;
     // Quick test of bounding boxes first, because most walls are far from most paths.

@@ -1,5 +1,5 @@
-//! Full state of a simulation at one moment, for tables and measurements: every grain, and every contact with its
-//! forces.
+//! Full copy of a simulation's state at one simulated time, for tables and measurements: every grain, and every contact
+//! with its forces.
 
 use std::sync::Arc;
 
@@ -20,15 +20,15 @@ use crate::sim::state::State;
 use crate::sim::surroundings::Surroundings;
 use crate::world::{FrictionCone, Parameters, World};
 
-/// Relative distance from its bound below which a friction force counts as slip. With a smaller value, slipping
-/// contacts of solvers that end near the bound count as sticking; with a larger value, sticking contacts near the bound
-/// count as slipping.
+/// Relative distance of a friction force from the friction bound below which the contact counts as slipping. With a
+/// smaller value, slipping contacts would count as sticking if the solver ends slightly below the bound; with a larger
+/// value, sticking contacts near the bound would count as slipping.
 const SLIPS_WITHIN: f64 = 1e-6;
-/// Relative distance from the cohesion force below which a pull counts as the full cohesion force; it allows for
-/// rounding.
+/// Relative difference between the pull of a contact and the cohesion force below which the contact counts as pulling
+/// with the full cohesion force; it allows for rounding.
 const OPENS_WITHIN: f64 = 1e-9;
 
-/// Full state of a simulation at one moment: plain data that outlives the simulation.
+/// Full copy of a simulation's state at one simulated time. It remains valid while the simulation continues.
 #[derive(Clone, Debug)]
 pub struct Moment {
     /// Measurements after the last step.
@@ -41,22 +41,24 @@ pub struct Moment {
     pub contacts: Vec<ContactState>,
     /// Boundaries and fixed discs at their present places.
     pub surroundings: Arc<Surroundings>,
-    /// Permanent number of the first fixed disc. Fixed discs are numbered after the grains of the initial state.
+    /// Identifier of the first fixed disc. Fixed discs have the identifiers after those of the grains of the initial
+    /// state.
     pub first_fixed_id: u32,
 }
 
 impl Moment {
-    /// Returns the permanent number of a grain, given its present index in the list of grains.
+    /// Returns the identifier of a grain from its present index in the list of grains. Unlike the index, the identifier
+    /// never changes.
     pub fn id(&self, grain: u32) -> u32 {
         // Sums over steps may name a grain that has been removed since. Then only its index is known.
         self.grains.get(grain as usize).map_or(grain, |state| state.id)
     }
 }
 
-/// A grain at one moment.
+/// State of a grain at one simulated time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GrainState {
-    /// Permanent number of the grain.
+    /// Identifier of the grain, which never changes; the index of a grain changes if a grain before it is removed.
     pub id: u32,
     /// Centre of the grain, m.
     pub position: DVec2,
@@ -82,9 +84,10 @@ pub struct GrainState {
     pub lost: bool,
 }
 
-/// A pair that touched in the last step or transmitted an impulse in it. Forces are means over the step, including all
-/// shocks and all pieces of the step. Normal and gap belong to the positions at the beginning of the step, or of the
-/// piece in which the pair was found. Since then, grains have moved by Δt·v.
+/// Pair of bodies that touched in the last step, or between which an impulse acted in it. Forces are means over the
+/// step, including all collisions and all pieces into which the step was divided. Normal and gap belong to the
+/// positions at the beginning of the step, or of the piece of the step in which the pair was found. Since then, grains
+/// have moved by the length of this step or piece times their velocities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactState {
     /// Index of grain i of the pair.
@@ -101,29 +104,29 @@ pub struct ContactState {
     pub branch: DVec2,
     /// Force on grain i, newton.
     pub force: DVec2,
-    /// Normal force N on grain i along n, newton; negative if the contact pulls. If n turns within the step, N is the
-    /// mean of the components along the normals of that time.
+    /// Normal force N on grain i along the normal n, newton; negative if the contact pulls. If n turns within the step,
+    /// N is the mean of the components along the normal at each time.
     pub normal_force: f64,
-    /// Tangential force T on grain i along (−n_y, n_x), newton; a mean like `normal_force`. T times the radius of a
-    /// grain is the torque on that grain.
+    /// Tangential force T on grain i along (−n_y, n_x), newton. If the normal n turns within the step, T is the mean of
+    /// the components along the tangent at each time. T times the radius of a grain is the torque on that grain.
     pub tangential_force: f64,
     /// Status under the contact law: open, sticking or slipping.
     pub status: ContactStatus,
-    /// Stretch s of the pair's bond, m. `None` without a bond, and under laws other than `range`.
+    /// Stretch s of the pair's bond, m; `None` if the pair has no bond, and under contact laws other than `range`.
     pub bond_stretch: Option<f64>,
-    /// Number of steps since the pair began to touch without interruption.
+    /// Number of steps for which the pair has touched without interruption.
     pub age_steps: u64,
 }
 
-/// The other body of a contact: a grain or a fixed shape.
+/// The other body of a contact: a grain, a fixed disc or a boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum OtherBody {
-    /// A grain, by its index.
+    /// The grain with this index.
     Grain(u32),
-    /// A fixed disc, by its index.
+    /// The fixed disc with this index.
     FixedDisc(u32),
-    /// A boundary, by its index.
+    /// The boundary with this index.
     Boundary(u32),
 }
 
@@ -147,7 +150,7 @@ words! {
 }
 
 impl Simulation {
-    /// Returns the full present state.
+    /// Returns a full copy of the present state, with all grains and contacts.
     pub fn moment(&self) -> Moment {
         let State { world, candidates, contacts, .. } = &self.state;
         let laws = Laws::of(self);
@@ -220,7 +223,7 @@ impl Simulation {
     }
 }
 
-/// Inputs for the status of a contact.
+/// Inputs for the status (open, sticking or slipping) of a contact.
 struct Laws<'a> {
     world: &'a World,
     candidates: &'a Candidates,
@@ -253,7 +256,8 @@ impl<'a> Laws<'a> {
         !self.has_bonds || (self.has_cohesion && self.parameters.bond > 0.0)
     }
 
-    /// Returns the status of a contact with the normal and tangential forces N and T.
+    /// Returns the status of a contact with the normal and tangential forces N and T, newton. `bonded` is true if its
+    /// pair has a bond.
     fn status(
         &self,
         contact: &Contact,
@@ -279,8 +283,8 @@ impl<'a> Laws<'a> {
         }
     }
 
-    /// Returns the friction and cohesion of a contact with this effective mass (kg) if the contact laws depend on pairs
-    /// of materials; otherwise `None`.
+    /// Returns the friction and cohesion coefficients of a contact with this effective mass (kg) if the contact laws
+    /// depend on pairs of materials; otherwise `None`.
     fn numbers(&self, contact: &Contact, effective_mass: f64) -> Option<RowNumbers> {
         let pairs = self.pairs.as_ref()?;
         Some(pairs.numbers(self.world, self.candidates, contact, effective_mass))

@@ -10,7 +10,8 @@ use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{Measures, Model, SolveReport};
 use crate::world::{Drive, Periodic};
 
-/// Measurements after a step. They are one row of the CSV file of observables and have the column names of recordings.
+/// Measurements after a step: one row of the CSV file of observables. In files, the fields have the names of the
+/// columns of recordings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Observables {
     /// Number of steps taken so far.
@@ -18,12 +19,12 @@ pub struct Observables {
     /// Simulated time, s.
     #[serde(rename = "time")]
     pub time_secs: f64,
-    /// Length Δt of this step, s.
+    /// Length Δt of the last step, s.
     #[serde(rename = "time_step")]
     pub time_step_secs: f64,
-    /// Number of sweeps of the solver. For steppers without a solver: number of passes over all contacts.
+    /// Number of sweeps of the solver in the step; for steppers without a solver, number of passes over all contacts.
     pub sweeps: u32,
-    /// Number of matrix factorisations by the solver.
+    /// Number of matrix factorisations by the solver in the step.
     pub factorisations: u32,
     /// True if the solver met its stop criterion within the sweep limit. Always true for steppers without a solver:
     /// they do a fixed amount of work and have no criterion, and `residual` shows how well they solve a step.
@@ -32,19 +33,20 @@ pub struct Observables {
     /// usually has no solution (`docs/accuracy-and-cost.md`).
     #[serde(default)]
     pub stalled: bool,
-    /// Residual of the step, dimensionless: the same measure for all solvers (`solver::residual`). For steppers without
-    /// a solver it is computed from the impulses summed over the step and the velocities at its end.
+    /// Residual (relative error) of the step's contact problem, dimensionless: the same measure for all solvers
+    /// (`solver::residual`). For steppers without a solver it is computed from the impulses summed over the step and
+    /// the velocities at its end.
     pub residual: f64,
-    /// Residual under the friction model that was solved instead of Coulomb friction, dimensionless; `None` under
-    /// Coulomb friction.
+    /// Residual of the step's contact problem under the friction model that the solver used instead of Coulomb
+    /// friction, dimensionless; `None` under Coulomb friction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model_residual: Option<f64>,
-    /// Estimated distance of the velocities from a solution under Coulomb friction, whatever friction model was solved,
-    /// m/s: the mass-weighted root mean square over the grains in contact
+    /// Estimated distance of the velocities from a solution under Coulomb friction, m/s, also if the solver used
+    /// another friction model: the mass-weighted root mean square over the grains in contact
     /// ([`VelocityError`](crate::solver::VelocityError)).
     #[serde(default)]
     pub velocity_error: f64,
-    /// Number of contacts between grains and of grains with fixed shapes.
+    /// Number of contacts between grains, and between grains and fixed discs or boundaries.
     pub contacts: u32,
     /// Number of contacts with a normal force N above 0.
     pub compressive_contacts: u32,
@@ -74,25 +76,27 @@ pub struct Observables {
     /// changes by this work minus the energy transferred to grains. `None` without such walls.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive_work: Option<f64>,
-    /// Work of sheared borders in this step, J, in addition to the other works: on contacts across the border, and on
-    /// grains that crossed the border. `None` without sheared borders.
+    /// Work of sheared periodic borders in this step, J: on contacts across the borders, and on grains that crossed
+    /// them. It is not part of the other works. `None` without sheared borders.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub border_work: Option<f64>,
     /// Work of gravity, of body forces, and of the spring with which the user pulls a grain, in this step, J.
     pub gravity_work: f64,
-    /// Slump Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) with the heights y_i of the grains (paper eq. 11), dimensionless.
-    /// Both sums exclude lost grains. 0 if Σ y_i(0) is 0, and NaN if all grains are lost.
+    /// Slump Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) with the heights y_i of the grains (paper eq. 11), dimensionless: the
+    /// relative drop of the mean height. Both sums exclude grains that went through a wall or left the world. 0 if Σ
+    /// y_i(0) is 0, and NaN if no grain remains.
     #[serde(with = "number")]
     pub slump: f64,
-    /// Work of bonds in this step, J; part of `normal_work`, and negative while bonds are being stretched. All columns
-    /// on bonds are `None` except under the law `range`.
+    /// Work of bonds in this step, J; part of `normal_work`, and negative while bonds are being stretched. `None` under
+    /// contact laws other than `range`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bond_work: Option<f64>,
-    /// Energy stored in the existing bonds, J: Σ C₀ s with the cohesion force C₀ and the stretch s of each bond.
+    /// Energy stored in the existing bonds, J: Σ C₀ s with the cohesion force C₀ and the stretch s of each bond. `None`
+    /// under contact laws other than `range`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bond_energy: Option<f64>,
     /// Energy dissipated by bonds that broke since the start, J: C₀ δ_c for each bond with the cohesion force C₀ and
-    /// the debonding distance δ_c.
+    /// the debonding distance δ_c. `None` under contact laws other than `range`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub broken_bond_energy: Option<f64>,
     /// Number of grains that went through a wall or left the world since the start.
@@ -101,8 +105,8 @@ pub struct Observables {
 }
 
 impl Observables {
-    /// True if these observables have columns that only some runs have: bonds, a friction model, driven walls or
-    /// sheared borders.
+    /// True if these observables have columns that only some runs have, such as the energies of bonds, the residual
+    /// under a friction model, or the works of driven walls or sheared borders.
     pub fn has_further_columns(&self) -> bool {
         let Self { bond_work, model_residual, drive_energy, border_work, .. } = self;
         [bond_work, model_residual, drive_energy, border_work].iter().any(|some| some.is_some())
@@ -149,8 +153,8 @@ pub(super) fn after_step<M: Model>(
     }
 }
 
-/// Returns the observables of an initial state whose contacts have been found: energies, and contacts without impulses.
-/// The settings determine which columns exist.
+/// Returns the observables of an initial state after contact detection: energies, overlaps and the number of contacts.
+/// Works, sweeps and residuals are 0. The settings determine which of the optional columns have a value.
 pub(super) fn at_start<M: Model>(
     state: &State,
     settings: &Settings,
@@ -169,8 +173,8 @@ pub(super) fn at_start<M: Model>(
     of_state::<M>(state, result, kinetic_energy, time_step_secs, initial_heights)
 }
 
-/// Returns the observables of a state and of the step that led to it. Step number, time and other quantities that add
-/// up over a run have their initial values. Every field is named, so that none is forgotten.
+/// Returns the observables of a state and of the step that led to it. Step number, time and lost grains, which depend
+/// on earlier steps, are 0; other code sets them. Every field is set by name here, so that none is forgotten.
 fn of_state<M: Model>(
     state: &State,
     result: StepResult,
@@ -225,7 +229,7 @@ fn of_state<M: Model>(
     }
 }
 
-/// Returns the sum of the grains' heights, m, and their potential energy, J.
+/// Returns the sum of the heights of all grains, m, and the potential energy of all grains, J.
 pub(super) fn heights(state: &State) -> [f64; 2] {
     let (grains, gravity) = (&state.world.grains, &state.world.gravity);
     let mut heights = 0.0;
@@ -240,7 +244,7 @@ pub(super) fn heights(state: &State) -> [f64; 2] {
 }
 
 /// Returns the mean overlap of touching grain pairs and the largest overlap of all contacts, in mean diameters. `bonds`
-/// is true under a contact law with bonds.
+/// is true under a contact law with bonds, in which a stretched pair has the overlap 0.
 pub(super) fn overlaps(state: &State, bonds: bool) -> [f64; 2] {
     let State { world, contacts, .. } = state;
     let numbering = Numbering::of(world);
@@ -265,24 +269,25 @@ pub(super) fn overlaps(state: &State, bonds: bool) -> [f64; 2] {
     ]
 }
 
-/// Quantity that can be plotted, computed from rows of a table.
+/// Quantity that can be plotted: a number for each row of a table.
 #[derive(Clone, Copy, Debug)]
 pub struct Quantity<Row: 'static> {
-    /// Name of the quantity on buttons.
+    /// Short name of the quantity, shown on buttons.
     pub name: &'static str,
     /// Title of the plot.
     pub title: &'static str,
-    /// Unit, if it can take a prefix such as k; otherwise empty, and the title contains the unit.
+    /// Unit of the values if it can take a prefix such as k; otherwise empty, and the title contains the unit.
     pub unit: &'static str,
-    /// True if the axis of the quantity is logarithmic.
+    /// True if the axis for the values of the quantity is logarithmic.
     pub logarithmic: bool,
-    /// Returns the value of the quantity in a row.
+    /// Computes the value of the quantity from a row of the table.
     pub value: fn(&Row) -> f64,
     /// Additional curves in the same plot: the first is dashed, the second dotted.
     pub beside: &'static [Beside<Row>],
 }
 
-/// Name of an additional curve, and a function that returns its value in a row if the row has one.
+/// Name of an additional curve, and a function that returns the value of the curve for a row of the table; `None` if
+/// the row has no value.
 pub type Beside<Row> = (&'static str, fn(&Row) -> Option<f64>);
 
 impl<Row> Quantity<Row> {
@@ -297,7 +302,7 @@ impl<Row> Quantity<Row> {
     };
 }
 
-/// Quantities that can be plotted, in display order.
+/// Quantities of the observables that can be plotted, in display order.
 pub const QUANTITIES: &[Quantity<Observables>] = &[
     Quantity { name: "slump", title: "slump Δy", value: |row| row.slump, ..Quantity::PLAIN },
     Quantity {
@@ -331,7 +336,7 @@ pub const QUANTITIES: &[Quantity<Observables>] = &[
 mod tests {
     use super::*;
 
-    /// Columns that the window does not plot.
+    /// Names of the observables that the window does not plot.
     const NOT_PLOTTED: &str = "step time time_step sweeps factorisations converged stalled residual \
         model_residual contacts compressive_contacts tensile_contacts potential_energy normal_work \
         tangential_work wall_work drive_work border_work gravity_work bond_work drive_energy lost_grains";

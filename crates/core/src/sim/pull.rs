@@ -6,20 +6,21 @@ use serde::{Deserialize, Serialize};
 use crate::solver::Model;
 use crate::world::{Parameters, World};
 
-/// Stiffness of the spring divided by the mass of the grain, in units of g/d: a spring stretched by one mean diameter
-/// pulls with 40 times the weight of the grain.
+/// Stiffness of the spring with which the user pulls a grain, divided by the mass of the grain, in units of g/d
+/// (gravity g, mean diameter d): a spring stretched by one mean diameter pulls with 40 times the weight of the grain.
 const STIFFNESS: f64 = 40.0;
-/// Gravitational acceleration for the scaling of springs in a scene without gravity, m/s².
+/// Gravitational acceleration that scales springs and speeds of interactive edits in a scene without gravity, m/s².
 const GRAVITY_IF_NONE: f64 = 9.8;
 
-/// Returns the acceleration that scales the stiffness and speed of interactive pulls, m/s²: gravity of the scene, or
-/// [`GRAVITY_IF_NONE`] without gravity.
+/// Returns the acceleration that scales the stiffness and speed of interactive pulls, m/s²: the gravity of the scene,
+/// or [`GRAVITY_IF_NONE`] without gravity.
 pub(super) fn gravity_that_scales(world: &World) -> f64 {
     or_if_none(world.gravity.magnitude())
 }
 
-/// Returns the acceleration that scales the springs of contacts, m/s²: gravity of the scene or, without gravity, the
-/// acceleration that defines the cohesion force. Softer springs would let a bond stretch by more than a diameter.
+/// Returns the acceleration that scales the stiffness of contact springs, m/s²: the gravity of the scene or, without
+/// gravity, the acceleration that defines the cohesion force. With a smaller acceleration, springs would be so soft
+/// that a bond could stretch by more than a diameter.
 pub(super) fn acceleration_of_springs(world: &World, parameters: &Parameters) -> f64 {
     or_if_none(parameters.accelerating(world.gravity.magnitude()))
 }
@@ -36,7 +37,7 @@ fn or_if_none(acceleration: f64) -> f64 {
 pub struct Pull {
     /// Index of the pulled grain.
     pub grain: u32,
-    /// Position of the spring's end that is not at the grain, m.
+    /// Position of the free end of the spring, which the user moves, m.
     pub target: DVec2,
 }
 
@@ -55,7 +56,8 @@ impl Pull {
         time_step_secs * acceleration / (1.0 + 2.0 * turn + turn * turn)
     }
 
-    /// Returns the push of the spring on the grain in the next `time_step_secs` (s), or `None` if it is zero.
+    /// Returns the change of velocity that the spring gives the grain in the next `time_step_secs` (s); `None` if it is
+    /// zero.
     pub(super) fn push(self, world: &World, axes: usize, time_step_secs: f64) -> Option<Push> {
         let mut change = self.added_velocity(world, time_step_secs);
         if axes == 1 {
@@ -65,7 +67,7 @@ impl Pull {
     }
 }
 
-/// Push on a grain in a step: the direction (unit vector) and the size (m/s) of its change of velocity.
+/// Change of a grain's velocity in a step by an external force: its direction (unit vector) and its size (m/s).
 pub(crate) struct Push {
     grain: usize,
     direction: DVec2,
@@ -73,7 +75,7 @@ pub(crate) struct Push {
 }
 
 impl Push {
-    /// Returns a push that changes the velocity of a grain by `change`, m/s; `None` if `change` is zero.
+    /// Creates a push that changes the velocity of a grain by `change`, m/s; `None` if `change` is zero.
     pub(super) fn of(grain: usize, change: DVec2) -> Option<Self> {
         let speed = change.length();
         (speed > 0.0).then(|| Self { grain, direction: change / speed, speed })

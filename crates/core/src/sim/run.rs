@@ -15,17 +15,17 @@ use crate::solver::worst;
 /// Reason why a run of many steps ended.
 #[derive(Debug)]
 pub enum RunEnding {
-    /// All steps were taken.
+    /// All requested steps were taken.
     Done,
-    /// The function called after each step ended the run.
+    /// The function that is called after each step ended the run.
     Stopped,
-    /// The state is no longer finite. Contains the error of the last step.
+    /// A position, a velocity or the kinetic energy is no longer finite. Contains the error of the last step.
     NotFinite(Error),
 }
 
 impl Simulation {
-    /// Takes up to `steps` steps. `after` is called after each step and can end the run. A state that is no longer
-    /// finite ends the run, too, and is returned as [`RunEnding::NotFinite`].
+    /// Takes up to `steps` steps. `after` is called after each step and can end the run. The run also ends if a
+    /// position, a velocity or the kinetic energy is no longer finite, and then returns [`RunEnding::NotFinite`].
     ///
     /// # Errors
     /// An error returned by `after`.
@@ -50,7 +50,7 @@ impl Simulation {
     /// Takes `steps` steps.
     ///
     /// # Errors
-    /// Fails if the state is no longer finite after a step.
+    /// Fails if a position, a velocity or the kinetic energy is no longer finite after a step.
     pub fn take_steps(&mut self, steps: u64) -> Result<()> {
         match self.run(steps, |_| Ok(ControlFlow::Continue(())))? {
             RunEnding::NotFinite(failure) => Err(failure),
@@ -58,7 +58,7 @@ impl Simulation {
         }
     }
 
-    /// Sets all velocities to zero and clears the impulses stored in contacts.
+    /// Sets the velocities of all grains to zero, and clears the impulses that contacts keep from the last step.
     pub fn bring_to_rest(&mut self) {
         let State { world, contacts, .. } = &mut self.state;
         world.grains.velocities.fill(DVec2::ZERO);
@@ -67,7 +67,7 @@ impl Simulation {
         contacts.forget();
     }
 
-    /// Multiplies the velocities and angular velocities of all grains by `factor`, as a drag during the last step
+    /// Multiplies the velocities and angular velocities of all grains by `factor`, as a drag force during the last step
     /// would.
     pub fn scale_velocities(&mut self, factor: f64) {
         let grains = &mut self.state.world.grains;
@@ -83,7 +83,7 @@ impl Simulation {
 /// Statistics over the steps of a run: numbers of steps and sweeps, largest errors, and mean and largest overlap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tally {
-    /// Number of steps.
+    /// Number of steps of the run.
     pub steps: u64,
     /// Number of unsolved steps: the solver did not meet its stop criterion within the sweep limit.
     pub unconverged_steps: u64,
@@ -92,10 +92,10 @@ pub struct Tally {
     pub stalled_steps: u64,
     /// Total number of sweeps of all steps.
     pub sweeps: u64,
-    /// Largest residual of any step, dimensionless.
+    /// Largest residual of any step, dimensionless: the relative error of the step's contact problem.
     #[serde(with = "number")]
     pub largest_residual: f64,
-    /// Largest estimated velocity error of any step, m/s.
+    /// Largest estimated error of the velocities in any step, m/s.
     #[serde(with = "number", default)]
     pub largest_velocity_error: f64,
     /// Mean overlap of touching grain pairs, averaged over the steps, in mean diameters d.
@@ -110,7 +110,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Adds one step to the statistics. Also counts a last step whose state is not finite.
+    /// Adds the measurements after one step to the statistics. Also counts a last step whose state is not finite.
     pub fn add(&mut self, step: &Observables) {
         self.steps += 1;
         self.unconverged_steps += u64::from(!step.converged);

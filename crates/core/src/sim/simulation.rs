@@ -1,4 +1,4 @@
-//! The type [`Simulation`]: a world with everything needed to advance it step by step.
+//! The type [`Simulation`]: a world with everything that is needed to advance it step by step.
 
 use std::sync::Arc;
 
@@ -38,11 +38,11 @@ pub struct Simulation {
     observables: Observables,
     /// Sum of the initial heights of all grains, Σ y_i(0), m (paper eq. 11).
     pub(super) initial_heights: f64,
-    /// Stepper of the last step. The data that contacts keep from step to step belong to this stepper.
+    /// Stepper of the last step, whose data contacts keep; `None` at the start and after a step with your own stepper.
     last_stepper: Option<Stepper>,
     pub(super) watch: Watch,
     pub(super) surroundings: Arc<Surroundings>,
-    /// Number of interactive edits.
+    /// Number of interactive edits since the start.
     pub(super) edits: u32,
 }
 
@@ -99,7 +99,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`Error::NonFinite`] if a position, a velocity or the kinetic energy is no longer finite. The simulation keeps
-    /// this state for inspection.
+    /// these values for inspection.
     pub fn step(&mut self) -> Result<&Observables> {
         self.watch.look_ahead(&self.observables, &self.settings);
         self.become_of(Some(self.settings.stepper));
@@ -113,8 +113,8 @@ impl Simulation {
         self.look()
     }
 
-    /// Takes one step exactly as [`Simulation::step`] does, and measures the computing times of its parts. `clock`
-    /// returns the seconds since any fixed moment.
+    /// Takes one step exactly as [`Simulation::step`] does, and returns the computing times of contact detection, of
+    /// the solver and of the whole step. `clock` returns the time since an arbitrary fixed date, s.
     ///
     /// # Errors
     /// The errors of [`Simulation::step`].
@@ -158,7 +158,7 @@ impl Simulation {
         self.look()
     }
 
-    /// Clears the data that contacts keep from step to step if the stepper changes, because they belong to one stepper.
+    /// Clears the data that contacts keep if the last step had another stepper: each stepper keeps data of its own.
     fn become_of(&mut self, stepper: Option<Stepper>) {
         if self.last_stepper != stepper {
             self.state.contacts.forget();
@@ -179,7 +179,7 @@ impl Simulation {
         }
     }
 
-    /// Takes one step, divided into `pieces` pieces of equal length.
+    /// Takes one step, divided into `pieces` shorter steps of equal length.
     fn take_step_of<M: Slotted>(&mut self, pieces: u32, advance: &mut impl Advance) {
         let Self {
             state, settings, slots, observables, initial_heights, last_stepper, watch, ..
@@ -235,7 +235,7 @@ impl Simulation {
         })
     }
 
-    /// Finds the contacts at the present positions and fills the observables as for an initial state.
+    /// Finds the contacts at the present positions, and computes the observables as for an initial state.
     pub(super) fn observe_start(&mut self) {
         let Self { state, settings, slots, memory, observables, initial_heights, .. } = self;
         with_model!(state.leanest_model(&settings.parameters), M => {
@@ -245,15 +245,15 @@ impl Simulation {
     }
 
     /// Passes the contact problem of the next step to `visitor`, as the solver will first receive it: for the first
-    /// piece if the step is divided, and with the velocities after shocks if shocks are solved separately. Does not
-    /// change this simulation.
+    /// piece if the step is divided into pieces, and with the velocities after collisions if collisions are solved
+    /// separately. Does not change this simulation.
     pub fn next_problem<V: ProblemVisitor>(&self, visitor: V) -> V::Output {
         let (parts, mut slots, contacts) = self.prepared();
         with_model!(parts, M => visitor.visit::<M>(&mut M::slot(&mut slots).problem, &contacts))
     }
 
-    /// Prepares the next step. Returns its model, the slots that contain its contact problem, and its contacts. Not
-    /// generic, so that it is compiled only in this crate.
+    /// Prepares the next step in a copy. Returns the compiled model of its physics, the memory that contains its contact
+    /// problem, and its contacts. This function is not generic, so that it is compiled only in this crate.
     fn prepared(&self) -> (ModelParts, Slots, ContactList) {
         let Self { mut state, settings, mut slots, mut memory, .. } = self.clone();
         let parts = state.leanest_model(&settings.parameters);
@@ -299,7 +299,7 @@ impl Simulation {
     /// Changes the settings from the next step on.
     ///
     /// # Errors
-    /// The error names the first setting that is out of range or incompatible; then no setting changes.
+    /// The error names the first setting that is out of range or does not suit the world; then no setting changes.
     pub fn change(&mut self, settings: Settings) -> Result<()> {
         settings.validate()?;
         settings.check_in(&self.state.world, self.state.physics)?;
@@ -314,8 +314,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Detects the contacts of the initial state again, because their order depends on the stepper. So a run whose
-    /// settings change before its first step equals, bit for bit, a run created with these settings.
+    /// Detects the contacts of the initial state again, because their order depends on the stepper. So a simulation
+    /// whose settings change before its first step equals, bit for bit, a simulation created with these settings.
     fn begin_again(&mut self) -> Result<()> {
         let state = &mut self.state;
         state.candidates = state.candidates.unbuilt(&state.world)?;
@@ -364,19 +364,19 @@ impl Simulation {
         &self.watch.alarms
     }
 
-    /// Returns the alarm that the next step will raise if grains were placed in overlap; `None` if they were not.
+    /// Returns the alarm that the next step will raise because grains were placed in overlap; `None` if they were not.
     pub fn alarm_on_placed(&self) -> Option<Alarm> {
         self.watch.of_placed(&self.observables, &self.settings)
     }
 
-    /// Clears the alarms, so that a run that continues with other settings can raise them again: each kind is raised
-    /// only once. Alarms on lost grains stay.
+    /// Clears the alarms. Each kind of alarm is raised only once, so this allows a run that continues with other
+    /// settings to raise them again. Alarms on grains that went through a wall or left the world stay.
     pub fn forget_alarms(&mut self) {
         let stays = [AlarmKind::GrainLost, AlarmKind::GrainLeft];
         self.watch.alarms.retain(|alarm| stays.contains(&alarm.kind));
     }
 
-    /// Returns the number of the step that ends nearest to the simulated time `secs` (s), if Δt does not change.
+    /// Returns the number of the step that ends nearest to the simulated time `secs` (s) if Δt stays constant.
     pub fn step_at(&self, secs: f64) -> u64 {
         self.steady.step_at(secs, &self.settings.parameters)
     }
@@ -392,7 +392,7 @@ impl Simulation {
     }
 }
 
-/// Step and simulated time (s) of the last change of Δt.
+/// Step number and simulated time (s) at the last change of the time step Δt.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Steady {
@@ -406,7 +406,7 @@ impl Steady {
         Self { step, time_secs }
     }
 
-    /// Returns the number of the step that ends nearest to the simulated time `secs`, s.
+    /// Returns the number of the step that ends nearest to the simulated time `secs` (s) if Δt stays constant.
     fn step_at(self, secs: f64, parameters: &Parameters) -> u64 {
         self.step.saturating_add(parameters.steps_in(secs - self.time_secs))
     }
@@ -414,9 +414,9 @@ impl Steady {
 
 /// Visitor that receives the contact problem of the next step before it is solved ([`Simulation::next_problem`]).
 pub trait ProblemVisitor {
-    /// Result of the visit.
+    /// Result that the visitor returns.
     type Output;
-    /// Receives the problem. Row `k` of the problem is contact `problem.rows.contacts[k]` of `contacts`.
+    /// Receives the contact problem. Row `k` of the problem describes contact `problem.rows.contacts[k]` in `contacts`.
     fn visit<M: Model>(self, problem: &mut StepProblem<M>, contacts: &ContactList) -> Self::Output;
 }
 
@@ -433,8 +433,8 @@ impl<'de> Deserialize<'de> for Simulation {
 }
 
 impl Simulation {
-    /// Checks that the parts of a simulation read from a file fit together, because no later code checks this, and
-    /// recomputes the data that a file omits.
+    /// Checks that the parts of a simulation read from a file fit together, because no later code checks this.
+    /// Recomputes the data that a file omits.
     fn complete(mut self) -> Result<Self> {
         self.settings.validate()?;
         self.state.physics.validate()?;

@@ -1,4 +1,5 @@
-//! Snapshot of a simulation at one moment, for pictures and windows: plain data that outlives the simulation.
+//! Copy of a simulation's state at one simulated time, for pictures and windows. It remains valid while the simulation
+//! continues.
 
 use std::sync::Arc;
 
@@ -13,7 +14,7 @@ use crate::sim::state::State;
 use crate::sim::surroundings::Surroundings;
 use crate::world::Periodic;
 
-/// Snapshot of a simulation at one moment, for pictures.
+/// Copy of a simulation's state at one simulated time, for pictures.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Snapshot {
@@ -29,7 +30,7 @@ pub struct Snapshot {
 
 impl Snapshot {
     /// Returns a hash of the bits of all grains' positions, velocities, angles and angular velocities. Equal hashes
-    /// mean, with near certainty, equal states.
+    /// mean, with near certainty, equal bits.
     pub fn state_hash(&self) -> String {
         hash_of_bits(self.grains.iter().flat_map(|grain| {
             let GrainView { position, velocity, angle, angular_velocity, .. } = *grain;
@@ -47,7 +48,7 @@ pub fn hash_of_bits(numbers: impl IntoIterator<Item = f64>) -> String {
     format!("{hash:016x}")
 }
 
-/// A grain at one moment.
+/// State of a grain at one simulated time, for pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GrainView {
@@ -55,7 +56,7 @@ pub struct GrainView {
     pub position: DVec2,
     /// Radius of the grain, m.
     pub radius: f64,
-    /// Angle by which the grain has turned, rad.
+    /// Angle by which the grain has turned since the start, rad.
     pub angle: f64,
     /// Velocity of the grain's centre, m/s.
     pub velocity: DVec2,
@@ -74,13 +75,13 @@ pub struct GrainView {
     pub material: u8,
 }
 
-/// A contact at one moment.
+/// A contact of the last step, for pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactView {
     /// Index of grain i of the contact.
     pub grain: u32,
-    /// Index of grain j; `None` if the other body is a fixed shape.
+    /// Index of grain j of the contact; `None` if the other body is a fixed disc or a boundary.
     pub other_grain: Option<u32>,
     /// Centre of grain i, m.
     pub from: DVec2,
@@ -90,12 +91,12 @@ pub struct ContactView {
     pub normal_force: f64,
     /// Tangential force T, newton.
     pub tangential_force: f64,
-    /// Gap at the moment when the contact was found in the last step, m; negative for an overlap.
+    /// Gap between the two surfaces when the contact was found in the last step, m; negative for an overlap.
     pub gap: f64,
 }
 
 impl Simulation {
-    /// Returns a snapshot of the present state.
+    /// Returns a copy of the present state for pictures.
     pub fn snapshot(&self) -> Snapshot {
         let (grains, numbering) = (&self.state.world.grains, Numbering::of(&self.state.world));
         let mut views: Vec<GrainView> = (0..grains.len())
@@ -143,7 +144,8 @@ impl Simulation {
         }
     }
 
-    /// Returns the boundaries and fixed discs at their present places.
+    /// Returns a copy of the boundaries, fixed discs and other parts of a picture that are not grains, at their present
+    /// positions.
     pub(super) fn surroundings(&self) -> Arc<Surroundings> {
         let world = &self.state.world;
         if !world.has_motion() && !world.periodic.is_some_and(Periodic::is_sheared) {
@@ -152,8 +154,8 @@ impl Simulation {
         Arc::new(Surroundings::of(world, self.parameters().time_step_secs))
     }
 
-    /// Returns the centre of a contact's other disc, or the nearest point of another shape, m. With periodic borders it
-    /// belongs to the image that is nearest to the grain.
+    /// Returns the centre of a contact's other disc, or the nearest point of a boundary, m. With periodic borders, the
+    /// result belongs to the periodic image that is nearest to the grain.
     fn far_end(&self, grain: usize, other: Other) -> DVec2 {
         let State { world, candidates, .. } = &self.state;
         let centre = world.grains.positions[grain];

@@ -14,11 +14,11 @@ use crate::solver::{Model, ModelParts};
 use crate::world::{Parameters, Physics, World};
 
 /// Skin of the neighbour search, in mean diameters: pairs with gaps below the skin are listed as candidates for
-/// contacts. With a smaller skin the list is rebuilt more often; with a larger one more pairs are examined in vain. The
-/// skin does not change any result.
+/// contacts. With a smaller skin the list is rebuilt more often; with a larger skin more pairs are examined in vain.
+/// The skin does not change any result.
 const SKIN_IN_DIAMETERS: f64 = 0.2;
 
-/// State that a step changes: a world, the contacts of its last step, and the user's forces on it.
+/// State that a step changes: a world, the contacts of its last step, and the forces that the user applies.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct State {
@@ -29,15 +29,15 @@ pub(crate) struct State {
     /// Moving walls with their velocities. Each step recomputes them at its beginning.
     #[serde(skip)]
     pub walls: Walls,
-    /// Spring with which the user pulls one grain from the next step on.
+    /// Spring with which the user pulls one grain in the next steps; `None` if the user pulls no grain.
     pub pull: Option<Pull>,
     /// Force on each grain in addition to gravity, N; empty if no grain has such a force.
     pub body_forces: Vec<DVec2>,
-    /// True while the user drags a wall. The last entry of the world's `motions` is then this drag.
+    /// True while the user drags a wall. The last entry of the world's `motions` is then the motion of this wall.
     pub is_held: bool,
     /// Length of the time step to which the impulses in `contacts` belong, s.
     pub time_step_of_impulses_secs: f64,
-    /// Clock for the computing times of a step's parts; it only runs during a timed step.
+    /// Clock that measures the computing times of contact detection and solver; it runs only during a timed step.
     #[serde(skip)]
     pub stopwatch: Stopwatch,
 }
@@ -84,7 +84,7 @@ impl State {
         self.walls.begin(&self.world, &self.candidates, time_step_secs);
     }
 
-    /// Finds the contacts at the present positions. If `ahead` is given, also finds pairs that may touch within the
+    /// Finds the contacts at the present positions. If `ahead` is given, also adds pairs that may touch within the
     /// step.
     pub(crate) fn detect<M: Model>(&mut self, ahead: Option<LookAhead>) {
         let begun = self.stopwatch.now();
@@ -123,16 +123,16 @@ impl State {
         self.fastest_with(Walls::fastest_in(&self.world, &self.candidates, time_step_secs))
     }
 
-    /// Returns the speed of the fastest grain, or `fastest_wall` if that is larger, m/s. Images of grains beyond a
-    /// sheared border slide with the border; half of this sliding speed is added for each of the two grains that meet
-    /// across it.
+    /// Returns the speed of the fastest grain, or `fastest_wall` if that is larger, m/s. Periodic images of grains
+    /// beyond a sheared border slide with the border. Two grains that meet across the border share this sliding speed,
+    /// so half of it is added.
     fn fastest_with(&self, fastest_wall: f64) -> f64 {
         let speeds = self.world.grains.velocities.iter().map(|velocity| velocity.length());
         speeds.fold(fastest_wall, f64::max) + 0.5 * self.speed_of_border()
     }
 
-    /// Returns the speed of images beyond a sheared border relative to the grains themselves, m/s; 0 without such a
-    /// border.
+    /// Returns the sliding speed of periodic images beyond a sheared border relative to their grains, m/s; 0 without
+    /// such a border.
     fn speed_of_border(&self) -> f64 {
         self.world.periodic.map_or(0.0, |periodic| periodic.border_speed().abs())
     }
@@ -166,7 +166,7 @@ impl State {
         }
     }
 
-    /// Returns the pushes on grains in the next `secs` (s) by the user's spring and by body forces.
+    /// Returns the changes of the grains' velocities in the next `secs` (s) by the user's spring and by body forces.
     pub(super) fn pushes(&self, axes: usize, secs: f64) -> Vec<Push> {
         let masses = &self.world.grains.masses;
         let spring = self.pull.and_then(|pull| pull.push(&self.world, axes, secs));
@@ -176,8 +176,8 @@ impl State {
         spring.into_iter().chain(forces).collect()
     }
 
-    /// Returns the largest acceleration that gravity and body forces give to any grain, m/s². The search distance of
-    /// the next step depends on it.
+    /// Returns the largest acceleration that gravity and body forces give to any grain, m/s². The search distance for
+    /// contacts of the next step depends on it.
     pub(super) fn largest_acceleration(&self) -> f64 {
         let forces = self.body_forces.iter().zip(&self.world.grains.masses);
         let largest = forces.map(|(force, mass)| force.length() / mass).fold(0.0, f64::max);
@@ -231,12 +231,13 @@ impl State {
     }
 }
 
-/// Largest allowed mean diameter, in radii of the largest grain. All pairs within the skin are candidates, and the skin
-/// is proportional to the mean diameter, so a larger value would allow worlds in which nearly all pairs are candidates.
+/// Largest allowed mean diameter of a scene, in radii of the largest grain. The mean diameter is a number of the scene
+/// file. Pairs within the skin of the neighbour search are candidates for contacts, and the skin is proportional to the
+/// mean diameter, so a larger value would allow worlds in which nearly all pairs are candidates.
 const MOST_RADII_OF_DIAMETER: f64 = 200.0;
 
-/// Returns the search distances of a world. The error names a length with which each disc would have too many
-/// neighbours.
+/// Returns the search distances for contacts in a world. The error says which length is not valid, or so large that
+/// each disc would have too many neighbours.
 pub(super) fn reach_in(world: &World, gap_tolerance: f64) -> Result<Reach> {
     let diameter = world.mean_diameter;
     if !(diameter > 0.0 && diameter.is_finite()) {

@@ -1,5 +1,5 @@
-//! Code that all steppers use: the stage with the contact problem, the division of a step into pieces, and the result
-//! of a step.
+//! Code that all steppers use: the stage (the data on which a stepper works), the division of a step into pieces, and
+//! the result of a step.
 
 use crate::contact::{ContactList, InTouch, LookAhead};
 use crate::sim::settings::Settings;
@@ -15,7 +15,7 @@ use crate::world::{Parameters, World};
 pub struct StepResult {
     /// Sum of the reports of all solves in the step.
     pub report: SolveReport,
-    /// Residual, number of contacts, and works of the contacts.
+    /// Residual of the step, numbers of contacts, and works of the contact forces.
     pub measures: Measures,
     /// Work of gravity, of body forces and of the spring with which the user pulls a grain, J.
     pub gravity_work: f64,
@@ -23,8 +23,8 @@ pub struct StepResult {
     pub drive_work: f64,
     /// Energies of bonds; `None` under a contact law without bonds.
     pub bonds: Option<BondEnergies>,
-    /// Number of bonds that ended because their pairs turned. Counted under laws whose bonds exist while the gap is
-    /// negative.
+    /// Number of bonds that ended because their pairs of grains turned. Counted only under contact laws whose bonds
+    /// exist while the gap is negative.
     pub turned_bonds: u64,
 }
 
@@ -34,26 +34,26 @@ pub struct StepResult {
 /// this energy when it closes, and dissipates it when it breaks. So the work of a bond is −Δ(C₀ s). In the step in
 /// which a bond breaks, its work is −C₀ times the opening until the break. If b m_ij is the impulse of the bond until
 /// the break, with b in m/s, this work equals −b m_ij ½(v⁺ + v^n), with the opening speeds v⁺ after the shocks and v^n
-/// at the end of the step. A bond that breaks at the stretch δ_c has dissipated C₀δ_c in total. The rest of the work of
-/// a contact is done by the push between the grains.
+/// at the end of the step. A bond that breaks at the stretch δ_c has dissipated C₀δ_c in total. The rest of the normal
+/// work of a contact is done by the repulsion between the grains.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BondEnergies {
-    /// Work of all bonds in this step.
+    /// Work of all bonds in this step, J.
     pub work: f64,
-    /// Energy Σ C₀ s stored in the bonds that exist after this step.
+    /// Energy Σ C₀ s stored in the bonds that exist after this step, J.
     pub stored: f64,
-    /// Energy dissipated by the bonds that broke in this step.
+    /// Energy dissipated by the bonds that broke in this step, J.
     pub broken: f64,
 }
 
 impl StepResult {
-    /// Returns the result of a step before any work is done.
+    /// Returns the initial value for adding up the result of a step: all works are 0, and nothing has been solved.
     pub fn nothing_yet() -> Self {
         Self { report: SolveReport::nothing_yet(), ..Self::default() }
     }
 
-    /// Adds the result of the next piece of the step. Measurements at the end of this piece replace those of earlier
-    /// pieces.
+    /// Adds the result of the next piece of a divided step. Measurements at the end of this piece replace those of
+    /// earlier pieces; works and sweeps are added.
     pub fn add(&mut self, piece: Self) {
         let Self { report, measures, gravity_work, drive_work, bonds, turned_bonds } = piece;
         self.report.add(report);
@@ -77,8 +77,8 @@ pub trait Advance {
     fn advance<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult;
 }
 
-/// Data on which a stepper works: the state and its contact problem. A stepper usually calls [`Stage::prepare`],
-/// [`Stage::solve`] and [`Stage::move_by`], in this order.
+/// Data on which a stepper works: the state of the simulation and the contact problem of the step. A stepper usually
+/// calls [`Stage::prepare`], [`Stage::solve`] and [`Stage::move_by`], in this order.
 #[derive(Debug)]
 pub struct Stage<'a, M: Model> {
     pub(crate) state: &'a mut State,
@@ -109,13 +109,14 @@ impl<'a, M: Model> Stage<'a, M> {
         BodySystem::new(self.problem)
     }
 
-    /// Returns the contacts of the step. Row k of the problem is contact `problem.rows.contacts[k]` of this list.
+    /// Returns the contacts of the step. Row k of the problem describes contact `problem.rows.contacts[k]` of this
+    /// list.
     pub fn contacts(&self) -> &ContactList {
         &self.state.contacts
     }
 
-    /// Begins a step and sets up its contact problem with the touching pairs. `rebound` returns the term (m/s) that the
-    /// contact law adds to the normal velocity v_n of a contact, such as ρ v_n^{n−1} for restitution ρ.
+    /// Begins a step: detects the touching pairs and sets up their contact problem. `rebound` returns the term (m/s)
+    /// that the contact law adds to the normal velocity v_n of a contact, such as ρ v_n^{n−1} for restitution ρ.
     pub fn prepare(
         &mut self,
         settings: &Settings,
@@ -143,7 +144,8 @@ impl<'a, M: Model> Stage<'a, M> {
     }
 
     /// Like [`prepare`](Self::prepare), with additional contacts for pairs that may touch within the step. `look_ahead`
-    /// returns the search distances and is called after the step has begun.
+    /// returns the search distances for these pairs; it is called after the walls have received their velocities of the
+    /// step.
     pub(crate) fn prepare_ahead(
         &mut self,
         settings: &Settings,
@@ -196,7 +198,7 @@ impl<'a, M: Model> Stage<'a, M> {
         self.timed(|stage| solve(stage.problem, stage.memory, &settings.solver))
     }
 
-    /// Runs `solving` and adds its computing time to the solving time of the step.
+    /// Calls `solving`, and adds its computing time to the computing time of the solver in this step.
     pub(super) fn timed<T>(&mut self, solving: impl FnOnce(&mut Self) -> T) -> T {
         let begun = self.state.stopwatch.now();
         let outcome = solving(self);
@@ -205,8 +207,8 @@ impl<'a, M: Model> Stage<'a, M> {
         outcome
     }
 
-    /// Moves the grains by Δt with the velocities of the solved problem, and stores the impulses. `report` becomes part
-    /// of the result.
+    /// Moves the grains by Δt with the velocities of the solved problem, and stores the impulses in the contacts.
+    /// Returns the result of the step, which contains `report`.
     pub fn move_by(&mut self, report: SolveReport, settings: &Settings) -> StepResult {
         let Self { state, problem, .. } = self;
         let measures = measure(problem);
@@ -224,8 +226,8 @@ impl<'a, M: Model> Stage<'a, M> {
     }
 
     /// Divides a step into `count` pieces of equal length and takes them one after the other. The closure `piece`
-    /// receives the settings of one piece and adds its result to the result of the whole step. If the state is no
-    /// longer finite, the step ends early.
+    /// receives the settings of one piece, whose time step is the length of the piece, and adds its result to the
+    /// result of the whole step. If a position or velocity is no longer finite, the step ends early.
     pub fn in_pieces(
         &mut self,
         count: u32,

@@ -1,4 +1,4 @@
-//! Boundaries, fixed discs and their motions at one moment, for pictures and windows.
+//! Copies of boundaries, fixed discs and their motions at one simulated time, for pictures and windows.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ use crate::world::{Boundary, Disc, Gravity, Material, Periodic, World};
 pub struct Surroundings {
     /// Fixed discs.
     pub fixed_discs: Vec<Disc>,
-    /// Fixed shapes other than discs.
+    /// Boundaries of the scene: walls and other shapes that are neither grains nor fixed discs.
     pub boundaries: Vec<Boundary>,
     /// Centre of attraction, m; `None` if gravity is uniform.
     pub centre_of_attraction: Option<DVec2>,
@@ -30,13 +30,13 @@ pub struct Surroundings {
     pub moving: Vec<MotionView>,
 }
 
-/// Motion of boundaries and fixed discs at one moment: velocity, rotation and driving force.
+/// Common motion of some boundaries and fixed discs at one simulated time: velocity, rotation and driving force.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MotionView {
-    /// Indices of the boundaries that move.
+    /// Indices of the boundaries that have this motion.
     pub boundaries: Vec<usize>,
-    /// Indices of the fixed discs that move.
+    /// Indices of the fixed discs that have this motion.
     pub fixed_discs: Vec<usize>,
     /// Velocity of the bodies, m/s; zero if they turn about a pivot.
     pub velocity: DVec2,
@@ -49,7 +49,7 @@ pub struct MotionView {
     pub pivot: DVec2,
     /// Speed of the surface along itself, as of a conveyor belt, m/s; positive along the outward normal turned by +90°.
     pub surface_speed: f64,
-    /// True if the bodies are driven by a force, even if that force is zero at this moment.
+    /// True if a force drives the bodies, even if that force is zero at this time.
     #[serde(default)]
     pub is_driven: bool,
     /// Driving force on the bodies, N.
@@ -90,7 +90,8 @@ impl MotionView {
 }
 
 impl Surroundings {
-    /// Returns the present surroundings of a world, with velocities for a step of length `time_step_secs`, s.
+    /// Copies the boundaries, fixed discs and other surroundings of the grains from a world. The velocities of motions
+    /// are those for a step of length `time_step_secs`, s.
     pub(super) fn of(world: &World, time_step_secs: f64) -> Self {
         Self {
             fixed_discs: world.fixed_discs.clone(),

@@ -1,13 +1,14 @@
-//! Counts bonds that end because their pair turns, and not because of the pull on them.
+//! Counts bonds that end because their pair of grains turns, and not because of the pull on them.
 //!
-//! A step takes the normals from its beginning, and grains move along straight lines. Let two grains with the normal
-//! velocity v_n = 0 circle each other with the angular velocity ω, with their centres at the distance L. At the end of
-//! the step this distance is L √(1 + ω²Δt²): the gap has grown by ½ω²Δt²·L. If a bond exists only while the gap is
-//! negative, turning ends the bond after some steps, although it could bear a much larger pull.
+//! A step takes the contact normals from its beginning, and grains move along straight lines. Let two grains with the
+//! normal velocity v_n = 0 circle each other with the angular velocity ω, with their centres at the distance L. At the
+//! end of the step this distance is L √(1 + ω²Δt²): the gap has grown by ½ω²Δt²·L. If a bond exists only while the gap
+//! is negative, turning ends the bond after some steps, although it could bear a much larger pull.
 //!
 //! A bond counts as ended by turning if its contact meets all these conditions:
 //!
-//! * The contact pulled with less than the cohesion force C₀, so its law required the formal velocity v̄_n = 0.
+//! * The contact pulled with less than the cohesion force C₀. So its law required that the formal velocity v̄_n (a mean
+//!   of the normal velocities after and before the step, weighted by restitution) is 0.
 //! * The normal velocity alone would not have opened the contact: gap + Δt·v_n is below the touch tolerance.
 //! * After the step the gap is not below the touch tolerance.
 //!
@@ -20,7 +21,8 @@ use crate::sim::stepping::Stage;
 use crate::sim::touch_tolerance::touch_tolerance;
 use crate::solver::{Model, for_each_row};
 
-/// Returns the number of bonds that ended because their pairs turned, in a solved step after the grains have moved.
+/// Returns the number of bonds that ended because their pairs of grains turned, in a solved step after the grains have
+/// moved.
 pub(super) fn count<M: Model>(stage: &Stage<'_, M>, settings: &Settings) -> u64 {
     let Stage { state, problem, .. } = stage;
     let tolerance = touch_tolerance(state, settings).max(state.candidates.gap_tolerance());
@@ -40,14 +42,14 @@ pub(super) fn count<M: Model>(stage: &Stage<'_, M>, settings: &Settings) -> u64 
     ended
 }
 
-/// True if a contact pulls with less than its cohesion. `reduced_impulse` and `capture_speed` are impulses divided by
-/// the effective mass, m/s.
+/// True if a contact pulls, but with less than its cohesion force. `reduced_impulse` is its normal impulse and
+/// `capture_speed` the impulse of cohesion in the step, both divided by the effective mass, m/s.
 pub(super) fn is_within_bounds(reduced_impulse: f64, capture_speed: f64) -> bool {
     reduced_impulse < 0.0 && reduced_impulse > -capture_speed
 }
 
-/// True if the gap of a pair is not below the touch tolerance (m), although the gap predicted from its normal velocity
-/// (`expected`, m) is below it.
+/// True if the present gap of a pair is not below the touch tolerance `tolerance` (m), although the gap predicted from
+/// its normal velocity (`expected`, m) is below the touch tolerance.
 pub(super) fn is_open_against(
     state: &State,
     contact: &Contact,

@@ -41,16 +41,18 @@ use crate::contact::{Candidates, Contact, Numbering, Other};
 use crate::solver::{DrivenBy, DrivenWall, Surface};
 use crate::world::{Boundary, Carry, RigidVelocity, World};
 
-/// Marks a body that no moving wall carries.
+/// Entry for a body that does not belong to a moving wall.
 const NONE: u32 = u32::MAX;
 
-/// Moving bodies of the present step. The vectors keep their memory between steps.
+/// Moving walls of the present step: boundaries and fixed discs with a motion, and pistons. The vectors keep their
+/// memory between steps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Walls {
     moving: Vec<Wall>,
-    /// Length of the step, or of its substeps, s.
+    /// Length of the step or, if the stepper detects contacts in each substep, of a substep, s.
     secs: f64,
-    /// Index in `moving` for each boundary, each fixed disc, and each feature (part of a boundary), or [`NONE`].
+    /// For each boundary: index of its wall in `moving`, or [`NONE`]. The next two fields contain the same for each
+    /// fixed disc and for each feature (part of a boundary).
     of_boundary: Vec<u32>,
     of_disc: Vec<u32>,
     of_feature: Vec<u32>,
@@ -62,29 +64,29 @@ pub(crate) struct Walls {
 struct Wall {
     mover: Mover,
     velocity: RigidVelocity,
-    /// Velocity of the wall at the beginning of the step.
+    /// Velocity that the wall has just before the step. Restitution and shocks are relative to it.
     before: RigidVelocity,
     /// Additional speed of the surface along its tangent, m/s, as of a conveyor belt.
     surface_speed: f64,
     driver: Option<Driver>,
 }
 
-/// Drive that moves a wall by a force.
+/// Data on a wall that a force drives.
 #[derive(Clone, Copy, Debug)]
 struct Driver {
-    /// Index of the drive among all drives.
+    /// Index of this wall among all walls that a force drives.
     number: u32,
     axis: DVec2,
-    /// Velocity that the wall's prescribed course adds to the velocity along the drive, m/s.
+    /// Velocity of the wall's prescribed motion, m/s, to which its speed along the driving force is added.
     course: DVec2,
 }
 
 /// Source of a wall's motion.
 #[derive(Clone, Copy, Debug)]
 enum Mover {
-    /// The boundary with this index moves by itself, as a piston.
+    /// The boundary with this index moves without an entry in the list of motions, as a piston does.
     Boundary(usize),
-    /// The motion with this index in the world's list moves the wall.
+    /// The motion with this index in the world's list of motions moves the wall.
     Motion(usize),
 }
 
@@ -154,7 +156,7 @@ impl Walls {
         !self.moving.is_empty()
     }
 
-    /// Divides the step length by the number of substeps, for a stepper that detects contacts in each substep.
+    /// Changes the length of the step to that of a substep, for a stepper that detects contacts in each substep.
     pub(crate) fn divide(&mut self, substeps: u32) {
         self.secs /= f64::from(substeps);
     }
@@ -187,14 +189,14 @@ impl Walls {
         of_discs.chain(of_features).fold(fastest, f64::max)
     }
 
-    /// Returns the motion of the surface that a contact's grain touches; `None` if the other body does not move as a
+    /// Returns the motion of the surface that a contact's grain touches; `None` if the grain does not touch a moving
     /// wall.
     #[inline]
     pub(crate) fn surface(&self, world: &World, contact: &Contact) -> Option<Surface> {
         self.surface_at(world, contact, world.grains.positions[contact.grain as usize])
     }
 
-    /// Like [`surface`](Self::surface), with the grain's centre at `centre`, m, instead of its present position.
+    /// Like [`surface`](Self::surface), for a grain with its centre at `centre`, m, instead of at its present position.
     pub(crate) fn surface_at(
         &self,
         world: &World,
@@ -271,14 +273,14 @@ impl Walls {
     }
 
     /// Returns the velocity of the surface that a contact's grain touches, along the normal n and the tangent t, m/s;
-    /// zero if the other body does not move as a wall.
+    /// zero if the grain does not touch a moving wall.
     #[inline]
     pub(crate) fn velocity(&self, world: &World, contact: &Contact) -> [f64; 2] {
         let surface = self.surface(world, contact);
         surface.map_or([0.0; 2], |surface| surface.along(contact.normal))
     }
 
-    /// Moves the walls for `secs` (s), and advances the clocks of all motions.
+    /// Moves the walls for `secs` (s), and advances the elapsed times of all prescribed motions.
     pub(crate) fn advance(&self, world: &mut World, candidates: &mut Candidates, secs: f64) {
         let carries: Vec<Carry> =
             self.moving.iter().map(|wall| wall.velocity.carry(secs)).collect();
@@ -340,7 +342,7 @@ impl Wall {
     }
 
     /// Returns the velocities of a turning wall's surface at the contact, m/s: the mean over the step, and the velocity
-    /// at its beginning. The head of this file derives them.
+    /// just before the step. The comment at the top of this file derives them.
     fn velocities_at(&self, touching: &TouchedPlace<'_>, spin: f64, secs: f64) -> [DVec2; 2] {
         let TouchedPlace { centre, radius, velocity, contact, round_disc } = *touching;
         let (normal, tangent) = (contact.normal, contact.normal.perp());
@@ -363,7 +365,7 @@ impl Wall {
         [along(there, -turning, now.spin), along(there_before, turning, before.spin)]
     }
 
-    /// True if this wall moves the boundary only along the boundary's normal.
+    /// True if this wall moves `boundary`, one of its boundaries, only along the boundary's normal.
     fn pushes(&self, world: &World, boundary: &Boundary) -> bool {
         self.surface_speed == 0.0
             && match self.mover {

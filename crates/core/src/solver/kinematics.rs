@@ -1,20 +1,23 @@
-//! Motion of a body in a scene, and its response to the two impulses of a contact.
+//! Relative velocity of the two bodies of a contact, and the response of the bodies to the contact's two impulses.
 //!
-//! A contact of bodies i and j has the unit normal n and the unit tangent t. Sweeps work with **reduced impulses**
-//! λ = P/m_ij (m/s), impulse divided by effective mass: λ_n is the change of the contact's normal velocity that the
-//! normal impulse makes. Spin is stored as s = r·ω, radius times angular velocity (m/s). With these variables and
-//! I = ½mr² of a solid disc, the update of a contact needs no radius, and only one ratio of masses,
-//! g_i = m_ij/m_i = m_j/(m_i + m_j) (for body j it is 1 − g_i):
+//! A contact of bodies i and j has the unit normal n (from j to i), the unit tangent t, and the effective mass m_ij
+//! with 1/m_ij = 1/m_i + 1/m_j. Sweeps (visits of every contact by a solver) work with **reduced impulses** λ = P/m_ij
+//! (m/s), impulse divided by effective mass: λ_n is the change of the contact's normal velocity due to the normal
+//! impulse. Spin is stored as s = r·ω, radius times angular velocity (m/s). With these variables and I = ½mr² of a
+//! solid disc, the update of a contact needs no radius, and only one ratio of masses, g_i = m_ij/m_i = m_j/(m_i + m_j)
+//! (for body j it is 1 − g_i):
 //!
 //! > v_n = n·(v_i − v_j),  v_t = t·(v_i − v_j) − s_i − s_j,
 //! > Δv_i = g_i (λ_n n + λ_t t),  Δv_j = −(1 − g_i)(λ_n n + λ_t t),
 //! > Δs_i = −(r_i²/I_i) m_ij λ_t = −2 g_i λ_t,  Δs_j = −2 (1 − g_i) λ_t,
 //!
 //! so that λ_n changes v_n by λ_n, and λ_t changes v_t by λ_t (1 + 2) = 3 λ_t. The ratio m_n/m_t of the effective
-//! masses along n and t is 3, or 1 without rotation. Against a fixed body g_i = 1.
+//! masses along n and t is 3, or 1 without rotation. At a contact with a fixed body (disc or wall that is not a grain)
+//! g_i = 1.
 //!
-//! **Between borders that shear** (`world::periodic`) the image of j that is nearest to i moves with the velocity
-//! v_j + (w, 0). The contact laws use the velocity of i relative to that image:
+//! **Periodic borders that shear** (`world::periodic`) move the copies (images) of grains beyond a border relative to
+//! the grains. The image of j that is nearest to i has the velocity v_j + (w, 0). The contact laws use the velocity of
+//! i relative to that image:
 //!
 //! > v_n = n·(v_i − v_j) − n_x w,  v_t = t·(v_i − v_j) + n_y w − s_i − s_j.
 //!
@@ -29,25 +32,28 @@ use glam::DVec2;
 use crate::contact::{Contact, Lanes};
 use crate::world::World;
 
-/// The mechanics that a step computes: axes, friction, rotation and rolling. All of this is fixed at compile time, so a
-/// smaller model has no branches for the mechanics that it leaves out.
+/// The variant of the mechanics that a step computes: the number of space dimensions, and whether contacts have
+/// friction and rolling resistance and grains rotate. All of this is fixed at compile time, so a simpler variant has no
+/// branches for the mechanics that it leaves out.
 ///
 /// Cohesion and the friction cone are not part of the model, because they only change numbers of the contact law
 /// (`contact::law`).
 pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
-    /// The velocity of a body as a sweep stores it; with several SIMD lanes, one body per lane.
+    /// The velocity of a body in the form that the solver stores; with several SIMD lanes, the velocities of one body
+    /// per lane.
     type Body<T: Lanes>: Copy + Send + Sync + Debug + 'static;
-    /// The unit normal of a contact as a sweep stores it.
+    /// The unit normal of a contact in the form that the solver stores; with several SIMD lanes, one normal per lane.
     type Normal<T: Lanes>: Copy + Send + Sync + Debug + 'static;
     /// Number of space dimensions.
     const AXES: usize;
-    /// True if contacts transmit tangential impulses.
+    /// True if contacts have tangential (friction) impulses.
     const FRICTION: bool;
-    /// True if grains turn.
+    /// True if grains can rotate.
     const ROTATION: bool;
-    /// True if contacts may resist rolling (`problem::rolling`).
+    /// True if contacts can have rolling resistance (`problem::rolling`).
     const ROLLING: bool = false;
-    /// True if images of grains beyond a sheared periodic border move relative to the grains themselves.
+    /// True if periodic borders can shear: the copies (images) of grains beyond a border then move relative to the
+    /// grains.
     const SLIDES: bool = false;
     /// The ratio m_n / m_t of a contact's effective masses along normal and tangent, the same for every contact of
     /// solid discs.
@@ -55,25 +61,26 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
 
     /// Number of degrees of freedom of a body.
     const DEGREES: usize;
-    /// Inertia of each degree of freedom divided by the body's mass. The coordinate of rotation is s = rω, so
-    /// ½Iω² = ½(m/2)s².
+    /// Inertia of each degree of freedom divided by the body's mass. The coordinate of rotation is s = rω, so its entry
+    /// is ½: ½Iω² = ½(m/2)s².
     const INERTIA_OVER_MASS: [f64; 3];
 
     /// Returns the velocity of grain `index` of a world.
     fn body(world: &World, index: usize) -> Self::Body<f64>;
     /// Writes a body's velocity back to grain `index` of a world.
     fn store(body: &Self::Body<f64>, world: &mut World, index: usize);
-    /// Returns the velocity of grain `index` after gravity has acted for `time_step_secs` at the grain's present
-    /// position.
+    /// Returns the velocity of grain `index`, now `body`, after gravity has acted for `time_step_secs` at the grain's
+    /// present position.
     fn accelerated(
         body: &Self::Body<f64>,
         world: &World,
         index: usize,
         time_step_secs: f64,
     ) -> Self::Body<f64>;
-    /// Returns a unit normal in the form that a sweep stores, from its x and y components.
+    /// Returns a unit normal in the form that the solver stores, from its x and y components.
     fn normal<T: Lanes>(normal: [T; 2]) -> Self::Normal<T>;
-    /// Returns the unit normal of a contact in a world, with the slide velocity of the periodic image of body j.
+    /// Returns the unit normal of a contact, together with the slide velocity of the periodic image of body j: its
+    /// velocity relative to j, which is not 0 if the pair meets across a border that shears.
     #[inline(always)]
     fn normal_of(world: &World, contact: &Contact) -> Self::Normal<f64> {
         let normal = Self::normal(contact.normal.to_array());
@@ -83,18 +90,20 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
             false => normal,
         }
     }
-    /// Adds the slide velocity of the periodic image of body j, m/s along x, to a stored normal, if images slide in
-    /// this model.
+    /// Adds the slide velocity of the periodic image of body j (its velocity relative to j, m/s along x) to a stored
+    /// normal, if the model has borders that shear.
     #[inline(always)]
     fn sliding(normal: Self::Normal<f64>, _slide: f64) -> Self::Normal<f64> {
         normal
     }
-    /// Returns the slide velocity of the periodic image of body j, which is stored with the normal, m/s along x.
+    /// Returns the slide velocity that is stored with the normal, m/s along x: the velocity of the periodic image of
+    /// body j relative to j.
     #[inline(always)]
     fn slide(_normal: Self::Normal<f64>) -> f64 {
         0.0
     }
-    /// Returns the contributions of the slide velocity to v_n and v_t of a contact, m/s, which must be subtracted.
+    /// Returns the normal and tangential components of the slide velocity, (n_x w, −n_y w), m/s. Subtracted from the
+    /// velocity relative to body j they give the velocity (v_n, v_t) relative to the periodic image of j.
     #[inline(always)]
     fn slide_along(normal: Self::Normal<f64>) -> [f64; 2] {
         let [x, y] = Self::components(normal);
@@ -126,8 +135,8 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
         reduced_impulse: [T; 2],
         share: T,
     );
-    /// Applies the impulses λ_n and λ_t of a contact, divided by its effective mass (m/s), to body i, which touches a
-    /// fixed body.
+    /// Applies the impulses λ_n and λ_t of a contact, divided by its effective mass (m/s), to body i. The other body of
+    /// the contact is fixed.
     fn push_single<T: Lanes>(
         i: &mut Self::Body<T>,
         normal: Self::Normal<T>,
@@ -135,12 +144,13 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     );
     /// Returns the kinetic energy, J, of a body of `mass` (kg).
     fn kinetic_energy(body: &Self::Body<f64>, mass: f64) -> f64;
-    /// Returns the velocity of a body as numbers, m/s, one per degree of freedom; further entries are not used.
+    /// Returns the velocity of a body as numbers, m/s, one per degree of freedom (a rotation as radius times angular
+    /// velocity); further entries are not used.
     fn coordinates<T: Lanes>(body: &Self::Body<T>) -> [T; 3];
     /// Returns the body whose velocity has these coordinates, m/s.
     fn from_coordinates<T: Lanes>(coordinates: [T; 3]) -> Self::Body<T>;
-    /// Sets the velocity coordinates of a body, m/s. Entries that are not degrees of freedom of the model stay
-    /// unchanged.
+    /// Sets the velocity of a body from its coordinates, m/s, one per degree of freedom of the model. Further entries
+    /// of `coordinates` are ignored.
     fn set(body: &mut Self::Body<f64>, coordinates: [f64; 3]);
     /// Returns the derivatives of a contact's (v_n, v_t) by the velocity coordinates of body i, then of body j:
     /// v_n = Σ \[body\]\[0\]·coordinates, v_t = Σ \[body\]\[1\]·coordinates.
@@ -285,21 +295,22 @@ pub struct SpinningPlane;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RollingPlane;
 
-/// Model with two axes, friction, rotation, and sheared periodic borders, beyond which the images of grains slide.
-/// Friction and rolling resistance may be 0.
+/// Model with two axes, friction, rotation, and periodic borders that shear, so that the copies (images) of grains
+/// beyond a border move relative to the grains. Friction and rolling resistance may be 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShearedPlane;
 
-/// The unit normal of a contact, with the slide velocity of the periodic image of body j.
+/// The unit normal of a contact, with the velocity of the periodic image of body j relative to j.
 #[derive(Clone, Copy, Debug)]
 pub struct SlidingNormal<T> {
     /// Unit normal n, from body j to body i.
     pub normal: [T; 2],
-    /// Slide velocity w of the periodic image of body j, m/s along x; 0 if the pair meets inside the periodic cell.
+    /// Slide velocity w, m/s along x: the velocity of the periodic image of body j relative to j; 0 if the pair meets
+    /// inside the periodic cell.
     pub slide: T,
 }
 
-/// Implements [`Model`] for a kind of motion in the plane. `own` contains the items that only this model has.
+/// Implements [`Model`] for a variant of the mechanics in the plane. `own` contains the items that only this model has.
 macro_rules! plane_model {
     ($name:ident, $normal:ty, |$of:ident| $packed:expr, $along_axes:expr, friction: $friction:literal, rotation: $rotation:literal, own: { $($own:item)* }) => {
         impl Model for $name {

@@ -3,7 +3,8 @@
 use crate::setting::words;
 
 words! {
-    /// A method that finds the impulses of a step, with its name on the command line, in scene files and in panels.
+    /// A method that finds the impulses of a step, with its name on the command line, in scene files and in the panels
+    /// of the user interface.
     pub enum Method {
         Nsgs = "nsgs", "non-linear Gauss-Seidel: one contact after the other, exact for each";
         NsgsParallel = "nsgs-parallel",
@@ -47,14 +48,14 @@ pub struct MethodInfo {
     pub solves: &'static str,
     /// The publication or other source of the method.
     pub source: &'static str,
-    /// The order in which the method visits the contacts.
+    /// The order in which a sweep of the method visits the contacts.
     pub order: MethodOrder,
     /// True if the method also supports friction models other than Coulomb's law.
     pub takes_models: bool,
     /// True if the method supports walls that a force drives.
     pub takes_drives: bool,
-    /// True if the method supports periodic borders that shear, beyond which the images of grains move relative to the
-    /// grains.
+    /// True if the method supports periodic borders that shear, so that the copies (images) of grains beyond a border
+    /// move relative to the grains.
     pub takes_shear: bool,
     /// True if the method supports pairs of materials with their own contact laws.
     pub takes_pairs: bool,
@@ -74,7 +75,8 @@ pub enum MethodOrder {
 }
 
 impl MethodOrder {
-    /// Returns the order in which a problem's rows are sorted for the method if the settings name the order `asked`.
+    /// Returns the order in which the contacts of a problem are sorted for the method. `asked` is the order that the
+    /// settings name.
     pub(crate) fn of_rows(self, asked: Ordering) -> Ordering {
         match self {
             Self::Always(needed) => needed,
@@ -83,15 +85,15 @@ impl MethodOrder {
     }
 }
 
-/// Description of the laws that every method satisfies that converges to a zero of the natural map, the measure of
-/// error common to all methods.
+/// Text that describes the contact laws at a zero of the natural map, the measure of error that all methods share.
 const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
-/// Description of the laws that hold at a fixed point of an iteration that recomputes the friction bounds from its own
-/// impulses.
+/// Text that describes the contact laws at a fixed point of an iteration that recomputes the friction bounds from its
+/// own impulses.
 const BOUND_BY_BOUND: &str = "the same, the bound of friction taken anew every iteration";
 
-/// Returns the properties of a method that supports shear and pairs of materials, but neither friction models other
-/// than Coulomb's law nor driven walls nor rolling friction.
+/// Returns the properties of a method that supports periodic borders that shear and pairs of materials with their own
+/// contact laws. The method supports neither friction models other than Coulomb's law nor driven walls nor rolling
+/// friction.
 const fn known(
     method: Method,
     order: MethodOrder,
@@ -211,7 +213,7 @@ impl Method {
         &METHODS[self as usize]
     }
 
-    /// Returns true if the method sweeps in the order that the settings name.
+    /// Returns true if the method visits the contacts in the order that the settings name (`--ordering`).
     pub fn sweeps_in_order(self) -> bool {
         self.info().order == MethodOrder::OfSettings
     }

@@ -1,7 +1,7 @@
 //! The contact problem of one time step, the methods that solve it, and the residual that measures the error of every
 //! method.
 //!
-//! * `kinematics`, `model`: the motion of bodies, and the models (variants of the mechanics) that a step is compiled
+//! * `kinematics`, `model`: velocities at contacts, and the models (variants of the mechanics) that a step is compiled
 //!   for.
 //! * `problem/`: the data of a problem, its set-up and its residual.
 //! * `method`, `settings`: the list of methods, and the accuracy to which a step is to be solved.

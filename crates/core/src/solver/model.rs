@@ -8,26 +8,26 @@ use super::methods::Memory;
 use super::problem::StepProblem;
 use crate::world::{FrictionCone, Parameters, Periodic, Physics};
 
-/// The parts of mechanics that a [`Model`] computes.
+/// The features of the mechanics (friction, rotation, …) that a [`Model`] computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ModelParts {
     /// Number of space dimensions, 1 or 2.
     pub axes: u8,
-    /// True if the periodic borders shear: the images of grains beyond a border then move relative to the grains.
+    /// True if the periodic borders shear: the copies (images) of grains beyond a border then move relative to the
+    /// grains.
     pub sheared: bool,
-    /// True if contacts carry tangential impulses.
+    /// True if contacts have tangential (friction) impulses.
     pub friction: bool,
-    /// True if grains turn. Without friction no contact makes a grain turn.
+    /// True if grains can rotate. Without friction no contact exerts a moment on a grain.
     pub rotation: bool,
-    /// True if contacts resist rolling.
+    /// True if contacts have rolling resistance.
     pub rolling: bool,
 }
 
 impl ModelParts {
-    /// Returns the smallest set of parts that computes everything that the scene has (`physics`, `periodic`) and the
-    /// parameters switch on. `[friction, rolling]` are the largest friction coefficient μ and the largest coefficient
-    /// of rolling friction μ_r of all contacts; a coefficient of 0 switches its part off. A larger set of parts gives
-    /// the same impulses.
+    /// Returns the smallest set of features that is sufficient for a scene (`physics`, `periodic`) and its parameters.
+    /// `[friction, rolling]` are the largest friction coefficient μ and the largest coefficient of rolling friction μ_r
+    /// of all contacts; a feature whose coefficient is 0 is left out. A larger set of features gives the same impulses.
     pub(crate) fn leanest(
         physics: Physics,
         periodic: Option<Periodic>,
@@ -67,7 +67,8 @@ macro_rules! with_model {
     };
 }
 
-/// Returns the friction cone in use. Without cohesion both cones are the same, and the shifted cone is returned.
+/// Returns the friction cone of a scene: shifted (cohesion adds to the normal force that bounds friction) or
+/// compressive. Without cohesion both cones are the same, and the shifted cone is returned.
 pub(crate) fn cone_of(physics: Physics, parameters: &Parameters) -> FrictionCone {
     if physics.cohesion && parameters.bond > 0.0 { parameters.cone } else { FrictionCone::Shifted }
 }
@@ -77,9 +78,9 @@ pub(crate) fn cone_of(physics: Physics, parameters: &Parameters) -> FrictionCone
 pub struct Slot<M: Model> {
     /// The contact problem.
     pub problem: StepProblem<M>,
-    /// Work space for a subset of the problem's rows that is solved separately.
+    /// Work memory for a smaller problem that has some of the contacts of `problem` and is solved separately.
     pub part: StepProblem<M>,
-    /// Data that the methods keep from one solve to the next.
+    /// Work memory of the methods, reused from one solve to the next. It has no effect on results.
     pub memory: Memory,
 }
 
@@ -94,7 +95,7 @@ pub struct Slots {
     sheared_plane: Slot<ShearedPlane>,
 }
 
-/// A model that has a slot in [`Slots`].
+/// A model that has its own [`Slot`] in [`Slots`].
 pub trait Slotted: Model {
     /// Returns the slot of this model.
     fn slot(slots: &mut Slots) -> &mut Slot<Self>;

@@ -1,6 +1,6 @@
 //! Progress reports of long solves to an onlooker: a callback that receives the progress and may end the solve. A
-//! process has at most one onlooker; the command line sets it for a single solve. A solve that the onlooker ends has
-//! not converged. The onlooker has no other effect on results.
+//! process has at most one onlooker; the command line program sets it if it solves a single contact problem. A solve
+//! that the onlooker ends has not converged. The onlooker has no other effect on results.
 
 use std::ops::ControlFlow;
 use std::sync::OnceLock;

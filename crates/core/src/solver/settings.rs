@@ -39,34 +39,34 @@ words! {
 }
 
 impl StopTest {
-    /// Returns true if the test measures the error of the present impulses, and false if it measures their change in a
-    /// sweep.
+    /// Returns true if the stopping test measures the error of the present impulses, and false if it measures their
+    /// change in a sweep.
     pub(crate) fn judges_solutions(self) -> bool {
         matches!(self, Self::Residual | Self::VelocityError)
     }
 }
 
 impl FrictionModel {
-    /// Returns true if the model has numbers that are estimated before a solve, and that a further solve of the same
-    /// step recomputes.
+    /// Returns true if the friction model needs a number per contact (friction bound or opening speed) that is
+    /// estimated before a solve and can be recomputed for a further solve of the same step.
     pub fn is_taken_anew(self) -> bool {
         matches!(self, Self::Tresca | Self::Desaxce)
     }
 
-    /// Returns true if the model allows each contact the impulses of a cone. The cone is always the shifted cone: with
-    /// cohesion the compressive cone is not convex, and its convex hull is the shifted cone.
+    /// Returns true if the friction model allows each contact all impulses inside a cone. The cone is always the
+    /// shifted cone: with cohesion the compressive cone is not convex, and its convex hull is the shifted cone.
     pub(crate) fn is_on_cone(self) -> bool {
         matches!(self, Self::Associated | Self::Desaxce)
     }
 }
 
 settings! {
-    /// Settings of the solver: method, stopping test, limits and friction model. This is plain data, which is checked
-    /// when a simulation is given it.
+    /// Settings of the solver: method, stopping test, limits and friction model. The values are checked when they are
+    /// passed to a simulation.
     ///
-    /// By default each step is solved under Coulomb's law to an estimated velocity error of 1e-4 √(g d), which is too
-    /// small to affect the slump of a pile. A flowing step of thousands of grains ends with a larger error, which is
-    /// reported ([`Measures::velocity_error`](super::Measures)).
+    /// By default each step is solved under Coulomb's law to an estimated velocity error of 1e-4 √(g d) (gravity g,
+    /// mean diameter d), which is too small to affect the slump of a pile. A flowing step of thousands of grains ends
+    /// with a larger error, which is reported ([`Measures::velocity_error`](super::Measures)).
     #[serde(default)]
     pub struct SolverSettings, changes SolverChanges, heading "Solver" {
         method: Method = Method::Auto, "solver" ("NAME"), "Solver of each step", {
@@ -81,7 +81,7 @@ settings! {
             limits", {
             control: shown("Stops on", "The quantity that the tolerance limits."),
         }
-        /// Tolerance of each step, in the unit of the stopping test `stop`.
+        /// Tolerance to which the contact problem of each step is solved, in the unit of the stopping test `stop`.
         tolerance: f64 = 1e-4, "tolerance" ("X"), "Tolerance of each step, in the unit of the stopping test", {
             allowed: "a finite number > 0",
             holds: |value| value > 0.0 && value.is_finite(),
@@ -142,15 +142,16 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 
 impl SolverSettings {
     /// Settings for Gauss–Seidel sweeps until the impulses change by less than 1e-6 of their norm per sweep, the scheme
-    /// of most programs of the field.
+    /// of most programs for Contact Dynamics.
     pub const SWEEPS: Self =
         Self { stop: StopTest::RelativeChange, ..Self::to_residual(Method::Nsgs, 1e-6, 5_000) };
 
     /// The default settings with bounded friction (Tresca), a convex problem that can be solved at any size.
     pub const BOUNDED: Self = Self { friction_model: FrictionModel::Tresca, ..Self::DEFAULT };
 
-    /// The scheme of the paper (A. Abramian, L. Staron, 2020): [`Self::SWEEPS`] with a tolerance of 1e-7, at which the
-    /// conclusions of the paper no longer depend on the solver.
+    /// The scheme of a paper (A. Abramian, L. Staron, *Time Steps v.s. Cohesion in Non-Smooth Contact Dynamics
+    /// Algorithm*, 2020): [`Self::SWEEPS`] with a tolerance of 1e-7, at which the conclusions of the paper no longer
+    /// depend on the solver.
     pub const PAPER: Self = Self { tolerance: 1e-7, ..Self::SWEEPS };
 
     /// Returns settings for a solve under Coulomb's law to a given residual (`tolerance`), regardless of the settings

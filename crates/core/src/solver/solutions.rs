@@ -15,10 +15,10 @@ use super::problem::{StepProblem, measure, residual};
 use super::settings::SolverSettings;
 use super::solve::solve;
 
-/// Maximum number of sweeps of the solve by Newton's method that ends each search.
+/// Maximum number of sweeps of Newton's method, which follows the conjugate gradients in each search.
 const NEWTON_STEPS: u32 = 400;
 
-/// Maximum number of contacts of a problem on which a search ends with Newton's method.
+/// Maximum number of contacts of a problem for which Newton's method follows the conjugate gradients in a search.
 const CONTACTS_FOR_NEWTON: usize = 10_000;
 
 /// Settings of a search for several solutions of one step.
@@ -29,13 +29,13 @@ pub struct SolutionSearch {
     pub starts: u32,
     /// Seed of the random initial impulses.
     pub seed: u64,
-    /// Maximum number of sweeps of each search.
+    /// Maximum number of sweeps of conjugate gradients in each search.
     pub max_sweeps: u32,
     /// The residual, dimensionless, at which a search ends.
     pub tolerance: f64,
 }
 
-/// A solution of a step, found by one or more searches.
+/// A solution of the contact problem of a step, found by one or more searches.
 #[derive(Clone, Debug)]
 pub struct Solution<M: Model> {
     /// The problem with the impulses and velocities of this solution under Coulomb's law.
@@ -50,7 +50,7 @@ pub struct Solution<M: Model> {
 
 impl SolutionSearch {
     /// Runs all searches and returns the distinct solutions. Two results count as one solution if the distance between
-    /// their velocities is at most the sum of their velocity errors.
+    /// their velocities is at most the sum of their estimated velocity errors.
     pub fn find<M: Model>(&self, problem: &StepProblem<M>) -> Vec<Solution<M>> {
         let mut found: Vec<Solution<M>> = Vec::new();
         for start in 0..self.starts {
@@ -71,7 +71,8 @@ impl SolutionSearch {
         found
     }
 
-    /// Runs search number `start` on a copy of the problem and returns its result, which may have missed the tolerance.
+    /// Runs search number `start` on a copy of the problem and returns its result. The residual of the result may be
+    /// above the tolerance.
     pub fn from<M: Model>(&self, problem: &StepProblem<M>, start: u32) -> Solution<M> {
         let mut found = problem.clone();
         found.take_coulombs_law();
@@ -94,7 +95,8 @@ impl SolutionSearch {
         Solution { problem: found, residual: left, velocity_error, starts: vec![start] }
     }
 
-    /// Writes the initial impulses of search number `start` to a problem. Search 0 keeps the present impulses.
+    /// Writes the initial impulses of search number `start` to a problem. Search 0 keeps the present impulses, search 1
+    /// starts from zero impulses, and further searches start from random impulses.
     fn begin<M: Model>(&self, problem: &mut StepProblem<M>, start: u32) {
         if start == 0 {
             return;
@@ -120,8 +122,9 @@ impl SolutionSearch {
     }
 }
 
-/// Returns the distance between the velocities of two solutions of one problem, m/s: the root mean square over the
-/// grains with contacts, weighted by mass. The spin of a grain counts as angular velocity times radius of gyration.
+/// Returns the distance between the velocities of two solutions of one problem, m/s: the root mean square of the
+/// velocity difference over the grains with contacts, weighted by mass. The spin of a grain counts as angular velocity
+/// times radius of gyration.
 pub fn velocity_distance<M: Model>(one: &StepProblem<M>, other: &StepProblem<M>) -> f64 {
     distance_to_velocities(one, &velocities(other))
 }

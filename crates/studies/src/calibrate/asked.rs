@@ -11,7 +11,7 @@ use crate::setting::Value;
 pub(super) struct Target {
     pub quantity: BudgetQuantity,
     pub value: f64,
-    /// Standard error of the measured value, above 0.
+    /// Standard error of the measured value, in the unit of the quantity; above 0.
     pub error: f64,
 }
 
@@ -34,9 +34,9 @@ impl FromStr for Target {
     }
 }
 
-/// A parameter to vary, with its range.
+/// A parameter of the scene that a calibration varies, with its range.
 pub(super) struct Varied {
-    /// Name of the parameter in files.
+    /// Name of the parameter as written in study files, which can differ from the name of the command-line option.
     pub name: String,
     pub range: [f64; 2],
 }

@@ -1,6 +1,6 @@
-//! Calibrates a scene: finds the parameters with which the scene reproduces measured values. Runs fill the box of the
-//! varied parameters evenly, each run from its own initial state. Polynomials fitted to the results of these runs give
-//! a confidence region of the parameters.
+//! Calibrates a scene: finds the parameters with which the scene reproduces measured values. The parameter values of
+//! the runs fill the ranges of the varied parameters evenly, and each run has its own initial state. Polynomials fitted
+//! to the results of these runs give a confidence region of the parameters.
 
 mod asked;
 mod region;
@@ -26,14 +26,15 @@ use crate::statistics::mean;
 
 /// Name of the journal that stores the runs of a calibration.
 const JOURNAL: &str = "calibrate";
-/// Default number of runs per coefficient of a cubic polynomial in the varied parameters.
+/// Default number of runs of a calibration, per coefficient of a cubic polynomial in the varied parameters.
 const RUNS_PER_COEFFICIENT: usize = 10;
 /// Largest allowed numbers of varied parameters and of runs. Larger numbers are probably a mistake.
 const MOST: [usize; 2] = [4, 100_000];
-/// Number of initial states from which the effects of the time step and of the solver are measured.
+/// Number of initial states from which the calibrated scene is run with and without a change of the time step or the
+/// solver, to measure the effect of the change.
 const PAIRS: usize = 6;
 
-/// Options of a calibration.
+/// Options of a calibration, which finds the parameters with which a scene reproduces measured values.
 #[derive(Clone, Debug)]
 pub struct CalibrateOptions {
     /// Scene to calibrate, with its settings. Its seed, 1 by default, is the seed of the first run. Further runs use
@@ -47,8 +48,8 @@ pub struct CalibrateOptions {
     pub runs: Option<usize>,
 }
 
-/// Setup of one run: the initial states of the scene, the number of the initial state to use, a change of the numerical
-/// method (if any), and the window of time in which results are evaluated.
+/// Setup of one run: the initial states of the scene, the number of the initial state of this run, a change of the
+/// numerical method (if any), and the interval of simulated time in which results are evaluated.
 type Setup = (Starts, u64, Option<Variant>, Window);
 
 /// Calibrates a scene, and writes `report.md` and a picture of the confidence region to `folder`. The same call resumes

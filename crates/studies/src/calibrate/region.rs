@@ -1,33 +1,34 @@
-//! Computes the confidence region of a calibration: the points in the box of the varied parameters that agree with the
-//! measured targets.
+//! Computes the confidence region of a calibration: the values of the varied parameters, within their ranges, with
+//! which the scene agrees with the measured targets. The ranges form a box, and a point of the box has one value per
+//! parameter.
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use super::surrogate::{Surrogate, inverted, times};
 
-/// Confidence level of the region.
+/// Confidence level of the region of parameters that agree with the measured targets.
 const CONFIDENCE: f64 = 0.9;
-/// Number of points that fill the box of the varied parameters evenly. With this number, the fraction of the box that
-/// belongs to the region has an error of about 0.1 %.
+/// Number of points that fill the ranges of the varied parameters evenly, to find the confidence region. With this
+/// number, the fraction of the points that belong to the region has an error of about 0.1 %.
 const POINTS: usize = 16_384;
 
-/// A confidence region of parameters. It consists of the points at which Hotelling's T² of the differences between the
-/// fitted polynomials and the targets is below a limit. The covariance in T² is the sum of the covariances of the
-/// polynomials and of the targets.
+/// A confidence region of parameters. It consists of the parameter values at which Hotelling's T² of the differences
+/// between predicted results and measured targets is below a limit. Polynomials fitted to runs predict the results. The
+/// covariance in T² is the sum of the covariances of the predictions and of the targets.
 #[derive(Clone, Debug)]
 pub struct Region {
     space: Vec<[f64; 2]>,
     targets: Vec<[f64; 2]>,
     pub(super) surrogate: Surrogate,
     limit: f64,
-    /// Points that fill the box, each with its [`Region::misfit`].
+    /// Points (parameter values) that fill the ranges of the parameters evenly, each with its [`Region::misfit`].
     pub(super) points: Vec<(Vec<f64>, f64)>,
 }
 
 impl Region {
-    /// Computes the region in a box. `space` contains the range of each parameter, `targets` the value and the standard
-    /// error of each target. Each run has a point of the box in `points`, and a list in `results` that begins with the
-    /// quantities of the targets. Returns `None` if there are too few runs.
+    /// Computes the confidence region. `space` contains the range of each parameter, `targets` the measured value and
+    /// the standard error of each target. `points` contains the parameter values of each run, and `results` the results
+    /// of each run, which begin with the quantities of the targets. Returns `None` if there are too few runs.
     pub fn new(
         space: &[[f64; 2]],
         targets: &[[f64; 2]],
@@ -51,8 +52,8 @@ impl Region {
         Some(region)
     }
 
-    /// Returns T² (Hotelling's measure of disagreement with the targets) of a point, divided by the limit of T²: at
-    /// most 1 in the region.
+    /// Returns Hotelling's T², a measure of the disagreement between predicted results and targets, for the parameter
+    /// values `point`, divided by its limit. The value is at most 1 in the confidence region.
     pub fn misfit(&self, point: &[f64]) -> f64 {
         let place = place_of(&self.space, point);
         let values = self.surrogate.values(&place);
@@ -71,31 +72,32 @@ impl Region {
         self.points.iter().filter(|(_, misfit)| *misfit <= 1.0).map(|(point, _)| &**point)
     }
 
-    /// Returns the fraction of the box that belongs to the region.
+    /// Returns the volume of the confidence region, as a fraction of the volume of all allowed parameter values.
     pub fn share(&self) -> f64 {
         self.inside().count() as f64 / POINTS as f64
     }
 
-    /// Returns the point of the box that agrees best with the targets.
+    /// Returns the parameter values with which the scene agrees best with the measured targets.
     pub fn best(&self) -> &[f64] {
         let best = self.points.iter().min_by(|(_, one), (_, other)| one.total_cmp(other));
         best.map_or(&[], |(point, _)| point)
     }
 
-    /// Returns the least and the largest value of a parameter in the region; NaN if the region is empty.
+    /// Returns the least and the largest value of a parameter in the confidence region; NaN if the region is empty.
     pub(super) fn range(&self, parameter: usize) -> [f64; 2] {
         let values = || self.inside().map(|point| point[parameter]);
         [f64::min, f64::max].map(|best| values().fold(f64::NAN, best))
     }
 
-    /// Returns the fitted value of a result at a point, and the standard error of this value.
+    /// Returns the value of a result that the fitted polynomial predicts for the parameter values `point`, and the
+    /// standard error of this value.
     pub(super) fn value(&self, point: &[f64], result: usize) -> [f64; 2] {
         let place = place_of(&self.space, point);
         let variance = self.surrogate.covariance(&place, result + 1)[result][result];
         [self.surrogate.values(&place)[result], variance.sqrt()]
     }
 
-    /// Returns the standard deviation of a fitted result over the region.
+    /// Returns the standard deviation of the predicted values of a result over all points of the confidence region.
     pub(super) fn spread(&self, result: usize) -> f64 {
         let value = |point| self.surrogate.values(&place_of(&self.space, point))[result];
         let values: Vec<f64> = self.inside().map(value).collect();
@@ -103,16 +105,16 @@ impl Region {
     }
 }
 
-/// Converts a point of the box (values of the varied parameters) into a place in the cube from −1 to 1, in which the
-/// polynomials are defined.
+/// Scales the values of the varied parameters so that the range of each parameter becomes −1 to 1. The fitted
+/// polynomials are functions of these scaled parameters.
 fn place_of(space: &[[f64; 2]], point: &[f64]) -> Vec<f64> {
     let place = |([from, to], x): (&[f64; 2], &f64)| 2.0 * (x - from) / (to - from) - 1.0;
     space.iter().zip(point).map(place).collect()
 }
 
-/// Returns point number `number` of a sequence that fills the box evenly, however many points are taken: multiples of
-/// powers of 1/φ modulo 1, with the generalised golden ratio φ (M. Roberts, "The Unreasonable Effectiveness of
-/// Quasirandom Sequences", 2018).
+/// Returns point number `number` of a sequence of parameter values that fills the ranges in `space` evenly, however
+/// many points are taken. Within its range, each value is a multiple of a power of 1/φ modulo 1, with the generalised
+/// golden ratio φ (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
 pub(super) fn point_of_box(space: &[[f64; 2]], number: usize) -> Vec<f64> {
     let root = 1.0 / (space.len() + 1) as f64;
     let ratio = (0..60).fold(2.0, |ratio: f64, _| (1.0 + ratio).powf(root));

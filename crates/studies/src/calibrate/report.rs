@@ -1,4 +1,4 @@
-//! Writes the files of a calibration: the answer in words and tables, and a picture of the confidence region.
+//! Writes the files of a calibration: a report in words and tables, and a picture of the confidence region.
 
 use std::path::Path;
 
@@ -12,11 +12,12 @@ use crate::output::write_file;
 use crate::statistics::Mean;
 
 pub(super) const REPORT: &str = "report.md";
-/// Number of cells along each axis of the picture.
+/// Number of cells along each axis of the map of the confidence region.
 const CELLS: usize = 40;
 /// Number of further quantities that the report recommends to measure, because they would narrow the region most.
 const MOST_SEPARATING: usize = 3;
-/// Distance from an end of a parameter's range, as a fraction of the range, within which the region reaches the end.
+/// Largest distance between the confidence region and an end of a parameter's range at which the report says that the
+/// region reaches this end, as a fraction of the range.
 const NEAR: f64 = 0.01;
 
 /// The result of a calibration, as the report needs it.
@@ -24,18 +25,19 @@ pub(super) struct Found<'a> {
     pub command: String,
     pub targets: &'a [Target],
     pub vary: &'a [Varied],
-    /// Points of all runs that gave a value of each target.
+    /// Parameter values of each run that gave a value for every target.
     pub points: &'a [Vec<f64>],
-    /// Number of all runs, also of those that failed.
+    /// Number of all runs, including failed runs.
     pub count: usize,
     pub region: &'a Region,
-    /// Effects of changes of the numerical method at the best point: the target, the change, and the mean difference.
+    /// Effects of changes of the numerical method on the targets, with the best parameter values: the name of the
+    /// target, the change, and the mean difference.
     pub effects: Vec<(String, String, Mean)>,
-    /// Quantities of the results in the region. The quantities of the targets come first.
+    /// Quantities that the runs recorded and `region` predicts. The quantities of the targets come first.
     pub quantities: &'a [&'a BudgetQuantity],
 }
 
-/// Writes all files of a calibration and returns the answer in words.
+/// Writes all files of a calibration, and returns the text of the report without its heading and picture.
 pub(super) fn write(found: &Found<'_>, folder: &Path) -> Result<String> {
     let Found { command, targets, vary, points, count, region, .. } = found;
     let best = region.best();
@@ -107,14 +109,16 @@ pub(super) fn write(found: &Found<'_>, folder: &Path) -> Result<String> {
     Ok(text)
 }
 
-/// Returns the colour of a cell of the map. The colour is darker if more of the cell belongs to the region.
+/// Returns the colour of a cell in the map of the confidence region. `fraction` is the fraction of the cell that
+/// belongs to the region. A larger fraction gives a darker colour.
 fn colour(fraction: f64) -> Rgb {
     let (red, green, blue) = PALETTE[1];
     let mix = |end: u8| (255.0 - (255.0 - f64::from(end)) * (0.25 + 0.75 * fraction)).round() as u8;
     (mix(red), mix(green), mix(blue))
 }
 
-/// Draws a map of the region for each pair of parameters. A single parameter is drawn against itself.
+/// Draws a map of the confidence region for each pair of varied parameters. If only one parameter is varied, it is on
+/// both axes.
 fn sheet(found: &Found<'_>) -> Sheet {
     let last = found.vary.len() - 1;
     let pairs = (0..=last).flat_map(|y| (0..y.max(usize::from(last == 0))).map(move |x| (x, y)));

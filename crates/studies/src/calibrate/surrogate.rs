@@ -1,18 +1,19 @@
 //! Fits a surrogate model, which predicts the results of runs: polynomials in the varied parameters, by least squares,
 //! with the covariance of their values.
 
-/// Number of runs per coefficient from which on the polynomials are cubic instead of quadratic. With fewer runs, the
-/// random scatter of a cubic polynomial is larger than the error of a quadratic polynomial (measured for the slump of
-/// small piles).
+/// Number of runs per coefficient of a cubic polynomial, at and above which the fitted polynomials are cubic instead of
+/// quadratic. With fewer runs, the random scatter of a cubic polynomial is larger than the error of a quadratic
+/// polynomial (measured for the slump of small piles).
 const RUNS_PER_COEFFICIENT: usize = 6;
 
-/// Polynomials for several results of the same runs. The parameters are scaled to places in the cube from −1 to 1.
+/// Polynomials that predict several results of a run from its parameters. The parameters are scaled so that each range
+/// becomes −1 to 1; such scaled parameters are called a place.
 #[derive(Clone, Debug)]
 pub(super) struct Surrogate {
     degree: usize,
-    /// Values of the basis functions for each run: the rows of a matrix X.
+    /// Values of the basis functions (products of Legendre polynomials) for each run: the rows of a matrix X.
     rows: Vec<Vec<f64>>,
-    /// The matrix (XᵀX)⁻¹, with the matrix X of the basis functions.
+    /// The matrix (XᵀX)⁻¹, where X has one row per run and one column per basis function.
     inverse: Vec<Vec<f64>>,
     /// Coefficients of the polynomial of each result.
     coefficients: Vec<Vec<f64>>,
@@ -27,8 +28,8 @@ pub(super) fn coefficients(parameters: usize, degree: usize) -> usize {
 }
 
 impl Surrogate {
-    /// Fits polynomials to the results of runs at these places of the cube from −1 to 1. Returns `None` if there are
-    /// too few different places.
+    /// Fits polynomials to the results of runs. `places` contains the parameters of each run, scaled to −1 … 1. Returns
+    /// `None` if too few runs have different parameters.
     pub(super) fn fit(places: &[Vec<f64>], results: &[Vec<f64>]) -> Option<Self> {
         let parameters = places.first()?.len();
         let is_cubic = places.len() >= RUNS_PER_COEFFICIENT * coefficients(parameters, 3);
@@ -65,15 +66,16 @@ impl Surrogate {
         self.degree
     }
 
-    /// Returns the values of all polynomials at a place.
+    /// Returns the results that the polynomials predict at a place (parameters scaled to −1 … 1).
     pub(super) fn values(&self, place: &[f64]) -> Vec<f64> {
         let row = basis(place, self.degree);
         self.coefficients.iter().map(|fit| dot(fit, &row)).collect()
     }
 
-    /// Returns the covariance of the first `count` results at a place: the sum of w² e eᵀ over the runs, with the
-    /// weight w of a run in the value at the place and its vector e of residuals. This formula does not assume that the
-    /// results scatter equally at all places (HC3: J. G. MacKinnon, H. White, J. Econometrics 29, 305, 1985).
+    /// Returns the covariance of the first `count` predicted results at a place (parameters scaled to −1 … 1): the sum
+    /// of w² e eᵀ over the runs, with the weight w of a run in the predicted value and its vector e of residuals. This
+    /// formula does not assume that the results scatter equally at all places (HC3: J. G. MacKinnon, H. White, J.
+    /// Econometrics 29, 305, 1985).
     pub(super) fn covariance(&self, place: &[f64], count: usize) -> Vec<Vec<f64>> {
         let direction = times(&self.inverse, &basis(place, self.degree));
         let mut sums = vec![vec![0.0; count]; count];
@@ -88,15 +90,16 @@ impl Surrogate {
         sums
     }
 
-    /// Returns the root mean square error with which the fit to all other runs predicts a result of one run.
+    /// Returns the root mean square of the errors that arise if a result of each run is predicted by the fit to all
+    /// other runs.
     pub(super) fn scatter(&self, result: usize) -> f64 {
         let squares = self.residuals.iter().map(|residuals| residuals[result].powi(2));
         (squares.sum::<f64>() / self.residuals.len() as f64).sqrt()
     }
 }
 
-/// Returns the basis functions at a place: all products of Legendre polynomials up to the total degree `degree`, which
-/// is at most 3.
+/// Returns the values of the basis functions at a place (parameters scaled to −1 … 1): all products of Legendre
+/// polynomials up to the total degree `degree`, which is at most 3.
 fn basis(place: &[f64], degree: usize) -> Vec<f64> {
     let mut products = vec![(1.0, 0)];
     for &x in place {

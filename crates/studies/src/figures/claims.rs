@@ -1,15 +1,16 @@
-//! Defines claims with verdicts, and computes the rate at which a test accepts a claim by chance. For this rate, the
-//! same test is applied to the same runs after the time step Δt has been shuffled among runs that only differ in Δt.
-//! The shuffle leaves the scatter unchanged and removes every effect of Δt.
+//! Defines claims (statements that are tested on runs) with verdicts, and computes how often a test finds a claim true
+//! by chance. To measure this rate, the time steps Δt are shuffled among runs that only differ in Δt, and the test is
+//! repeated. The shuffle leaves the scatter of the results unchanged and removes every effect of Δt.
 
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_pcg::Pcg64;
 
-/// Significance level: p-values below it count as evidence.
+/// Significance level of the tests: a claim is found true if its p-value is below this level.
 pub(super) const SIGNIFICANT: f64 = 0.05;
 
-/// Largest ratio of the two ends of an interval that can confirm a value. A wider interval decides nothing.
+/// Upper end of a confidence interval, divided by its lower end, below which the interval is narrow enough to confirm a
+/// value within it. A wider interval decides nothing.
 const NARROW: f64 = 3.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,7 +22,8 @@ pub(super) enum Verdict {
 }
 
 impl Verdict {
-    /// Returns the verdict on a claim with the p-value `p`. The opposite claim has the p-value `p_contrary`.
+    /// Returns the verdict on a claim, from the p-value `p` of the claim and the p-value `p_contrary` of the opposite
+    /// claim.
     pub(super) fn of(p: f64, p_contrary: f64) -> Self {
         match (p < SIGNIFICANT, p_contrary < SIGNIFICANT) {
             (true, _) => Self::Holds,
@@ -30,8 +32,9 @@ impl Verdict {
         }
     }
 
-    /// Returns the verdict on a guessed ratio, from the interval of the measured ratio. The guess fails outside the
-    /// interval. An interval wider than a factor of [`NARROW`] does not decide.
+    /// Returns the verdict on a guessed value, from the confidence interval `low` to `high` of the measured value. A
+    /// guess outside the interval fails. A guess within the interval holds if `high` is less than [`NARROW`] times
+    /// `low`; otherwise the verdict is open.
     pub(super) fn of_interval(guess: f64, low: f64, high: f64) -> Self {
         if guess < low || guess > high {
             Self::Fails
@@ -57,17 +60,17 @@ impl From<bool> for Verdict {
     }
 }
 
-/// A claim, its measurement, and the verdict.
+/// A claim (a statement that is tested on runs), its measurement, and the verdict.
 #[derive(Clone, Debug)]
 pub(super) struct Claim {
-    /// Statement that is tested: one of the paper, or a further one.
+    /// The tested statement: a statement of the paper, or an additional statement.
     pub said: String,
-    /// Measured value in words, with its interval or p-value.
+    /// Measured value in words, with its confidence interval or p-value.
     pub measured: String,
     pub verdict: Verdict,
-    /// Rate at which the test accepts the claim by chance, in words; empty if nothing is random.
+    /// How often the test would find the claim true by chance, in words; may be empty.
     pub by_chance: String,
-    /// Free choices on which the verdict depends; empty if they are the same for all runs of the figure.
+    /// Choices that the paper leaves open and on which the verdict depends, such as the restitution; may be empty.
     pub hangs_on: String,
 }
 
@@ -81,13 +84,14 @@ impl Claim {
         Self { said: said.into(), measured: measured.into(), verdict, by_chance, hangs_on }
     }
 
-    /// Adds the rate at which the test accepts the claim by chance, in words.
+    /// Adds a phrase that says how often the test would find the claim true by chance.
     pub(super) fn by_chance(self, by_chance: impl Into<String>) -> Self {
         Self { by_chance: by_chance.into(), ..self }
     }
 
-    /// Adds the rate at which the test accepts the claim after the time steps within each of `groups` have been
-    /// shuffled. `border` is the effect at which the claim is just false. It is added to the shuffled results.
+    /// Measures how often the test `holds` finds the claim true after the time steps within each of `groups` have been
+    /// shuffled, and adds this rate in words. `border` is the largest effect of the time step with which the claim is
+    /// still false. It is added to the shuffled results.
     pub(super) fn shuffled(
         self,
         groups: &[Alike],
@@ -105,15 +109,16 @@ impl Claim {
     }
 }
 
-/// Number of shuffles of the time steps, from which the rate of acceptance by chance is computed. The rate of a test at
-/// the 5 % level is then known to ± 1.4 % (95 % interval).
+/// Number of shuffles of the time steps, from which it is computed how often a test finds a claim true by chance. With
+/// this number, a rate of 5 % is known to ± 1.4 % (95 % confidence interval).
 const SHUFFLES: usize = 1000;
 
-/// A group of runs that differ in one number only: for each run, this number and the result of the run.
+/// A group of runs that only differ in one number, such as log₁₀ Δt: for each run, this number and the result.
 pub(super) type Alike = Vec<(f64, f64)>;
 
-/// Returns the fraction of shuffles of all groups after which the claim `holds`. After each shuffle, the effect
-/// `border`, at which the claim is just false, is added to the results.
+/// Returns the fraction of shuffles after which the test `holds` finds the claim true. Each shuffle exchanges the
+/// results within every group at random, and then adds `border`, the largest effect with which the claim is still
+/// false.
 fn share_by_chance(
     groups: &[Alike],
     border: impl Fn(f64) -> f64,
@@ -136,8 +141,8 @@ mod tests {
     use super::*;
     use crate::statistics::{mean, slope};
 
-    /// Returns made-up results of sixteen initial states with six time steps each. The results fall by `fall` per
-    /// decade of the time step.
+    /// Returns made-up results for tests: sixteen initial states with six time steps each. The results have a random
+    /// scatter and decrease by `fall` per decade of the time step.
     fn states(fall: f64) -> Vec<Alike> {
         let of_state = |state: usize| {
             let run = |step: usize| {

@@ -1,6 +1,6 @@
 //! Draws Fig. 5 of the paper: slump (a) and mean overlap (b) of piles against the time step Δt, as means over initial
-//! states. Thin lines show the single initial state of Fig. 4. Each claim is tested on the differences within initial
-//! states, and the report gives the rate at which the test accepts the claim by chance.
+//! states. Thin lines show the single initial state of Fig. 4. The paper's statements are tested on differences between
+//! runs from the same initial state. The report also says how often each test finds its statement true by chance.
 
 use super::claims::{Alike, Claim, SIGNIFICANT, Verdict};
 use super::studies::{ensemble, groups, log_step};
@@ -11,23 +11,23 @@ use crate::harness::{MeasuredCase, Measurements};
 use crate::scene::NewPile;
 use crate::statistics::{Mean, mean, p_of_either, p_value, slope};
 
-/// Text that names the choices, except the friction cone, that affect every claim about the slump of piles.
+/// Text for the report: the choices, except the friction cone, on which every verdict about the slump of piles depends.
 const CHOICES: &str = "the base, a row of fixed discs (the paper names none); the stop, a relative change of 1e−7; \
                        restitution without a threshold; the states. `slump budget` tells what each of them adds";
 const CONES: [(&str, &str); 2] = [("shifted", "pile"), ("compressive", "pile-compressive")];
-/// Largest change of the slump per decade of Δt at which the slump of a pile counts as independent of Δt: a tenth of
-/// the change of the paper's cohesive piles.
+/// Largest change of the slump per decade of Δt at which the slump of a pile counts as independent of Δt. It is a tenth
+/// of the change that the paper reports for cohesive piles.
 const FLAT_PER_DECADE: f64 = 0.02;
-/// Mean overlap at which, according to the paper, contacts begin to be lost, in mean diameters.
+/// Mean overlap above which, according to the paper, grains begin to lose contacts, in mean diameters.
 const LARGE_OVERLAP: f64 = 0.01;
 /// Largest mean overlap on the axis of the paper's Fig. 5b, in mean diameters.
 const END_OF_AXIS: f64 = 0.06;
 
-/// A claim of Fig. 5a about one Bond number: the Bond number, the claim in words, its test, and the slope per decade of
-/// Δt at which the claim is just false.
+/// A statement of Fig. 5a about one Bond number: the Bond number, the statement in words, its test, and the slope of
+/// the slump per decade of Δt on the border between true and false.
 type SlumpClaim = (f64, &'static str, SlumpTest, f64);
-/// A test of a claim, from the slumps of each initial state by increasing log₁₀ Δt. Returns the measurement in words
-/// and the verdict.
+/// A test of a statement about the slump. Its input is a list for each initial state: log₁₀ Δt and slump of each run,
+/// by increasing Δt. It returns the measurement in words and the verdict.
 type SlumpTest = fn(&[Alike]) -> (String, Verdict);
 
 const SLUMP_CLAIMS: [SlumpClaim; 4] = [
@@ -71,8 +71,9 @@ pub(super) fn slump(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig5a", sheet, claims, table: None })
 }
 
-/// Draws Fig. 5b: the mean overlap on logarithmic axes, which show an exponent, and on the paper's axes. Also tests the
-/// claims about overlap, for example that the slump rises with Δt at large overlaps and that contacts are lost.
+/// Draws Fig. 5b: the mean overlap against Δt on logarithmic axes, on which a power law is a straight line, and on the
+/// paper's axes. Also tests the paper's statements about overlap, for example that the slump rises with Δt at large
+/// overlaps and that grains then have fewer contacts.
 pub(super) fn overlap(studies: &StudyRunner) -> Result<Figure> {
     let all = studies.rows("pile")?;
     let rows = ensemble(&all);
@@ -97,7 +98,7 @@ fn time_steps() -> Axis {
     Axis::log("Δt (s)", 8e-5, 6.5e-3)
 }
 
-/// Draws a reading (a measured number) of all runs against Δt, with one curve per Bond number.
+/// Draws the measured number named `reading` of all runs against Δt, with one curve per Bond number.
 fn chart(rows: &Measurements<'_>, title: &str, x: Axis, y: Axis, reading: &str) -> Chart {
     let mut chart = Chart::new(title, x, y);
     let bonds = rows.values("bond");
@@ -153,9 +154,9 @@ fn tested(slope: &Mean, side: &str, p: f64, p_not: f64) -> (String, Verdict) {
     (format!("{measured}; {side} 0: {}", p_value(p)), Verdict::of(p, p_not))
 }
 
-/// Tests whether the slump has a minimum: for each initial state, the slumps at the smallest and at the largest Δt must
-/// lie above the mean of the slumps between them. The test does not select the Δt with the lowest slump, so nothing is
-/// chosen after the fact.
+/// Tests whether the slump has a minimum as a function of Δt. For each initial state, the slumps at the smallest and at
+/// the largest Δt are compared with the mean of the slumps between them; on average, both must be larger. The test does
+/// not look for the Δt with the lowest slump, because such a Δt exists even without any effect of Δt.
 fn minimum(states: &[Alike]) -> (String, Verdict) {
     let rise = |end: fn(&Alike) -> f64| {
         let over = |pairs: &Alike| {
@@ -202,9 +203,10 @@ fn stays_below(rows: &Measurements<'_>) -> Claim {
     .hanging_on("what counts as overlap: |gap|/d of touching grains, averaged over steps")
 }
 
-/// Returns the difference of two slopes of the slump between neighbouring Δt: the mean slope of the pairs whose larger
-/// Δt has a mean overlap above [`LARGE_OVERLAP`], minus the mean slope of the other pairs. The difference is taken for
-/// each initial state and Bond number. Groups with pairs on one side only are left out.
+/// Returns how much steeper the slump increases with Δt at large overlaps. For each initial state and Bond number,
+/// slopes are computed between neighbouring Δt. The result is the mean slope of those pairs of Δt whose larger Δt has a
+/// mean overlap above [`LARGE_OVERLAP`], minus the mean slope of the other pairs. Initial states and Bond numbers that
+/// only have one kind of pairs are left out.
 fn turn(slumps: &[Alike], overlaps: &[Alike]) -> Mean {
     let of_group = |(slumps, overlaps): (&Alike, &Alike)| {
         let pairs = slumps.windows(2).zip(&overlaps[1..]);
@@ -221,7 +223,7 @@ fn turn(slumps: &[Alike], overlaps: &[Alike]) -> Mean {
     mean(&slumps.iter().zip(overlaps).filter_map(of_group).collect::<Vec<_>>())
 }
 
-/// Tests the claim that the slump begins to rise with Δt at large overlaps.
+/// Tests the paper's explanation that the slump begins to rise with Δt when the mean overlap is large.
 fn reverses(cohesive: &Measurements<'_>) -> Claim {
     let slumps = groups(cohesive, log_step, |run| run.reading("slump"));
     let overlaps = groups(cohesive, log_step, |run| run.reading("mean_overlap"));
@@ -244,8 +246,8 @@ fn reverses(cohesive: &Measurements<'_>) -> Claim {
     )
 }
 
-/// Tests the claim that strongly cohesive piles have fewer contacts at larger Δt, and that piles with fewer contacts
-/// slump more.
+/// Tests the paper's explanation that strongly cohesive piles have fewer contacts at larger Δt, and that piles with
+/// fewer contacts slump more.
 fn loses(cohesive: &Measurements<'_>) -> Claim {
     let strongest = cohesive.values("bond").last().copied().unwrap_or(f64::NAN);
     let strong = &cohesive.with("bond", strongest);

@@ -1,5 +1,5 @@
 //! Draws Fig. 6 of the paper: slump against the cohesive time Bond·Δt/√(d/g), with mean diameter d and gravity g. Tests
-//! whether two regimes meet at a cohesive time of 1.
+//! whether the slump falls with the cohesive time below 1 and rises above 1.
 
 use rand::{RngExt, SeedableRng};
 
@@ -12,9 +12,9 @@ use crate::harness::MeasuredCase;
 use crate::statistics::{mean, p_of_either, p_value, slope, turning_point};
 
 const RESAMPLINGS: usize = 400;
-/// Number of resamplings of the initial states for each shuffle of Δt. The number is smaller than [`RESAMPLINGS`] to
-/// save time. With fewer resamplings the interval is narrower, so that the turning point of shuffled runs differs from
-/// 1 more often.
+/// Number of resamplings of the initial states, from which the confidence interval of the turning point is computed
+/// after each shuffle of Δt. It is smaller than [`RESAMPLINGS`] to save time. With fewer resamplings the interval is
+/// narrower, so it excludes a turning point of 1 more often.
 const FEWER_RESAMPLINGS: usize = 20;
 
 /// Mean diameter d of the piles, m, and gravity g, m/s².
@@ -65,7 +65,7 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig6", sheet, claims, table: None })
 }
 
-/// Merges the groups of runs of each initial state. `count` is the number of initial states.
+/// Merges those groups of runs that have the same initial state. `count` is the number of initial states.
 fn joined(groups: &[Alike], count: usize) -> Vec<Alike> {
     groups.chunks((groups.len() / count.max(1)).max(1)).map(<[_]>::concat).collect()
 }
@@ -120,7 +120,8 @@ fn regimes(groups: &[Alike], count: usize) -> Claim {
     )
 }
 
-/// Turning point of the slump as a cohesive time, with its 95 % interval over resampled initial states.
+/// Cohesive time at which the slump turns from falling to rising, with its 95 % confidence interval, which is computed
+/// by resampling the initial states.
 #[derive(Clone, Copy)]
 struct Turn {
     place: f64,

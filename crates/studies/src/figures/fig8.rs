@@ -1,6 +1,6 @@
 //! Draws the outcomes of the paper's cradle, three discs i, j and k on a line. Disc k hits disc i, and this shock may
-//! open the bond between i and j. The figures show the state of the bond by time step Δt, the fraction of open bonds
-//! over many start distances of k, and a map over Δt and the stopping tolerance of the solver.
+//! open the bond between i and j. The figures show at which time steps Δt the bond opens, the fraction of open bonds
+//! over many start distances of k, and a map of the outcome over Δt and the stopping tolerance of the solver.
 
 use super::claims::{Claim, Verdict};
 use super::{Figure, StudyRunner};
@@ -10,8 +10,8 @@ use crate::harness::{MeasuredCase, Measurements, ReportTable};
 use crate::scene::cradle;
 use crate::statistics;
 
-/// Gap between the discs i and j at the end, in diameters, above which their bond counts as open. The value is well
-/// above rounding errors, and well below any gap of an open bond.
+/// Gap between the discs i and j at the end of a run, in diameters, above which their bond counts as open. The value is
+/// well above rounding errors, and well below any gap of an open bond.
 pub(super) const OPEN_GAP: f64 = 1e-6;
 /// Outcomes of the cradle in the paper: time step, s, and true for an open bond or false for a closed bond.
 const PAPER: [(f64, bool); 14] = [
@@ -30,20 +30,21 @@ const PAPER: [(f64, bool); 14] = [
     (6e-3, true),
     (1e-2, true),
 ];
-/// Time step, s, below which the outcome does not depend on the phase of the motion, that is, on the start distance.
+/// Time step, s, below which the outcome of the cradle does not depend on the start distance of disc k, which decides
+/// at which time within a step the discs meet.
 pub(super) const PHASE_SECS: f64 = 3.5e-3;
 
 fn is_open(run: &MeasuredCase) -> bool {
     run.reading("first_gap") > OPEN_GAP
 }
 
-/// Returns the number of runs of the cradle with an open bond, and the number of all runs.
+/// Returns the number of runs of the cradle in which the bond opened, and the number of all runs.
 fn open_of(rows: &Measurements<'_>) -> [usize; 2] {
     [rows.0.iter().filter(|run| is_open(run)).count(), rows.0.len()]
 }
 
-/// Returns the number of the paper's outcomes (bond open or closed) that the runs reproduce. There is one run per time
-/// step.
+/// Returns the number of time steps at which the runs reproduce the paper's outcome (bond open or closed). There is one
+/// run per time step.
 fn agreed(rows: &Measurements<'_>) -> usize {
     let agrees = |&&(step, open): &&(f64, bool)| {
         rows.0.iter().any(|run| run.at("dt") == step && is_open(run) == open)
@@ -51,7 +52,8 @@ fn agreed(rows: &Measurements<'_>) -> usize {
     PAPER.iter().filter(agrees).count()
 }
 
-/// Draws the sensitivity of Fig. 8: the pattern of open and closed bonds if one setting is changed at a time.
+/// Draws how sensitive the outcomes of Fig. 8 are to the settings: the pattern of open and closed bonds over Δt, with
+/// one setting changed at a time.
 pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("cradle-choices")?;
     let all = studies.choices("cradle-choices")?;
@@ -90,7 +92,7 @@ pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "cradle-choices", sheet, claims, table: Some(table) })
 }
 
-/// Tests the claim that most start distances of disc k give the paper's pattern of open and closed bonds, at the
+/// Tests whether most start distances of disc k give the paper's pattern of open and closed bonds over Δt, at the
 /// largest stopping tolerance of the study.
 fn pattern_is_usual(rows: &Measurements<'_>) -> Claim {
     let loosest = rows.values("tolerance").pop().unwrap_or(f64::NAN);
@@ -128,7 +130,8 @@ fn pattern_comes_out(rows: &Measurements<'_>) -> Claim {
     .hanging_on("that search, the stop of 2.2·10⁻³ m/s, ρ = 0.2 (the paper states none), the cold start")
 }
 
-/// Tests the claim that the shock opens the bond at small time steps, at the smallest stopping tolerance of the study.
+/// Tests the paper's statement that the shock opens the bond at small time steps, at the smallest stopping tolerance of
+/// the study.
 fn shock_opens(rows: &Measurements<'_>) -> Claim {
     let tolerance = rows.values("tolerance")[0];
     let tight = rows.with("tolerance", tolerance);
@@ -196,13 +199,13 @@ pub(super) fn share(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig8-share", sheet, claims, table: None })
 }
 
-/// Returns the colour of an outcome: orange for open, blue for closed.
+/// Returns the colour of an outcome of the cradle: orange if the bond is open (`value` 1), blue if it is closed (0).
 fn colour(value: f64) -> Rgb {
     if value > 0.5 { (240, 176, 80) } else { (70, 120, 175) }
 }
 
-/// Returns the edges of a map's cells around values with a constant ratio. Neighbouring cells share their edge exactly,
-/// so that no gap is drawn between them.
+/// Returns the two edges of each cell of a map along a logarithmic axis. The cells are centred at `values`, which have
+/// a constant ratio. Neighbouring cells share their edge exactly, so that no gap is drawn between them.
 pub(super) fn log_edges(values: &[f64]) -> Vec<[f64; 2]> {
     let half = match values {
         [first, second, ..] => (second / first).sqrt(),
@@ -214,7 +217,8 @@ pub(super) fn log_edges(values: &[f64]) -> Vec<[f64; 2]> {
     edges.windows(2).map(|pair| [pair[0], pair[1]]).collect()
 }
 
-/// Draws a map of the outcome of the cradle over time step and stopping tolerance.
+/// Draws a map of the outcome of the cradle (bond open or closed) over the time step and the solver's stopping
+/// tolerance.
 pub(super) fn map(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("cradle-map")?;
     let (steps, tolerances) = (rows.values("dt"), rows.values("tolerance"));

@@ -1,5 +1,5 @@
-//! Draws Fig. 8 of the paper: the path of disc j after the shock in the cradle, on the paper's axes. Tests the paper's
-//! other statements about these runs.
+//! Draws Fig. 8 of the paper: the position of disc j of the cradle over time, after disc k has hit disc i. Tests the
+//! paper's statements about these runs.
 
 use std::ops::RangeInclusive;
 
@@ -9,25 +9,25 @@ use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Sheet, points};
 use crate::error::{Error, Result};
 use crate::scene::cradle;
 
-/// Time steps that the figure shows, s. In the paper, the bond opens at the first and stays closed at the second. The
-/// outcome of the other four depends on the phase of the motion.
+/// Time steps that the figure shows, s. In the paper, the bond of the discs i and j opens at the first time step and
+/// stays closed at the second. At the other four, the outcome depends on the start distance of disc k.
 const SHOWN_SECS: [f64; 6] = [5e-4, 1e-3, 4e-3, 5e-3, 6e-3, 1e-2];
-/// Ends of the paper's axes: time, s, and position, diameters.
+/// Upper ends of the axes of the paper's Fig. 8: time, s, and position of disc j, diameters.
 const ENDS: (f64, f64) = (2.0, 5.0);
-/// Time steps at which, according to the paper, disc j leaves with the same velocity, s.
+/// Time steps at which, according to the paper, disc j leaves disc i with the same velocity for every time step, s.
 const FREE_SECS: RangeInclusive<f64> = 1e-4..=6e-4;
 /// Time steps at which, according to the paper, disc k stays with the discs i and j, s.
 const CLUSTER_SECS: RangeInclusive<f64> = 7e-4..=3e-3;
 /// Time step at which, according to the paper, disc i catches up with disc j, s.
 const CAUGHT_SECS: f64 = 5e-3;
-/// Largest ratio of two velocities that count as equal: the largest velocity divided by the smallest.
+/// Largest ratio of the largest to the smallest velocity at which velocities of disc j count as equal.
 const ONE_VELOCITY: f64 = 1.1;
-/// Choices that affect the verdicts on the three discs of the cradle.
+/// Text for the report: choices on which the verdicts about the three discs of the cradle depend.
 const CHOICES: &str = "the start of k (searched for), ρ = 0.2 (the paper states none), the stop and the cold start: \
                        cradle-choices";
 
-/// A row of a time series: the time since disc k first touched disc i, s, and the positions of i, j and k, in
-/// diameters.
+/// A row of a run's time series: the time since disc k first touched disc i, s, and the positions of the discs i, j and
+/// k, in diameters.
 type SeriesRow = (f64, [f64; 3]);
 
 struct DiscSeries {
@@ -49,13 +49,13 @@ impl DiscSeries {
         self.rows.last().is_some_and(|row| gap(row) > OPEN_GAP)
     }
 
-    /// True if disc j is no longer at its farthest position at the end of the run.
+    /// True if disc j has turned back at the end of the run, so that it is no longer at its farthest position.
     fn turns_back(&self) -> bool {
         let farthest = self.after_shock().map(|(_, [_, j, _])| *j).fold(1.0, f64::max);
         self.rows.last().is_some_and(|(_, [_, j, _])| *j < farthest - OPEN_GAP)
     }
 
-    /// Returns the mean velocity of disc j over the last quarter of a second, diameters per second.
+    /// Returns the mean velocity of disc j over the last quarter of a second of the run, diameters per second.
     fn final_velocity(&self) -> f64 {
         let Some((end, [_, last, _])) = self.rows.last() else { return 0.0 };
         let before = self.after_shock().find(|(secs, _)| *secs >= end - 0.25);

@@ -1,5 +1,5 @@
 //! Reproduces every figure of the paper from simulation alone, adds figures that the paper's conclusion suggests, and
-//! reports verdicts on the paper's claims. Each figure is a row of [`FIGURES`].
+//! tests the paper's statements. Each figure is a row of [`FIGURES`].
 
 mod claims;
 mod fig5;
@@ -23,7 +23,7 @@ struct Figure {
     pub name: &'static str,
     pub sheet: Sheet,
     pub claims: Vec<Claim>,
-    /// Table of the numbers behind the claims, if the chart does not show enough of them.
+    /// Table of the numbers on which the verdicts are based, if the chart does not show them all.
     pub table: Option<ReportTable>,
 }
 
@@ -44,7 +44,7 @@ impl FigureInfo {
     }
 }
 
-/// All figures that are charts, in the order of the report.
+/// All figures that are charts and not pictures of grains, in the order of the report.
 static FIGURES: [FigureInfo; 10] = [
     FigureInfo::new("fig2", &[], two_bodies::fig2),
     FigureInfo::new("two-body", &[], two_bodies::two_bodies),

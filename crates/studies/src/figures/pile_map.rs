@@ -16,7 +16,7 @@ use crate::statistics::{Mean, mean, p_value};
 const MOST: f64 = 0.55;
 const CONTOURS: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 10.0];
 const WHITE: Rgb = (255, 255, 255);
-/// Largest factor between a cohesive time and 1 at which the cohesive time counts as near 1.
+/// Cohesive times from 1/`NEAR` to `NEAR` count as near 1.
 const NEAR: f64 = 3.0;
 const SHADES: u32 = 64;
 
@@ -117,8 +117,9 @@ fn scale() -> Chart {
     scale
 }
 
-/// Returns one value per initial state: the mean slump at cohesive times away from 1, minus the mean slump near 1, at
-/// the same Bond number. The value is averaged over those Bond numbers that have time steps of both kinds.
+/// Returns one difference of slumps per initial state: the mean slump of runs whose cohesive time is not near 1, minus
+/// the mean slump of runs whose cohesive time is near 1. The difference is computed for each Bond number that has runs
+/// of both kinds, and then averaged over these Bond numbers.
 fn depths(groups: &[Alike], states: usize) -> Vec<f64> {
     let of_group = |runs: &Alike| {
         let (near, away): (Vec<_>, Vec<_>) =
@@ -137,8 +138,9 @@ fn depths(groups: &[Alike], states: usize) -> Vec<f64> {
     groups.chunks(each).map(of_state).filter(|depth| depth.is_finite()).collect()
 }
 
-/// Tests the claim that the slump is lower near a cohesive time of 1 than away from 1. The test does not use the time
-/// step with the lowest slump of each Bond number, because such a time step exists even without any effect of Δt.
+/// Tests whether the slump is lower at cohesive times near 1 than at other cohesive times. The test does not look for
+/// the time step with the lowest slump at each Bond number, because such a time step exists even without any effect of
+/// Δt.
 fn claim(groups: &[Alike], states: usize) -> Claim {
     let depth = |groups: &[Alike]| mean(&depths(groups, states));
     let verdict = |depth: Mean| Verdict::of(depth.p_above(0.0), depth.p_below(0.0));
@@ -164,8 +166,8 @@ fn claim(groups: &[Alike], states: usize) -> Claim {
 mod tests {
     use super::*;
 
-    /// Returns made-up slumps of eight initial states at four Bond numbers. The slump is lower by `depth` near the
-    /// cohesive time `at`.
+    /// Returns made-up slumps of eight initial states at four Bond numbers, for tests. The slump is lower by `depth`
+    /// near the cohesive time `at`.
     fn plane(depth: f64, at: f64) -> Vec<Alike> {
         let of_group = |group: usize| {
             let run = |step: usize| {

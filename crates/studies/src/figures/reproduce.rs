@@ -1,4 +1,4 @@
-//! Produces the figures, the tables and the report that compare simulations with the paper.
+//! Writes the figures, the tables and the report that compare simulations with the paper.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -11,7 +11,7 @@ use crate::harness::{Bench, Effort};
 use crate::output::{note_line, print_line, print_text};
 use crate::solver::worst;
 
-/// Names of the pictures of grains, which are drawn together.
+/// Names of those figures that are pictures of grains. They are always drawn together.
 const SNAPSHOTS: [&str; 3] = ["fig3", "fig4", "fig7"];
 const ALL: &str = "all";
 
@@ -21,9 +21,9 @@ pub fn figure_names() -> Vec<&'static str> {
     [ALL].into_iter().chain(SNAPSHOTS).chain(charts).collect()
 }
 
-/// Produces the figures with these names in `folder`, each as PNG, SVG and CSV, and the file `report.md`. All runs are
-/// stored in a folder below `folder`, so the same call resumes a reproduction that was stopped. If `quick` is true, the
-/// figures are coarser. The function `snapshots` draws the pictures of grains (Figs. 3, 4 and 7) into a folder.
+/// Writes the figures with these names to `folder`, each as PNG, SVG and CSV, and the file `report.md`. All runs are
+/// stored in a folder below `folder`, so if the reproduction is stopped, the same call resumes it. If `quick` is true,
+/// the figures have fewer runs. The function `snapshots` draws the pictures of grains (Figs. 3, 4 and 7) into a folder.
 /// `version` is the version of the program that the report names.
 ///
 /// # Errors
@@ -89,7 +89,8 @@ fn opening(effort: Effort) -> String {
     text
 }
 
-/// Returns the section of the report about a figure. The claims and the table of the section are also printed.
+/// Returns the section of the report about a figure. The tested statements, their verdicts, and the table of the
+/// section are also printed on the terminal.
 fn section(info: &FigureInfo, figure: &Figure) -> String {
     let mut text = format!("\n## {0}\n\n![{0}]({0}.png)\n\n", figure.name);
     // Writing to a string cannot fail.

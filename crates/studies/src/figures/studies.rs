@@ -1,4 +1,4 @@
-//! Runs the studies (sets of runs) that are shipped with the program, when a figure needs them.
+//! Runs those studies (sets of runs) on which figures are based. The study files are part of the program.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -23,11 +23,11 @@ const STUDIES: &[(&str, &str)] = shipped![
     "pile" "pile-compressive" "cradle-courses" "cradle-choices" "cradle-share" "cradle-map" "pile-map"
 ];
 
-/// A study (a set of runs) whose runs are all completed.
+/// A study (a set of runs) after all its runs have been computed.
 pub(super) struct FinishedStudy {
     study: Study,
     pub table: RunsTable,
-    /// Runs with a finite final state. Other runs have no values.
+    /// Runs that reached their end. The other runs ended early, with NaN or infinite positions or velocities.
     ended: Vec<MeasuredCase>,
 }
 
@@ -59,13 +59,14 @@ fn measured(config: &Config, result: &RunResult) -> MeasuredCase {
     MeasuredCase { at, run: RunReadings { readings, ..RunReadings::default() }, wall_secs: 0.0 }
 }
 
-/// Returns the runs from all initial states except the shipped state, which was chosen for illustration.
+/// Returns the runs from all initial states except the state that is shipped with the program, which was chosen for
+/// illustration and is not a random sample.
 pub(super) fn ensemble<'a>(runs: &Measurements<'a>) -> Measurements<'a> {
     runs.such_that(|run| run.at("seed") != NewPile::default().seed as f64)
 }
 
-/// Returns two numbers (x, y) of each run, sorted by x, in one group per initial state and Bond number. The groups of
-/// an initial state are adjacent.
+/// Returns one group of runs per initial state and Bond number, with the two numbers (x, y) of each run, sorted by x.
+/// `x` and `y` compute the numbers. Groups with the same initial state follow each other.
 pub(super) fn groups(
     runs: &Measurements<'_>,
     x: impl Fn(&MeasuredCase) -> f64,
@@ -112,7 +113,7 @@ impl StudyRunner {
         Ok(())
     }
 
-    /// Returns the runs of a study that have a finite final state.
+    /// Returns the runs of a study that reached their end with finite positions and velocities.
     pub(super) fn rows(&self, name: &str) -> Result<Measurements<'_>> {
         let found = self.finished.get(name);
         let found = found.ok_or_else(|| Error::value("study", name, "run before its figures"))?;
@@ -122,8 +123,9 @@ impl StudyRunner {
         Ok(Measurements(found.ended.iter().collect()))
     }
 
-    /// Returns the runs of a study that have a finite final state, grouped by the settings in which they differ from
-    /// the first run. The groups are in the order of the runs.
+    /// Returns the runs of a study that reached their end, grouped by the settings in which they differ from the first
+    /// run (except Bond number, Δt and initial state). Each group has a name that lists these settings. The groups are
+    /// in the order of the runs.
     pub(super) fn choices(&self, name: &str) -> Result<Vec<(String, Measurements<'_>)>> {
         let rows = self.rows(name)?;
         let table = self.finished[name].table.rows.iter();
@@ -142,7 +144,7 @@ impl StudyRunner {
         Ok(parts)
     }
 
-    /// Returns the time series of a study's runs: the settings of each run and the text of its file.
+    /// Returns the settings of each run of a study, and the text of the CSV file with the time series of the run.
     pub(super) fn series(&self, name: &str) -> Result<Vec<(Config, String)>> {
         let Some(FinishedStudy { study, .. }) = self.finished.get(name) else {
             return Ok(Vec::new());
@@ -155,12 +157,13 @@ impl StudyRunner {
         study.runs.iter().map(read).collect()
     }
 
-    /// Adds to each claim of a figure the number of runs of its studies that raised warnings, by kind of warning.
+    /// Adds warnings to the tested statements (claims) of a figure: each statement gets the number of runs in the
+    /// figure's studies that raised warnings, for each kind of warning.
     ///
-    /// A single run that lost a grain or had no finite end makes the verdict open, however many other runs there are.
-    /// The slump of such a run is missing or belongs to a different pile. Such failures depend on the Bond number and
-    /// on Δt, so the remaining runs are not a fair sample. Other warnings (deep overlaps, unsolved steps) are part of
-    /// the effects of Δt that a claim is about, so they are only counted.
+    /// If a grain left the scene in a single run, or if a run did not reach its end, the verdict becomes open, however
+    /// many other runs there are. The slump of such a run is missing or belongs to a different pile. Such failures
+    /// depend on the Bond number and on Δt, so the remaining runs are not a fair sample. Other warnings (deep overlaps,
+    /// unsolved steps) are among the effects of Δt that are tested, so they are only counted.
     pub(super) fn qualify(&self, studies: &[&str], claims: &mut [Claim]) {
         let tables = studies.iter().filter_map(|name| self.finished.get(name));
         let results: Vec<&RunResult> =
@@ -183,7 +186,8 @@ impl StudyRunner {
         self.folder.join(self.effort.name()).join(name)
     }
 
-    /// Returns a line for the caption of a figure if one of its studies was a quick pass.
+    /// Returns a line for the caption of a figure, which says that a study of the figure was a quick pass; `None` if
+    /// all studies were full.
     pub(super) fn note(&self, studies: &[&str]) -> Option<String> {
         let mut finished = studies.iter().filter_map(|name| self.finished.get(name));
         finished.any(|one| one.study.is_quick_pass).then(|| {
@@ -192,7 +196,8 @@ impl StudyRunner {
     }
 }
 
-/// Returns, in words, the settings in which a run differs from the first run, except Bond number, Δt and initial state.
+/// Returns a list, as text, of the settings in which a run differs from the first run, without Bond number, Δt and
+/// initial state.
 pub(super) fn changes(config: &Config, first: &Config) -> String {
     let settings = |config: &Config| serde_json::to_value(config).unwrap_or_default();
     let (here, first) = (settings(config), settings(first));
@@ -215,7 +220,8 @@ mod tests {
         RunResult { status, lost_grains, alarms, ..RunResult::of_slump(0.0) }
     }
 
-    /// Returns an accepted claim after [`StudyRunner::qualify`] has examined runs with these results.
+    /// Returns a claim with the verdict "holds", after [`StudyRunner::qualify`] has changed it because of runs with
+    /// these results.
     fn qualified(results: &[&RunResult]) -> Claim {
         let mut studies = StudyRunner::new(PathBuf::new(), Effort::Quick);
         let text = "name = \"pile\"\n[base]\nscene = \"cradle\"\n";

@@ -1,7 +1,8 @@
-//! Draws figures of two bodies in contact. Fig. 2 of the paper shows the normal force N against the formal velocity v̄
-//! by the contact law: Signorini's law, and the same law shifted by the cohesion force. The lines N = K v̄ + A are the
-//! equation of motion in three cases. Dots at the intersections are simulated. A second figure shows the opening speed
-//! after one step against Δt (paper §2.2), with theory as lines and simulation as points.
+//! Draws figures of two bodies in contact. Fig. 2 of the paper shows two contact laws as graphs of the normal force N
+//! against the formal velocity v̄: Signorini's law, and the same law shifted by the cohesion force. The lines N = K v̄
+//! + A are the equation of motion for three values of A. The solution of a step is at the intersection of line and
+//! graph, and dots show simulated steps. A second figure shows the opening speed after one step against Δt (paper
+//! §2.2), with theory as lines and simulation as points.
 
 use glam::DVec2;
 
@@ -11,12 +12,12 @@ use crate::error::Result;
 use crate::scene::{Scene, collision};
 use crate::world::{Grain, Parameters};
 
-/// The constant A of the line N = K v̄ + A in three cases, in units of the cohesion force C₀, and the name of each
-/// case.
+/// Three values of the constant A of the equation of motion N = K v̄ + A (N: normal force, v̄: formal velocity), in
+/// units of the cohesion force C₀, and the name of each case.
 const CASES: [(f64, &str); 3] = [(1.2, "A > 0"), (-0.5, "−C₀ < A < 0"), (-2.2, "A < −C₀")];
 const TIME_STEP_SECS: f64 = 1e-3;
-/// Reach of the axes: the formal velocity in units of Δt·C₀/m_ij, and the normal force in units of the cohesion force
-/// C₀. m_ij is the effective mass.
+/// Values at the ends of the axes, which reach from minus to plus these values: the formal velocity in units of
+/// Δt·C₀/m_ij, and the normal force in units of C₀, with the cohesion force C₀ and the effective mass m_ij.
 const REACH: (f64, f64) = (2.0, 3.0);
 
 pub(super) fn fig2(_: &StudyRunner) -> Result<Figure> {
@@ -41,8 +42,9 @@ pub(super) fn fig2(_: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig2", sheet, claims: vec![claim], table: None })
 }
 
-/// Draws the graph of a contact law with its corner at the normal force −`shift`·C₀, where C₀ is the cohesion force.
-/// Also returns the largest distance of a simulated step from the intersection of graph and line.
+/// Draws the graph of a contact law: the normal force against the formal velocity, with the corner of the graph at the
+/// normal force −`shift`·C₀, where C₀ is the cohesion force. Also returns the largest distance between a simulated step
+/// and the intersection of this graph with the line of the equation of motion.
 fn chart(title: &str, shift: f64) -> Result<(Chart, f64)> {
     let scene = collision();
     let bond = scene.parameters.bond;
@@ -84,7 +86,7 @@ fn chart(title: &str, shift: f64) -> Result<(Chart, f64)> {
     Ok((chart, worst))
 }
 
-/// Restitution of the simulated contacts. It is large enough for its effect to be visible.
+/// Restitution ρ of the simulated contacts, large enough for the bounce to be visible in the figures.
 const RESTITUTION: f64 = 0.2;
 
 /// Opening speeds of the contact at the beginning of the step, m/s.
@@ -122,10 +124,10 @@ fn one_step(speed: f64, time_step_secs: f64, bond: f64) -> Result<(f64, f64, f64
     Ok((mass, force, grains.velocities[0].x - grains.velocities[1].x))
 }
 
-/// Returns the opening speed v^n after a step by the three cases of the paper's §2.2, without other forces. Let v^{n−1}
-/// be the opening speed before the step, ρ the restitution, C₀ the cohesion force and m_ij the effective mass. The
-/// result is −ρ v^{n−1} if the contact closes or bounces, and v^{n−1} − ΔtC₀/m_ij if the contact opens. ΔtC₀/m_ij is
-/// `capture_speed`.
+/// Returns the theoretical opening speed v^n of a contact after a step, according to the three cases of the paper's
+/// §2.2, without other forces. Let v^{n−1} be the opening speed before the step, ρ the restitution, C₀ the cohesion
+/// force and m_ij the effective mass. The result is −ρ v^{n−1} if the contact closes or bounces, and v^{n−1} −
+/// ΔtC₀/m_ij if the contact opens. ΔtC₀/m_ij is `capture_speed`.
 fn theory(speed: f64, capture_speed: f64) -> f64 {
     if speed * (1.0 + RESTITUTION) > capture_speed {
         speed - capture_speed

@@ -20,7 +20,8 @@ pub(crate) struct Bench {
 }
 
 impl Bench {
-    /// Prepares the folder of an experiment on this machine. `version` is the version of the program.
+    /// Checks that the folder of an experiment is writable, and records the machine. `version` is the version of the
+    /// program, for captions.
     pub(crate) fn new(folder: &Path, effort: Effort, version: &str) -> Result<Self> {
         check_writable("out", folder)?;
         Ok(Self { folder: folder.to_owned(), effort, machine: Machine::this(version)? })
@@ -30,8 +31,8 @@ impl Bench {
         self.folder.join("states")
     }
 
-    /// Opens the runner for measurements by this program on this machine. A quick pass and the full pass have separate
-    /// journals.
+    /// Opens a runner, which computes the runs of the experiment and stores each result in a journal. Every program,
+    /// every machine, and the quick and the full pass of an experiment have separate journals.
     pub(crate) fn runner<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
         &self,
         name: &str,
@@ -42,14 +43,16 @@ impl Bench {
         Runner::open(name, &folder, name)
     }
 
-    /// Returns the lines below a chart: the given lines, and a last line with the machine, the date and the command.
+    /// Returns the caption of a sheet of charts: the given lines, and a last line with the machine, the date and the
+    /// command.
     pub(crate) fn caption(&self, lines: &[&str]) -> Vec<String> {
         let mut caption: Vec<String> = lines.iter().map(|&line| line.to_owned()).collect();
         caption.push(format!("{}{}", self.effort.note(), self.machine.words()));
         caption
     }
 
-    /// Writes a sheet of charts and its tables. The picture contains the `command` that makes the sheet.
+    /// Writes a sheet of charts as PNG, SVG and CSV, and each of `tables` as a CSV file. The PNG file also contains the
+    /// `command` that makes the sheet.
     pub(crate) fn write<'a>(
         &self,
         (name, sheet): (&str, &Sheet),
@@ -62,7 +65,8 @@ impl Bench {
         })
     }
 
-    /// Writes the report, and removes the unfinished files of processes that were killed.
+    /// Writes the text `report` of the experiment to the file `name`, and removes the unfinished files that killed
+    /// processes left in the folder.
     pub(crate) fn finish(&self, name: &str, report: &str) -> Result<()> {
         let path = self.folder.join(name);
         write_file(&path, report.as_bytes())?;

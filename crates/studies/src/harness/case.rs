@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct Case<C> {
     /// Name of the case, unique among all cases of its journal.
     pub key: String,
-    /// Expected computing time, in any unit. It determines the order of the work and the steps of the progress bar.
+    /// Expected computing time, in any unit that all cases share. It determines the order in which cases run, and how
+    /// far the progress bar moves when the case is finished.
     pub cost: f64,
     pub setup: C,
 }

@@ -6,7 +6,7 @@ use crate::setting::Changes;
 use crate::sim::Stepper;
 use crate::solver::SolverSettings;
 
-/// A named change of settings: the settings that `config` gives replace the settings of a scene.
+/// A named change of a scene: the settings that are given in `config` replace the settings of the scene.
 #[derive(Clone, Debug)]
 pub(crate) struct Change {
     pub name: String,

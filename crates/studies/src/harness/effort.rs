@@ -30,7 +30,8 @@ impl Effort {
         self.pick(" --quick", "")
     }
 
-    /// Returns the note on a quick pass for captions, with a space after the note; empty for the full pass.
+    /// Returns a note for captions, which says that the results are from a quick pass, with a space after the note;
+    /// empty for the full pass.
     pub(crate) fn note(self) -> &'static str {
         self.pick("Quick pass. ", "")
     }

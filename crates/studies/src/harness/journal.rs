@@ -169,7 +169,8 @@ pub(crate) fn free_journals(folder: &Path) -> Result<Vec<PathBuf>> {
 const DIGITS: usize = 16;
 const BEFORE: &str = "{\"checksum\":\"";
 const BETWEEN: &str = "\",\"record\":";
-/// Text before the checksum in the last line of a text file. In such files, comments begin with `#`.
+/// Text before the checksum in the last line of a stored text file, such as a file of grains. In such files, comments
+/// begin with `#`.
 const COMMENT: &str = "# checksum ";
 
 pub(crate) fn checksum(text: &[u8]) -> String {

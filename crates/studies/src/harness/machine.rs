@@ -15,7 +15,7 @@ pub(crate) struct Machine {
     /// Date of the measurement in UTC: year-month-day.
     pub date: String,
     pub command: String,
-    /// Hash of the program and the processor's name. Computing times with different fingerprints are not comparable.
+    /// Hash of the program and the processor's name. Computing times are comparable only if this hash is the same.
     #[serde(skip)]
     pub fingerprint: String,
 }

@@ -17,16 +17,16 @@ pub(crate) struct RunReadings {
     pub readings: Vec<Reading>,
     pub simulated_secs: f64,
     pub steps: u64,
-    /// Number of steps that missed their tolerance. The number has no meaning if the solver was given a number of
-    /// sweeps instead of a tolerance.
+    /// Number of steps that the solver did not solve to its tolerance. The number has no meaning if the solver had to
+    /// make a given number of sweeps, without a tolerance.
     pub unsolved_steps: u64,
     pub lost_grains: u32,
-    /// True if the state became NaN or infinite. Such a run has no readings.
+    /// True if positions or velocities of grains became NaN or infinite. Such a run has no readings (measured numbers).
     pub blew_up: bool,
 }
 
 impl RunReadings {
-    /// Returns the reading of the run with the given name; NaN if the run has no such reading.
+    /// Returns the measured number with the given name; NaN if the run has no number with this name.
     pub(crate) fn reading(&self, name: &str) -> f64 {
         let mut readings = self.readings.iter();
         readings.find(|reading| reading.name == name).map_or(f64::NAN, |reading| reading.value)
@@ -45,12 +45,13 @@ pub(crate) struct MeasuredCase {
 }
 
 impl MeasuredCase {
-    /// Returns the parameter with the given name; NaN if the case has no such parameter.
+    /// Returns the value of the parameter with the given name, by which this run differs from others; NaN if the run
+    /// has no such parameter.
     pub(crate) fn at(&self, name: &str) -> f64 {
         self.at.iter().find(|(known, _)| *known == name).map_or(f64::NAN, |(_, value)| *value)
     }
 
-    /// Returns the reading with the given name; NaN if the case has no such reading.
+    /// Returns the number with the given name that was measured in this run; NaN if there is no number with this name.
     pub(crate) fn reading(&self, name: &str) -> f64 {
         self.run.reading(name)
     }
@@ -60,7 +61,7 @@ impl MeasuredCase {
 pub(crate) struct Measurements<'a>(pub Vec<&'a MeasuredCase>);
 
 impl<'a> Measurements<'a> {
-    /// Returns the distinct values that a parameter has in these cases, in ascending order.
+    /// Returns the distinct values that the parameter with the given name has in these runs, in ascending order.
     pub(crate) fn values(&self, name: &str) -> Vec<f64> {
         let values = self.0.iter().map(|case| case.at(name));
         let mut values: Vec<f64> = values.filter(|value| !value.is_nan()).collect();
@@ -73,7 +74,7 @@ impl<'a> Measurements<'a> {
         self.values(name).iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
     }
 
-    /// Returns the parameter with the given name of the first case; 0 if there are no cases.
+    /// Returns the value that the parameter with the given name has in the first run; 0 if there are no runs.
     pub(crate) fn first(&self, name: &str) -> f64 {
         self.0.first().map_or(0.0, |case| case.at(name))
     }
@@ -94,12 +95,12 @@ impl<'a> Measurements<'a> {
         self.0.iter().map(|case| case.reading(name)).collect()
     }
 
-    /// Returns the reading with the given name of the first case; NaN if there are no cases.
+    /// Returns the number with the given name that was measured in the first run; NaN if there are no runs.
     pub(crate) fn reading(&self, name: &str) -> f64 {
         self.0.first().map_or(f64::NAN, |case| case.reading(name))
     }
 
-    /// Returns two numbers (x, y) for each case, sorted by x.
+    /// Returns the two numbers (x, y) that `point` computes from each measured run, sorted by x.
     pub(crate) fn rising(&self, point: impl Fn(&MeasuredCase) -> (f64, f64)) -> Vec<(f64, f64)> {
         let mut points = self.points(point);
         points.sort_by(|one, other| one.0.total_cmp(&other.0));

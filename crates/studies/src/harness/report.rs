@@ -26,7 +26,7 @@ pub(crate) fn distinct<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
     kept
 }
 
-/// A table of the numbers that support the claims about a figure.
+/// A table of numbers in a report, which is written as CSV and as Markdown.
 pub(crate) struct ReportTable {
     pub name: String,
     pub columns: Vec<&'static str>,

@@ -15,7 +15,8 @@ use super::journal::{self, Journal};
 use crate::error::Result;
 use crate::output::{Progress, note_line};
 
-/// Number of lines that report the progress of an experiment if there is no terminal on which to draw a progress bar.
+/// Number of progress lines that are printed in the course of an experiment if there is no terminal on which to draw a
+/// progress bar.
 const LINES_OF_PROGRESS: usize = 20;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,8 +35,8 @@ pub(crate) struct Runner<T> {
 }
 
 impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
-    /// Opens a runner that resumes after the last line of a journal in `folder`. The number of results in the journal
-    /// is reported.
+    /// Opens a runner that resumes an experiment after the last result in a journal in `folder`. The number of results
+    /// in the journal is printed.
     pub(crate) fn open(name: &str, folder: &Path, journal_name: &str) -> Result<Self> {
         // Opening the journal cuts off an incomplete last line, so the journal is opened before it is read.
         let journal = Journal::open(folder, journal_name)?;
@@ -47,7 +48,8 @@ impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
         Ok(Self::new(name, journal, finished.into_iter().map(by_key).collect()))
     }
 
-    /// Returns a runner that appends results to `journal`. Cases in `finished` are not run again.
+    /// Returns a runner that appends results to `journal`. Cases (runs of the experiment) whose keys are in `finished`
+    /// are not computed again.
     pub(crate) fn new(
         name: &str,
         journal: Journal,

@@ -7,11 +7,12 @@ use super::run_group::RunGroup;
 use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Point, Sheet};
 use crate::harness::{Effort, Machine, distinct};
 
-/// Ratio of the largest to the smallest value above which an axis is logarithmic.
+/// Ratio of the largest to the smallest value on an axis, at and above which the axis is logarithmic.
 const LONG: f64 = 8.0;
-/// Largest number of values on an axis at which each value has its own label.
+/// Largest number of different values on an axis with which each value gets its own label. With more values, only round
+/// numbers are labelled.
 const MOST_TICKS: usize = 6;
-/// Margin beyond the outermost values, as a fraction of the width of the chart.
+/// Margin of the x axis beyond the smallest and the largest value, as a fraction of the distance between these values.
 const MARGIN: f64 = 0.06;
 
 fn is_level(chart: &SweepChart, group: &RunGroup) -> bool {
@@ -22,8 +23,8 @@ fn is_level(chart: &SweepChart, group: &RunGroup) -> bool {
     !chart.level.is_empty() && chart.level.iter().all(is_same)
 }
 
-/// Draws the groups of runs of a study. In a quick pass, a setting can be constant that varies in the full pass. Such a
-/// setting does not distinguish panels and curves in the picture.
+/// Draws the mean slump of each group of runs (the runs that only differ in their initial state). A setting that varies
+/// in the full pass can be constant in a quick pass; then it does not distinguish panels and curves.
 pub(super) fn sheet(
     choice: &SweepChart,
     groups: &[RunGroup],

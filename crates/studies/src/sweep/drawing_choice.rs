@@ -4,24 +4,26 @@ use serde::Deserialize;
 
 use crate::error::{Error, Result};
 
-/// The chart of a sweep, described by the names of varied settings.
+/// Description of the chart of a sweep by the names of varied settings: one setting on the x axis, one for the curves,
+/// and others for the panels.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SweepChart {
     /// Name of the setting on the x axis.
     pub x: String,
-    /// Name of the setting that has one curve for each of its values.
+    /// Name of the setting that distinguishes the curves: the chart has one curve for each value of this setting.
     pub curves: String,
-    /// Names of the settings that have one panel for each combination of their values.
+    /// Names of the settings that distinguish the panels: the chart has one panel for each combination of their values.
     #[serde(default)]
     pub panels: Vec<String>,
-    /// Values of settings. Runs with these values are drawn as horizontal lines, for comparison.
+    /// Values of settings that select runs for comparison. The mean slump of these runs is drawn as a horizontal dashed
+    /// line.
     #[serde(default)]
     pub level: toml::Table,
 }
 
 impl SweepChart {
-    /// Checks that all settings of the chart are varied by the study.
+    /// Checks that the study varies every setting that the chart names.
     ///
     /// # Errors
     /// If the study does not vary a setting of the chart.

@@ -1,5 +1,5 @@
-//! Writes `report.json` of a sweep: means over initial states, and the effect of each choice of settings for the same
-//! initial states, together with the program, the machine, the date and the command.
+//! Writes `report.json` of a sweep: mean slumps over initial states, and the effect of each varied setting on the slump
+//! at the same initial states, together with the program, the machine, the date and the command.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
@@ -31,7 +31,8 @@ struct SweepReport<'a> {
     groups: Vec<RunGroup>,
 }
 
-/// Writes the report of a completed study, and its chart. `version` is the version of the program.
+/// Writes the report of a completed study, and its chart if the study file describes a chart. `version` is the version
+/// of the program that both name.
 ///
 /// # Errors
 /// If a file cannot be written.
@@ -135,8 +136,9 @@ fn words(values: &[Value]) -> String {
 mod tests {
     use super::*;
 
-    /// Returns the groups of runs of a study of the pile, with made-up results. The study varies the settings in
-    /// `vary`. `slump` gives the slump of each run. The run with the number `spoil` has lost a grain.
+    /// Returns the groups of runs of a study of the pile with made-up results, for tests. The study varies the settings
+    /// in `vary`. `slump` returns the slump of the run with a given number. In run number `spoil`, a grain has left the
+    /// scene.
     fn reported(vary: &str, slump: impl Fn(usize) -> f64, spoil: Option<usize>) -> Vec<RunGroup> {
         let text = format!("name = \"made\"\n[base]\nscene = \"pile\"\n[vary]\n{vary}");
         let study = Study::parse(&text, "made.toml".as_ref(), false).expect("a study");

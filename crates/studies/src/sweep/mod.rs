@@ -1,9 +1,9 @@
-//! Runs sweeps. A sweep computes the runs of a study on all cores, stores each result at once, resumes a study that was
-//! stopped, and joins parts that were computed elsewhere.
+//! Runs sweeps over parameters. A sweep computes the runs of a study on all cores, stores each result as soon as the
+//! run ends, resumes a study that was stopped, and joins parts of a study that were computed on other machines.
 //!
-//! A folder of results contains `study.json` (the study's identity), journals (results as they are computed), `states/`
-//! (initial states), `series/` (rows of each run over time), `data/` (recordings of runs) and, once all runs are
-//! complete, `runs.csv` and `report.json`.
+//! A folder of results contains `study.json` (name and hash of the study), journals (the results of finished runs),
+//! `states/` (initial states), `series/` (a time series of each run), `data/` (recordings of runs) and, once all runs
+//! are complete, `runs.csv` and `report.json`.
 
 mod drawing;
 mod drawing_choice;
@@ -41,24 +41,26 @@ use crate::output::{
 use crate::scene::Scene;
 use crate::states::States;
 
-/// Name of the file that identifies the study in a folder of results.
+/// Name of the file in a folder of results that says to which study the results belong.
 const STUDY_FILE: &str = "study.json";
 const DATA: &str = "data";
 const STATES: &str = "states";
 const TABLE: &str = "runs.csv";
-/// Time between two attempts to claim a folder that another process uses, and number of attempts. A process that only
-/// reads the folder is finished before the last attempt.
+/// Waiting time between two attempts to take over a folder that another process uses, and number of attempts. A process
+/// that only reads the folder is finished before the last attempt.
 const MOMENT: Duration = Duration::from_millis(100);
 const MOMENTS: u32 = 20;
 
-/// Options of a sweep.
+/// Options of a sweep, which computes the runs of a study.
 #[derive(Clone, Debug, Default)]
 pub struct SweepOptions {
-    /// Part of the study to run; `None` for the whole study.
+    /// The part of the study's runs that this call computes, if several machines share the study; `None` for the whole
+    /// study.
     pub shard: Option<Shard>,
-    /// True to discard results of another study, and results that cannot be read.
+    /// True to delete results of another study, and results that cannot be read, from the folder. If false, such
+    /// results are an error.
     pub redo: bool,
-    /// Folder of the initial states; `None` for a folder within the folder of results.
+    /// Folder that stores the initial states; `None` for the folder `states` within the folder of results.
     pub states: Option<PathBuf>,
 }
 
@@ -70,8 +72,8 @@ struct Label {
     version: String,
 }
 
-/// Runs a study, or a part of it, in `folder`. If all runs of the study are then complete, writes `runs.csv` and
-/// returns its table.
+/// Computes the runs of a study, or a part of the runs, and stores the results in `folder`. After the whole study,
+/// writes `runs.csv` and returns its table; after a part, returns `None`.
 ///
 /// # Errors
 /// If the folder contains another study or cannot be written, or if the grains of an initial state do not come to rest.
@@ -139,7 +141,8 @@ fn swept(study: &Study, folder: &Path, states: &States, run: &PlannedRun) -> Res
     Ok(SweptRun { outcome, series })
 }
 
-/// Joins the parts of a study in `folders` into the file `runs.csv` in the folder `out`.
+/// Joins the results of a study's parts, which are in `folders`, into one table, and writes it as `runs.csv` to the
+/// folder `out`.
 ///
 /// # Errors
 /// If a folder contains another study, if runs are missing, or if two parts have different results for a run.
@@ -166,8 +169,8 @@ fn join(study: &Study, folders: &[PathBuf], out: &Path) -> Result<RunsTable> {
     Ok(table)
 }
 
-/// Starts the recording of a run, if the study requests recordings. An incomplete recording by a run that was stopped
-/// is removed.
+/// Starts the recording of a run (its grains over time, in files), if the study file asks for recordings. An incomplete
+/// recording from an earlier attempt, which was stopped, is removed.
 fn recording_of(
     study: &Study,
     folder: &Path,
@@ -204,12 +207,12 @@ fn read_label(folder: &Path) -> Result<Option<Label>> {
     }
 }
 
-/// Assigns the folder to this study, or checks that it is already assigned to it.
+/// Assigns the folder of results to this study, or checks that the folder already belongs to this study.
 ///
-/// The label file `study.json` assigns the folder. Until this file is written, the folder belongs to the old study.
-/// Only the table of the old study is missing then, which can be recomputed from the journals. Afterwards the folder
-/// belongs to the new study. Remaining files of the old study are ignored, because runs are identified by keys, and
-/// then removed.
+/// The file `study.json` says to which study the folder belongs. If the program is killed before it has written this
+/// file, the folder still belongs to the old study and lacks only the old table, which can be recomputed from the
+/// journals. If the program is killed later, the folder belongs to the new study. The remaining files of the old study
+/// do no harm, because runs are identified by keys, and are removed.
 fn claim(
     study: &Study,
     folder: &Path,
@@ -251,8 +254,8 @@ fn claim(
     Err(shared.in_use())
 }
 
-/// Removes the results in a folder. No other program may be writing results there. Files that this program did not
-/// write remain.
+/// Removes the results of a study from a folder. No other process may write results to the folder at the same time.
+/// Files that this program did not write remain.
 fn throw_away(folder: &Path) -> Result<()> {
     let of_series = journal::files_in(&folder.join(SERIES))?;
     let tables = [TABLE, REPORT].map(|name| folder.join(name));

@@ -1,4 +1,4 @@
-//! Plans the runs of a study file. Each run gets its complete settings and a unique key.
+//! Reads study files and lists the runs of a study. Each run gets its complete settings and a unique key.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -14,18 +14,17 @@ use crate::data::DataSettings;
 use crate::error::{Error, Result, in_words};
 use crate::input::{MOST_OF_TOML, read_text};
 
-/// Largest number of runs of a study. A larger number is probably a mistake. Planned, run and listed, each run takes
-/// about 2 kB.
+/// Largest number of runs of a study. A larger number is probably a mistake. Each run takes about 2 kB of memory.
 const MOST_RUNS: usize = 1_000_000;
 
-/// Name of the parameter that distinguishes the initial states of a scene.
+/// Name of the setting that distinguishes the initial states of a scene: the seed of the random numbers.
 pub(super) const SEED: &str = "seed";
 
-/// Description of the expected form of a study file, for messages.
+/// Description of the expected form of a study file, for error messages.
 const FORM: &str = "a study file in TOML with name, base and vary";
 
-/// A study file. Its tables `base` and `vary` are parsed separately, because they may contain every setting of a
-/// [`Config`].
+/// A study file as written by the user. The values of its tables `base` and `vary` are parsed separately, because these
+/// tables may contain every setting of a [`Config`].
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StudyFile {
@@ -44,7 +43,7 @@ struct StudyFile {
     quick: Quick,
 }
 
-/// Settings that replace the settings of the study in a quick pass.
+/// Values that replace values of the study file's tables `base` and `vary` in a quick pass.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Quick {
@@ -52,41 +51,44 @@ struct Quick {
     vary: Table,
 }
 
-/// Settings of the rows that a run writes over time.
+/// Settings of the time series of a run: a table with one row per interval of simulated time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SeriesSettings {
-    /// Simulated time between two rows, s.
+    /// Simulated time between two rows of a time series, s.
     pub interval: f64,
-    /// Numbers of the grains whose positions are written.
+    /// Indices of the grains whose positions the rows contain.
     #[serde(default)]
     pub grains: Vec<usize>,
 }
 
-/// A study: a list of runs, in the order of the rows of its table.
+/// A study: a list of runs with different settings, in the order of the rows of its table of results.
 #[derive(Clone, Debug)]
 pub struct Study {
     /// Name of the study.
     pub name: String,
     /// Identity of the study: a hash of the keys of all runs.
     pub fingerprint: String,
-    /// True if the runs belong to a quick pass that differs from the full pass.
+    /// True if the runs are those of a quick pass, and the study file gives the quick pass other values than the full
+    /// pass.
     pub is_quick_pass: bool,
-    /// Settings of the rows that each run writes over time, if any.
+    /// Settings of the time series that each run writes, if any.
     pub series: Option<SeriesSettings>,
     /// Settings of the recording of each run, if any. A recording is stored in the folder of results, in a folder named
     /// after the run's key.
     pub data: Option<DataSettings>,
-    /// Chart of the results, if any.
+    /// Description of the chart of the results, if any.
     pub chart: Option<SweepChart>,
-    /// Names of the varied settings. Settings that vary together are in one list.
+    /// Names of the settings that differ between the runs. Each inner list contains the settings that vary together,
+    /// usually only one.
     pub varied: Vec<Vec<String>>,
     /// Runs of the study.
     pub runs: Vec<PlannedRun>,
 }
 
 impl Study {
-    /// Reads a study file, plans its runs, and checks all of them.
+    /// Reads a study file, and lists and checks all its runs. `quick` selects the quick pass, with the values of the
+    /// file's table `quick`.
     ///
     /// # Errors
     /// If the file cannot be read or is not a valid study.
@@ -95,7 +97,8 @@ impl Study {
         Self::parse(&text, path, quick)
     }
 
-    /// Plans the runs of a study from the text of its file. `path` is named in error messages.
+    /// Reads a study from the text of its file, and lists and checks all its runs. `quick` selects the quick pass.
+    /// `path` is the file's path, for error messages and relative paths.
     ///
     /// # Errors
     /// If the text is not a valid study.
@@ -142,8 +145,9 @@ impl Study {
     }
 }
 
-/// Replaces values of the study by the values of a quick pass. A setting that varies in the study may be constant in
-/// the quick pass, and the other way round.
+/// Replaces values in the table `to` of a study file by `values`, the values of a quick pass. A setting that varies in
+/// the study may be constant in the quick pass, and the other way round, so the setting is removed from the table
+/// `other`.
 fn replace(from: &str, to: &mut Table, other: &mut Table, values: Table) -> Result<()> {
     for (key, value) in values {
         if other.remove(&key).is_none() && !to.contains_key(&key) {
@@ -155,7 +159,8 @@ fn replace(from: &str, to: &mut Table, other: &mut Table, values: Table) -> Resu
     Ok(())
 }
 
-/// Returns the runs of a study. Relative paths in the study file refer to `folder`.
+/// Returns the runs of a study file: one run per combination of the varied values. Relative paths in the study file
+/// refer to `folder`.
 fn lay_out(file: &StudyFile, folder: &Path) -> Result<Vec<PlannedRun>> {
     let varied = file.vary.keys().flat_map(|key| key.split_whitespace());
     let mut given: Vec<&str> = file.base.keys().map(String::as_str).collect();
@@ -200,11 +205,11 @@ fn lay_out(file: &StudyFile, folder: &Path) -> Result<Vec<PlannedRun>> {
     (0..count).map(run).collect()
 }
 
-/// Parameters that vary together: usually one parameter, or several in parallel, written as `"grains box-width" =
-/// [[138, 16], [500, 30]]` in the study file.
+/// Settings that vary together: usually one setting, or several whose values change in parallel, written as `"grains
+/// box-width" = [[138, 16], [500, 30]]` in the study file.
 struct VariedParameters {
     names: Vec<String>,
-    /// Sets of values, each with one value per parameter.
+    /// Sets of values, each with one value per setting.
     values: Vec<Vec<Value>>,
 }
 
@@ -258,18 +263,19 @@ fn one_line(message: &str) -> String {
     message.trim_end().replace('\n', " ").replace('`', "'")
 }
 
-/// A planned run of a study.
+/// A run of a study, before it is computed.
 #[derive(Clone, Debug)]
 pub struct PlannedRun {
     /// Unique name of the run: a hash of everything that affects its result.
     pub key: String,
     /// Settings of the run, with every default filled in.
     pub config: Config,
-    /// Expected computing time, in any unit. It determines the order of the work and the steps of the progress bar.
+    /// Expected computing time, in a unit that all runs of the study share. It determines the order in which runs are
+    /// computed, and how far the progress bar moves when the run is finished.
     pub cost: f64,
 }
 
-/// A base scene that is kept because several runs use it.
+/// A scene before the settings of a run are applied. It is kept in memory, because several runs use it.
 struct Known {
     base: BaseScene,
     /// Hash of all discs of the scene.
@@ -286,8 +292,9 @@ impl Known {
 }
 
 impl PlannedRun {
-    /// Plans the run of a config. `grains_asked_for` are the grains whose positions the run writes over time. `outputs`
-    /// are the output settings, which are a part of the run's key. `bases` keeps base scenes for further runs.
+    /// Returns the run with the settings `config`. `grains_asked_for` are the indices of the grains whose positions the
+    /// run writes over time. `outputs` are the output settings, which are a part of the run's key. `bases` keeps scenes
+    /// that several runs use.
     fn new(
         config: &Config,
         grains_asked_for: &[usize],

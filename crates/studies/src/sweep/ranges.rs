@@ -1,4 +1,4 @@
-//! Expands the lists and ranges of a study file to values.
+//! Reads the varied values of a study file, which are written as a list or as a range.
 
 use std::collections::HashSet;
 use std::fmt::Display;
@@ -7,12 +7,13 @@ use toml::{Table, Value};
 
 use crate::error::{Error, Result};
 
-/// Number of digits to which the values of a range are rounded, so that they are short and the same on every machine.
+/// Number of significant digits to which the values of a range are rounded, so that they are short and the same on
+/// every machine.
 const DIGITS: usize = 9;
 /// Largest number of values in one range. A larger number is probably a mistake.
 const MOST_VALUES: i64 = 1_000_000;
 
-/// Returns the values of a list or a range. `field` is named in error messages.
+/// Returns the values of a list or a range in a study file. `field` is the name of the setting for error messages.
 ///
 /// A list is `[0, 20, 50]`. A range is `{ from = 1, to = 16 }`, which means all whole numbers, or `{ from = 1e-4, to =
 /// 1e-2, count = 20 }`, which means evenly spaced values. With `scale = "log"` the ratio of neighbouring values is
@@ -36,7 +37,8 @@ pub(super) fn values(field: &str, said: &Value) -> Result<Vec<Value>> {
     Ok(values)
 }
 
-/// Returns a key that is equal for equal numbers or words: the same for 1 and 1.0, and for 0 and -0.0.
+/// Returns a key with which equal values are found: equal numbers have the same key, for example 1 and 1.0, or 0 and
+/// -0.0.
 fn meaning(value: &Value) -> (Option<u64>, String) {
     match number(value) {
         Some(number) => (Some((number + 0.0).to_bits()), String::new()),
@@ -96,7 +98,7 @@ fn of_range(field: &str, range: &Table) -> Result<Vec<Value>> {
     Ok((0..count).map(value).collect())
 }
 
-/// Returns all whole numbers of a range without a count.
+/// Returns the values of a range without `count`: all whole numbers from `from` to `to`.
 fn whole_numbers(field: &str, range: &Table) -> Result<Vec<Value>> {
     let (Value::Integer(from), Value::Integer(to)) = (&range["from"], &range["to"]) else {
         let allowed = "a number of values, as the bounds are not both whole numbers";
@@ -116,7 +118,8 @@ fn not_above(field: &str, least: &str, from: impl Display, to: impl Display) -> 
     Error::value(format!("{field}.to"), to, format!("{least} from, which is {from}"))
 }
 
-/// True if the values of a range are spaced logarithmically: the ratio of neighbouring values is constant.
+/// True if `range` asks for logarithmic spacing, with a constant ratio of neighbouring values. `from` is the first
+/// value, which must then be above 0.
 fn is_logarithmic(field: &str, range: &Table, from: f64) -> Result<bool> {
     let Some(scale) = range.get("scale") else { return Ok(false) };
     match scale.as_str() {

@@ -25,33 +25,33 @@ use crate::sim::{AlarmKind, RunEnding, Simulation, Tally};
 pub enum Status {
     /// The run reached its full duration.
     Done,
-    /// The state of the run became NaN or infinite.
+    /// Positions or velocities of grains became NaN or infinite, which ended the run.
     NotFinite,
 }
 
-/// The result of a run: a row of the study's table. If the state was no longer finite, the numbers are those at the end
-/// of the run, and can be NaN or infinite.
+/// The result of a run: a row of the study's table. If NaN or infinite positions ended the run early, the numbers are
+/// those at its end, and can be NaN or infinite.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunResult {
     /// Status of the run at its end.
     pub status: Status,
-    /// Sums over all steps of the run.
+    /// Statistics of all steps of the run, such as the number of sweeps and the mean overlap.
     #[serde(flatten)]
     pub tally: Tally,
     /// Slump Δy_G at the end: the drop of the mean height, divided by the first mean height (paper eq. 11).
     #[serde(with = "number")]
     pub slump: f64,
-    /// Gap between the first two grains at the end, in diameters; 0 for a single grain.
+    /// Gap between the first two grains at the end of the run, in mean diameters; 0 for a single grain.
     #[serde(with = "number")]
     pub first_gap: f64,
-    /// Number of grains that went through a wall or left the world.
+    /// Number of grains that went through a wall or left the scene.
     pub lost_grains: u32,
-    /// Names of the kinds of warnings that the run raised, separated by spaces.
+    /// Names of the warnings that the run raised, such as `overlap`, separated by spaces.
     pub alarms: String,
 }
 
 impl RunResult {
-    /// Names of the columns of a result in a table.
+    /// Names of the columns of `runs.csv` that contain the result of a run.
     const COLUMNS: &str = "status,steps,slump,mean_overlap,max_overlap,mean_contacts,first_gap,\
         unconverged_steps,stalled_steps,sweeps,largest_residual,\
         largest_velocity_error,lost_grains,alarms";
@@ -81,14 +81,14 @@ impl RunResult {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct SweptRun {
     pub outcome: RunResult,
-    /// Checksum of the file with the run's rows over time, if the run has such a file.
+    /// Checksum of the file with the run's time series, if the run has such a file.
     #[serde(rename = "course", default, skip_serializing_if = "Option::is_none")]
     pub series: Option<String>,
 }
 
 #[cfg(test)]
 impl RunResult {
-    /// Returns the result of a run without failures that has this slump, for tests.
+    /// Returns the made-up result of a run that ended without failure and has this slump, for tests.
     pub(crate) fn of_slump(slump: f64) -> Self {
         let tally = Tally { steps: 1, sweeps: 1, ..Tally::default() };
         let (status, alarms) = (Status::Done, String::new());
@@ -183,17 +183,18 @@ impl RunsTable {
         Ok(Self { rows, wall_secs })
     }
 
-    /// Returns the number of runs whose state was no longer finite.
+    /// Returns the number of runs that ended early because positions or velocities became NaN or infinite.
     pub fn not_finite(&self) -> usize {
         self.rows.iter().filter(|(.., result)| result.status == Status::NotFinite).count()
     }
 
-    /// Returns the number of runs that raised warnings, by kind, in words; `None` if no run raised a warning.
+    /// Returns a phrase with the number of runs that raised warnings, in total and for each kind of warning; `None` if
+    /// no run raised a warning.
     pub fn alarms(&self) -> Option<String> {
         alarms_of(self.rows.iter().map(|(.., result)| result))
     }
 
-    /// Writes the table as CSV. All numbers can be read back bit for bit.
+    /// Writes the table of a study as CSV. Numbers have enough digits that reading them gives the same bits.
     pub(super) fn write(&self, path: &Path) -> Result<()> {
         let refuse = |error: csv::Error| Error::file("runs.csv", error);
         let fields = Config::names();
@@ -216,8 +217,8 @@ impl RunsTable {
     }
 }
 
-/// Returns the number of runs that raised warnings, in words: "3 of 40 runs raised alarms (overlap 2, grain-lost 1)".
-/// Returns `None` if no run raised a warning.
+/// Returns a phrase with the number of runs that raised warnings, such as "3 of 40 runs raised alarms (overlap 2,
+/// grain-lost 1)". Returns `None` if no run raised a warning.
 pub(crate) fn alarms_of<'a>(results: impl Iterator<Item = &'a RunResult>) -> Option<String> {
     let (mut all, mut alarmed, mut by_kind) = (0, 0, [0; AlarmKind::ALL.len()]);
     for result in results {

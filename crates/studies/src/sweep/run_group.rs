@@ -10,23 +10,24 @@ use serde_json::{Map, Value};
 pub(super) struct RunGroup {
     /// Varied settings, with their values in this group.
     pub settings: Map<String, Value>,
-    /// Number of valid runs, which ended with a finite state and lost no grain.
+    /// Number of valid runs: runs that reached their end, with finite positions and velocities, and in which no grain
+    /// left the scene.
     pub starts: usize,
-    /// Number of invalid runs, which lost a grain or ended with a state that is not finite.
+    /// Number of invalid runs: a grain left the scene, or positions or velocities became NaN or infinite.
     pub spoilt: usize,
-    /// Mean slump, and half its 95 % interval. Both are `null` if no run is valid; half the interval is also `null` for
-    /// a single run.
+    /// Mean slump of the valid runs, and the half-width of its 95 % confidence interval. In the file both are `null` if
+    /// no run is valid; the half-width is also `null` for a single run.
     pub slump: [f64; 2],
     /// Effects of the varied settings on the slump. The key is the name of the setting, or the first name if several
-    /// settings vary together. An effect is the difference of the slump between this group and the group that has the
-    /// first value of the setting and otherwise the same settings: the mean over the initial states that both groups
-    /// share, and half its 95 % interval.
+    /// settings vary together. An effect is the slump of this group minus the slump of the group that has the first
+    /// value of the setting and otherwise the same settings. The two numbers are the mean over the initial states that
+    /// both groups share, and the half-width of its 95 % confidence interval.
     pub less_first: BTreeMap<String, [f64; 2]>,
-    /// Fraction of steps that missed their tolerance.
+    /// Fraction of the steps of all runs that were not solved to their tolerance.
     pub unsolved: f64,
-    /// Largest estimated velocity error of a step, m/s; `null` if a state was no longer finite.
+    /// Largest estimated velocity error of a step in any run, m/s; in the file `null` if it is NaN or infinite.
     pub largest_velocity_error: f64,
-    /// Largest of the runs' mean overlaps (means over all steps), in mean diameters d.
+    /// Mean overlap of contacts over all steps of a run, in mean diameters d: the largest value among the runs.
     pub mean_overlap: f64,
     /// Mean computing time of a run, s.
     pub secs: f64,

@@ -1,5 +1,6 @@
-//! Writes the series of runs: the rows of each run over time, as one CSV file per run in the folder `series/`. The
-//! checksums of these files are in the journal, so that the files are plain tables.
+//! Writes the time series of runs, as one CSV file per run in the folder `series/`, with one row per interval of
+//! simulated time. The checksums of these files are in the journal and not in the files, so that the files are plain
+//! tables.
 
 use std::path::{Path, PathBuf};
 
@@ -12,16 +13,17 @@ use crate::sim::{Observables, Simulation};
 
 pub(super) const SERIES: &str = "series";
 
-/// Returns the path of the file with the rows over time of the run with the given key.
+/// Returns the path of the file with the time series of the run with the given key.
 pub fn series_path(folder: &Path, key: &str) -> PathBuf {
     folder.join(SERIES).join(format!("{key}.csv"))
 }
 
-/// The series of a run in progress: its rows over time so far.
+/// The time series of a run in progress: the table rows that the run has written so far.
 pub(super) struct Series<'a> {
     settings: &'a SeriesSettings,
     time_step_secs: f64,
-    /// Number of the next row. The row is due after this number of intervals.
+    /// Number of the next row of the time series, counted from 0. The row is written when this number of intervals of
+    /// simulated time has passed.
     next: u64,
     writer: csv::Writer<Vec<u8>>,
 }
@@ -33,8 +35,8 @@ impl<'a> Series<'a> {
         Self { settings, time_step_secs, next: 0, writer }
     }
 
-    /// Adds a row with the observables and the positions of the chosen grains, if a row is due. A row is due at the
-    /// first step that reaches the time of the row, up to rounding.
+    /// Adds a row with the observables (measured numbers, such as the slump) and the positions of the chosen grains, if
+    /// a row is due. A row is due at the first step that reaches the time of the row, up to rounding.
     pub(super) fn add_if_due(&mut self, simulation: &Simulation) -> Result<()> {
         let reached = simulation.time_secs() + 1e-6 * self.time_step_secs;
         if reached < self.next as f64 * self.settings.interval {
@@ -56,7 +58,7 @@ impl<'a> Series<'a> {
         self.writer.serialize((observables, places)).map_err(refuse)
     }
 
-    /// Writes the file of the series, and returns its checksum.
+    /// Writes the file of the time series to `folder`, and returns the checksum of the file.
     pub(super) fn finish(self, folder: &Path, key: &str) -> Result<String> {
         let bytes = self.writer.into_inner().map_err(|error| Error::file(SERIES, error.error()))?;
         let series = folder.join(SERIES);
@@ -66,7 +68,8 @@ impl<'a> Series<'a> {
     }
 }
 
-/// Returns the header line of a table of observables. No name in it contains a comma.
+/// Returns the names of the observables, separated by commas, as the header line of a CSV table. No name contains a
+/// comma.
 fn column_names(observables: &Observables) -> Result<String> {
     let mut table = csv::Writer::from_writer(Vec::new());
     table.serialize(observables).map_err(|error| Error::file(SERIES, error))?;
@@ -74,7 +77,8 @@ fn column_names(observables: &Observables) -> Result<String> {
     Ok(String::from_utf8_lossy(&bytes).lines().next().unwrap_or_default().to_owned())
 }
 
-/// True if the file with the rows of a finished run is intact. A damaged file is reported.
+/// True if the file with the time series of a finished run is intact, that is, has the given checksum. A damaged file
+/// is reported on the terminal.
 pub(super) fn is_whole(folder: &Path, key: &str, checksum: Option<&str>) -> bool {
     let path = series_path(folder, key);
     let Ok(bytes) = std::fs::read(&path) else { return false };

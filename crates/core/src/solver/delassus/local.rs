@@ -17,7 +17,8 @@
 //! the compressive cone a contact with p ≤ c₀ has no friction. A contact with p > c₀ is solved in a shifted cone with
 //! p − c₀ instead of p and b + c₀(W_nn, W_nt) instead of b.
 
-/// Numbers that the solution of one contact needs, computed once before the sweeps.
+/// Data of one contact that its update in a sweep reads: its own block of W and quantities derived from it, friction
+/// coefficient and cohesion impulse. They are computed once before the sweeps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LocalBlock {
     /// Entry W_nn of the contact's own block of W, 1/kg; `mixed` is W_nt, and `tangential` is W_tt.
@@ -26,8 +27,8 @@ pub(super) struct LocalBlock {
     pub tangential: f64,
     /// Entries nn, nt and tt of W_kk⁻¹, the inverse of the contact's own block of W, kg.
     inverse: [f64; 3],
-    /// Effective masses of slip in the direction s = −1 and s = +1, 1/(W_nn + sμW_nt), kg. If a mass is not positive,
-    /// slip in that direction cannot carry a load.
+    /// Effective masses of slip with P_t = sμp in the direction s = −1 and s = +1, 1/(W_nn + sμW_nt), kg. If a mass is
+    /// not positive, slip in that direction would give a closing contact an impulse p < 0, which the law forbids.
     slip_masses: [f64; 2],
     /// Friction coefficient μ.
     pub friction: f64,
@@ -36,7 +37,7 @@ pub(super) struct LocalBlock {
 }
 
 impl LocalBlock {
-    /// Computes the numbers of a contact from its own block W_kk of W (`block`, 1/kg), which must be positive definite.
+    /// Computes the data of a contact from its own block W_kk of W (`block`, 1/kg), which must be positive definite.
     pub(super) fn new(block: [[f64; 2]; 2], friction: f64, cohesion_impulse: f64) -> Self {
         let [[normal, mixed], [_, tangential]] = block;
         let determinant = normal * tangential - mixed * mixed;
@@ -52,7 +53,7 @@ impl LocalBlock {
     }
 
     /// Returns the shifted normal impulse p = P_n + c₀ and the tangential impulse P_t (N·s) that satisfy the contact's
-    /// law. The arguments (`normal`, `tangential`) are the contact's velocity at p = P_t = 0, m/s.
+    /// law. The arguments (`normal`, `tangential`) are the velocity that the contact would have at p = P_t = 0, m/s.
     #[inline(always)]
     pub(super) fn solve(&self, [normal, tangential]: [f64; 2], compressive_cone: bool) -> [f64; 2] {
         if normal >= 0.0 {
@@ -70,8 +71,8 @@ impl LocalBlock {
         [pressure + cohesion, rubbing]
     }
 
-    /// Returns (p, P_t), N·s, of a contact that would close without an impulse: the impulses of stick if the cone
-    /// allows them, otherwise the impulses of slip.
+    /// Returns the impulses (p, P_t), N·s, of a contact that would close if its impulses were 0: the impulses of stick
+    /// if the friction cone allows them, otherwise the impulses of slip.
     #[inline(always)]
     fn pressed(&self, free @ [normal, tangential]: [f64; 2]) -> [f64; 2] {
         let [inverse_normal, inverse_mixed, inverse_tangential] = self.inverse;
@@ -92,8 +93,9 @@ impl LocalBlock {
         if pushed_along_other < pushed_along { other } else { impulse }
     }
 
-    /// Returns the impulses (p, P_t), N·s, of slip with P_t = sμp, and s·u_t, m/s. The sign s is +1 if `positive`,
-    /// otherwise −1. The case satisfies the law if s·u_t ≤ 0.
+    /// Returns the impulses (p, P_t), N·s, if the contact slips with P_t = sμp, and the velocity s·u_t, m/s. The sign s
+    /// is +1 if `positive`, otherwise −1. The impulses satisfy the law if s·u_t ≤ 0. Instead of s·u_t returns infinity
+    /// if p is not positive.
     #[inline(always)]
     fn slip(&self, [normal, tangential]: [f64; 2], positive: bool) -> ([f64; 2], f64) {
         let side = if positive { 1.0 } else { -1.0 };
@@ -109,8 +111,8 @@ mod tests {
     use super::*;
     use crate::number::Parts;
 
-    /// Returns the violation of the contact's law by the computed (p, P_t), relative to the velocities that the law
-    /// compares.
+    /// Returns the error of the impulses that `solve` computes for a contact: the largest violation of the contact's
+    /// law, as a velocity relative to the velocities at zero impulses.
     fn fault(block: &LocalBlock, compressive: bool, free: [f64; 2]) -> f64 {
         let [p, t] = block.solve(free, compressive);
         let u = [
@@ -154,7 +156,7 @@ mod tests {
         assert!(kinds.iter().all(|&count| count > 50), "each kind arose: {kinds:?}");
     }
 
-    /// If only cohesion holds a sliding contact closed, the contact has friction in the shifted cone and none in the
+    /// Checks a sliding contact that only cohesion keeps closed: it has friction in the shifted cone and none in the
     /// compressive cone.
     #[test]
     fn a_pulling_contact_rubs_in_the_shifted_cone_alone() {

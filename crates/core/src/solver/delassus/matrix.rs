@@ -15,8 +15,8 @@ use crate::solver::problem::{Row, StepProblem};
 /// error of a file with six digits.
 const ASYMMETRY: f64 = 1e-5;
 
-/// Entries of a sparse matrix; entries at the same position are added. This is plain data, which is checked when a
-/// problem is created from it.
+/// Entries of a sparse matrix, given by row, column and value; entries at the same position are added. The entries are
+/// not checked before a problem is created from them.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Triplets {
@@ -188,8 +188,8 @@ impl Assembled {
     }
 }
 
-/// Checks that W has at most [`MOST_ENTRIES`] entries. The argument lists the contacts of each body: any two contacts
-/// of a body, and each contact with itself, make a block of four entries.
+/// Checks that W has at most [`MOST_ENTRIES`] entries. The argument lists the contacts of each body. W has a block of
+/// four entries for each contact with itself, and two for each pair of contacts that share a body.
 fn check_entries(contacts_of_body: &[Vec<usize>]) -> Result<()> {
     let of_body = |contacts: &Vec<usize>| 4 * (contacts.len() as u64).pow(2);
     let entries: u64 = contacts_of_body.iter().map(of_body).sum();
@@ -206,8 +206,8 @@ fn check_entries(contacts_of_body: &[Vec<usize>]) -> Result<()> {
     }
 }
 
-/// Returns the entry of W, 1/kg, for two of its rows, each given by the number of a contact and an axis (0 normal, 1
-/// tangential).
+/// Returns the entry of W, 1/kg, in the row of one contact and axis and the column of another contact and axis (0
+/// normal, 1 tangential).
 fn entry<M: Model>(
     problem: &StepProblem<M>,
     [number, axis]: [usize; 2],

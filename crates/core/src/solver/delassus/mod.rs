@@ -32,14 +32,16 @@ use crate::error::{self, Error, Result};
 use crate::number::Parts;
 use crate::world::FrictionCone;
 
-/// Ratio of a sweep's impulse change ‖ΔP‖₂ to the allowed error (both N·s) at or below which the residual is computed.
-/// The residual costs as much as a sweep, and the change in a sweep is about the error before that sweep. A smaller
-/// ratio risks an unnecessary sweep, a larger ratio an unnecessary computation of the residual.
+/// Factor of the allowed error of the impulses (N·s): if a sweep changes the impulses by at most this factor times the
+/// allowed error, the residual is computed. The residual costs as much as a sweep, and the change in a sweep is about
+/// the error before that sweep. A smaller factor risks an unnecessary sweep, a larger factor an unnecessary computation
+/// of the residual.
 const NEAR: f64 = 2.0;
-/// Number of sweeps after which the residual is computed in any case.
+/// Interval, in sweeps, at which the residual is computed even if the impulses still change much.
 const TEST_INTERVAL: u32 = 16;
 
-/// A 2×2 block of W outside the diagonal, 1/kg: the change of one contact's velocity per impulse of another, `contact`.
+/// A 2×2 block of W outside the diagonal, 1/kg: the change of a contact's velocity per impulse of another contact,
+/// whose index is `contact`.
 #[derive(Clone, Copy, Debug)]
 struct DelassusBlock {
     block: [[f64; 2]; 2],
@@ -50,7 +52,7 @@ struct DelassusBlock {
 #[derive(Clone, Copy, Debug)]
 struct DelassusRow {
     local: LocalBlock,
-    /// Velocity q' at the shifted impulses p = P_t = 0, which contains cohesion, m/s.
+    /// Velocity q' of the contact at the shifted impulses p = P_t = 0 of all contacts, m/s. Cohesion is part of q'.
     free: [f64; 2],
     /// Index of the contact's first block in `DelassusProblem::neighbours`. Its blocks end where the blocks of the next
     /// contact begin.
@@ -65,7 +67,8 @@ pub struct DelassusProblem {
     /// Shifted normal impulse p = P_n + c₀ and tangential impulse P_t of each contact, N·s.
     impulses: Vec<[f64; 2]>,
     compressive_cone: bool,
-    /// Denominator of the residual, ‖(m_n q_n, m_t q_t)‖₂, N·s.
+    /// Denominator of the residual, ‖(m_n q_n, m_t q_t)‖₂, N·s, with the effective masses m_n and m_t and the
+    /// velocities q without contact impulses.
     scale: f64,
 }
 
@@ -145,8 +148,7 @@ impl DelassusProblem {
             .map(|(impulse, row)| [impulse[0] - row.local.cohesion_impulse, impulse[1]])
     }
 
-    /// Sets the normal and tangential impulses (P_n, P_t) of each contact, N·s, without projecting them on the contact
-    /// law.
+    /// Sets the normal and tangential impulses (P_n, P_t) of each contact, N·s. They need not satisfy the contact law.
     pub fn set_impulses(&mut self, impulses: impl IntoIterator<Item = [f64; 2]>) {
         let places = self.impulses.iter_mut().zip(&self.rows);
         for ((place, row), [normal, tangential]) in places.zip(impulses) {
@@ -189,7 +191,8 @@ impl DelassusProblem {
         &self.neighbours[start..end]
     }
 
-    /// Returns the velocity that a contact would have if its own shifted impulses were p = P_t = 0, m/s.
+    /// Returns the velocity that a contact would have if its own shifted impulses were p = P_t = 0 and the impulses of
+    /// the other contacts were unchanged, m/s.
     #[inline(always)]
     fn velocity_of_others(&self, contact: usize) -> [f64; 2] {
         let mut velocity = self.rows[contact].free;
@@ -203,8 +206,8 @@ impl DelassusProblem {
 }
 
 impl DelassusRow {
-    /// Returns the contact's squared error e_n² + e_t² in the natural map, (N·s)², at the impulses (p, `rubbing`) and
-    /// the velocity `u`.
+    /// Returns the contact's squared error e_n² + e_t² in the natural map, (N·s)², at the shifted normal impulse p, the
+    /// tangential impulse `rubbing` and the velocity `u`.
     fn squared_error(&self, [p, rubbing]: [f64; 2], u: [f64; 2], compressive: bool) -> f64 {
         let LocalBlock { normal, tangential, friction, cohesion_impulse, .. } = self.local;
         let rubs =
@@ -219,7 +222,8 @@ impl DelassusRow {
         normal_error * normal_error + tangential_error * tangential_error
     }
 
-    /// Returns the contact's contribution (m_n q_n)² + (m_t q_t)² to the squared denominator of the residual, (N·s)².
+    /// Returns the contact's contribution (m_n q_n)² + (m_t q_t)² to the squared denominator of the residual, (N·s)²,
+    /// with the velocity q without contact impulses. The tangential term is left out if μ = 0.
     fn squared_scale(&self, q: [f64; 2]) -> f64 {
         let normal = q[0] / self.local.normal;
         let tangential = if self.local.friction > 0.0 { q[1] / self.local.tangential } else { 0.0 };
@@ -382,8 +386,9 @@ impl ContactSystem for DelassusProblem {
 mod tests {
     use super::*;
 
-    /// The problem has two contacts on opposite sides of one body, each closing at 1 m/s. For any impulses
-    /// u₀ + u₁ = −2 m/s, so the two velocities cannot both be ≥ 0.
+    /// Checks that a problem without a solution is reported as stalled, and a similar problem with a solution as
+    /// converged. The first problem has two contacts on opposite sides of one body, each closing at 1 m/s. For any
+    /// impulses u₀ + u₁ = −2 m/s, so the two velocities cannot both be ≥ 0.
     #[test]
     fn a_problem_without_solution_is_told_from_one_that_was_stopped_too_early() {
         let matrix = Triplets {

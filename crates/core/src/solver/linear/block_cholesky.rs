@@ -2,9 +2,9 @@
 //! of blocks per body.
 //!
 //! Rows are numbered by the bodies' positions in the elimination order. With U_ab the block in row a and column b > a,
-//! and D_k the diagonal block of k after all earlier eliminations, the elimination of position k computes
+//! and D_k the diagonal block of position k after all earlier eliminations, the elimination of position k computes
 //!
-//! > D_k = L_k L_kᵀ,  W_kb = L_k⁻¹ U_kb,  U_ab ← U_ab − W_kaᵀ W_kb for all later neighbours a ≤ b of k,
+//! > D_k = L_k L_kᵀ,  W_kb = L_k⁻¹ U_kb,  U_ab ← U_ab − W_kaᵀ W_kb for all pairs of later neighbours a ≤ b of k,
 //!
 //! and finally A = WᵀW, with L_kᵀ on the diagonal of W. This takes half the work and half the memory of unsymmetric
 //! factors, and a positive definite matrix needs no pivoting. Adjacent positions with the same later neighbours form a
@@ -107,8 +107,8 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         }
     }
 
-    /// Factorises the row at position `place` of the elimination order, and subtracts its contribution to the later
-    /// rows of its supernode, which ends before position `end`.
+    /// Factorises the row at position `place` of the elimination order, and subtracts its contribution from the later
+    /// rows of its supernode (adjacent rows that are eliminated together), which ends before position `end`.
     #[inline(always)]
     fn factorise_place(&mut self, elimination: &Elimination, place: usize, end: usize) {
         let Self { diagonal, upper, .. } = self;
@@ -130,7 +130,8 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         }
     }
 
-    /// Subtracts the contributions of a factorised row that is a supernode by itself from the blocks of later rows.
+    /// Subtracts the contributions of a factorised row from the blocks of later rows. The row is a supernode by itself:
+    /// no other row is eliminated together with it.
     #[inline(always)]
     fn subtract_row(&mut self, elimination: &Elimination, row: Range<usize>, targets: &[u32]) {
         let Self { diagonal, upper, .. } = self;
@@ -147,8 +148,8 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         }
     }
 
-    /// Subtracts the contributions of a factorised supernode from the blocks of later rows. Each block is loaded and
-    /// stored once for all rows of the supernode.
+    /// Subtracts the contributions of a factorised supernode (adjacent rows that are eliminated together) from the
+    /// blocks of later rows. Each block is loaded and stored once for all rows of the supernode.
     #[inline(always)]
     fn subtract_supernode(
         &mut self,
@@ -234,7 +235,7 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
     }
 }
 
-/// Number of pairs among `count` items.
+/// Number of pairs among `count` items, count (count − 1)/2.
 fn pairs(count: usize) -> usize {
     count * count.saturating_sub(1) / 2
 }
@@ -314,8 +315,8 @@ mod tests {
     use super::*;
     use crate::solver::linear::tests::{grid, numbers};
 
-    /// The matrix consists of unit masses, and of springs with random directions and strengths between the bodies of a
-    /// grid.
+    /// Checks the solution of a linear system with a known solution. The matrix consists of unit masses, and of springs
+    /// with random directions and strengths between the bodies of a grid.
     #[test]
     fn a_grid_of_springs_is_solved_to_rounding() {
         let side = 15u32;

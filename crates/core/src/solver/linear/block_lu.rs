@@ -65,8 +65,8 @@ impl<const D: usize> BlockMatrix<D> {
         &mut self.diagonal[place as usize]
     }
 
-    /// Returns the blocks (i, j) and (j, i) of two neighbours in the elimination order. `number` is the index of the
-    /// later neighbour in [`Elimination::later`].
+    /// Returns the two off-diagonal blocks (i, j) and (j, i) of two bodies that are neighbours. `number` is the index
+    /// of the body that is eliminated later in [`Elimination::later`].
     #[inline(always)]
     pub(crate) fn off_diagonal_mut(
         &mut self,
@@ -77,8 +77,8 @@ impl<const D: usize> BlockMatrix<D> {
         if i_is_earlier { (upper, lower) } else { (lower, upper) }
     }
 
-    /// Replaces the matrix by its factors: L below the diagonal (the diagonal of L is 1), U above it, and the inverses
-    /// of U's diagonal blocks on it.
+    /// Replaces the matrix by its factors: L below the diagonal (the diagonal blocks of L are unit matrices), U above
+    /// the diagonal, and the inverses of U's diagonal blocks on the diagonal.
     pub(crate) fn factorise(&mut self, elimination: &Elimination) {
         let mut targets = elimination.targets.iter();
         for place in 0..self.diagonal.len() {

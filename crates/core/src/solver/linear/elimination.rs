@@ -4,19 +4,19 @@
 //! fewest neighbours is eliminated first, and its neighbours become neighbours of each other. Contact graphs are nearly
 //! planar, so the neighbourhoods stay small.
 //!
-//! **Postorder** puts positions that work on the same numbers next to each other. The parent of a position in the
-//! elimination tree is the first of its later neighbours. Every order that has each position before its
-//! parent leads to the same factors with the same fill-in. An order that finishes a subtree before it begins the next
-//! subtree changes blocks that were computed recently, and puts positions with the same later neighbours next to each
-//! other (J. W. H. Liu, 1990).
+//! **Postorder** puts positions whose eliminations change the same blocks next to each other. The parent of a position
+//! in the elimination tree is the first of its later neighbours. Every order that has each position before its parent
+//! leads to the same factors with the same fill-in. An order that finishes a subtree before it begins the next subtree
+//! changes blocks that were computed recently, and puts positions with the same later neighbours next to each other (J.
+//! W. H. Liu, 1990).
 
 use smallvec::SmallVec;
 
 use crate::solver::kinematics::Model;
 use crate::solver::problem::StepProblem;
 
-/// Neighbours of a body. A disc seldom has more than six neighbours at first, and elimination seldom doubles that
-/// number; longer lists are stored on the heap.
+/// Neighbours of a body: the bodies with which it shares a nonzero block. A disc seldom has more than six neighbours at
+/// first, and elimination seldom doubles that number; longer lists are stored on the heap.
 type BodyNeighbours = SmallVec<[u32; 12]>;
 
 /// An elimination order and the nonzero pattern of the factors. A *place* is the position of a body in this order.
@@ -31,11 +31,11 @@ pub(crate) struct Elimination {
     pub starts: Vec<u32>,
     /// Later neighbours of all positions, given by their own positions in the elimination order.
     pub later: Vec<u32>,
-    /// For each position, and each pair a < b of its later neighbours in lexicographic order: the number of block
-    /// (a, b).
+    /// Numbers of the blocks that the elimination of each position changes: for each pair a < b of the position's later
+    /// neighbours, in lexicographic order, the number of block (a, b).
     pub targets: Vec<u32>,
-    /// First positions of the supernodes, then the number of positions. A supernode is a run of positions, each of
-    /// which has as later neighbours the next position and all later neighbours of the next position.
+    /// First position of each supernode, and finally the number of positions. A supernode is a run of positions, each
+    /// of which has as later neighbours the next position and all later neighbours of the next position.
     pub supernodes: Vec<u32>,
     postorder: Postorder,
     neighbours: Vec<BodyNeighbours>,
@@ -109,7 +109,7 @@ impl Elimination {
         }
     }
 
-    /// Renumbers the positions in postorder.
+    /// Renumbers the positions of the elimination order in postorder.
     fn rearrange(&mut self) {
         let Self { body_at, place_of, neighbours, postorder, .. } = self;
         // All neighbours that a body had when it was eliminated come later in the order.
@@ -124,7 +124,8 @@ impl Elimination {
         }
     }
 
-    /// Makes `body`, a neighbour of the eliminated body, a neighbour of the other bodies of the clique.
+    /// Makes `body` a neighbour of all other bodies of `clique`, the list of the neighbours of the body that is being
+    /// eliminated.
     fn join(&mut self, body: u32, eliminated: u32, clique: &[u32]) {
         let own = &mut self.neighbours[body as usize];
         self.merged.clear();
@@ -205,13 +206,13 @@ struct Postorder {
     first_child: Vec<u32>,
     /// For each position, the next child of the same parent.
     next_child: Vec<u32>,
-    /// For each position, the child with the most later neighbours, which comes right before its parent in the new
+    /// For each position, its child with the most later neighbours. This child comes right before its parent in the new
     /// order.
     heir: Vec<u32>,
     /// For each position, the number of later neighbours of the child in `heir`.
     most: Vec<usize>,
     stack: Vec<u32>,
-    /// The positions in their new order, reversed.
+    /// The positions in postorder, last position first.
     reversed: Vec<u32>,
 }
 
@@ -267,7 +268,7 @@ pub(crate) struct ContactGraph {
     pub elimination: Elimination,
     /// The block of each row between two moving bodies, as an index in [`Elimination::later`].
     pub pair_blocks: Vec<u32>,
-    /// Number of bodies, and pairs of bodies in contact, for which `elimination` was computed.
+    /// Number of bodies, and (next field) pairs of bodies in contact, for which `elimination` was computed.
     bodies: usize,
     pairs: Vec<(u32, u32)>,
 }

@@ -1,4 +1,4 @@
-//! Sparse systems of linear equations in blocks: elimination order and factorisations.
+//! Sparse systems of linear equations whose matrix consists of blocks: elimination order and factorisations.
 
 mod block_cholesky;
 mod block_lu;

@@ -6,29 +6,30 @@
 //! `contact::law`).
 //!
 //! * `tresca`: 0 ≤ σ ⟂ w ≥ 0 and λ_t = clamp(λ_t − v m_t/m_n, ±g). The lagged number is g, Coulomb's friction bound at
-//!   an earlier σ: for the first solve the σ after some sweeps under Coulomb's law, for a further solve the σ of the
-//!   solve before (P. D. Panagiotopoulos, 1975, solved Coulomb's law by such problems).
+//!   an earlier σ: for the first solve of a step the σ after some sweeps under Coulomb's law, for a further solve of
+//!   the step the σ of the solve before (P. D. Panagiotopoulos, 1975, solved Coulomb's law by such problems).
 //! * `associated`: K ∋ (σ, λ_t) ⟂ (w, v) ∈ K* with K = {|λ_t| ≤ μσ} (M. Anitescu, 2006; A. Tasora and M. Anitescu,
-//!   2011). If a contact slides, w = μ|v|: the contact opens although it ought to stay closed.
+//!   2011). If a contact slides, w = μ|v|: the contact opens although Coulomb's law keeps it closed.
 //! * `desaxce`: like `associated`, with w + s instead of w. With s = μ|v| of the solution this would be Coulomb's law
 //!   (G. de Saxcé and Z.-Q. Feng, 1998; V. Acary and others, 2011). The lagged number is s: for the first solve from
 //!   the velocities at the beginning of the step, for a further solve from the velocities of the solve before.
 //!
-//! In each model the impulses of a contact are the point of a convex set that is nearest to
-//! (σ − w − s, λ_t − v m_t/m_n) in the metric diag(1, m_n/m_t). This projection is the Gauss–Seidel update of a contact
-//! of solid discs, whose Delassus block is diagonal, and it defines the natural map.
+//! In each model the impulses of a contact are the point of a convex set that is nearest to (σ − w − s, λ_t − v
+//! m_t/m_n) in the metric diag(1, m_n/m_t). This projection is the Gauss–Seidel update of a contact of solid discs,
+//! whose Delassus block is diagonal. It also defines the natural map, the measure of error of a solve.
 
 use super::{Row, StepProblem};
 use crate::contact::{ContactLaw, Lanes, law};
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
-/// The friction model of a step, and the *lagged numbers*: one number per contact that stays fixed during a solve.
+/// The friction model of a step, and its *lagged numbers*: one number per contact (friction bound or opening speed)
+/// that stays fixed during a solve.
 #[derive(Clone, Debug)]
 pub(crate) struct LaggedFriction {
     pub model: FrictionModel,
-    /// For each row (contact), the number that stays fixed during a solve, m/s: a friction bound or an opening speed.
-    /// Empty under Coulomb's law.
+    /// Lagged number of each contact, m/s: a friction bound or an opening speed that stays fixed during a solve. Empty
+    /// under Coulomb's law.
     pub now: Vec<f64>,
 }
 
@@ -40,19 +41,20 @@ impl Default for LaggedFriction {
 
 /// The projection of a contact's trial impulses onto the impulses that a friction model allows.
 pub(crate) trait FrictionProjection: Sized {
-    /// True if the model has a number per contact that stays fixed during a solve.
+    /// True if the model needs a number per contact (friction bound or opening speed) that stays fixed during a solve.
     const LAGS: bool;
-    /// True if the contacts of a problem may have different contact laws.
+    /// True if the projection supports contacts with different friction coefficients in one problem.
     const TAKES_PAIRS: bool = false;
     /// True if sweeps with this projection support walls that a force drives.
     const TAKES_DRIVES: bool = true;
 
     /// Returns the allowed shifted normal and tangential impulses (σ, λ_t), m/s, that are nearest to `trial` in the
-    /// metric diag(1, m_n/m_t). `lagged` is the contact's number that stays fixed during the solve, m/s.
+    /// metric diag(1, m_n/m_t). `lagged` is the contact's friction bound or opening speed, m/s, which stays fixed
+    /// during the solve; Coulomb's law ignores it.
     fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2];
 }
 
-/// Evaluates an expression with the projection of the friction model that a problem is solved under.
+/// Evaluates an expression in which a type name stands for the [`FrictionProjection`] of the problem's friction model.
 macro_rules! with_projection {
     ($problem:expr, $M:ident, $P:ident => $work:expr) => {
         match $problem.friction.model {
@@ -77,9 +79,9 @@ macro_rules! with_projection {
 }
 pub(crate) use with_projection;
 
-/// Coulomb's law. With `ALL_RUBS` the tip of the friction cone is at 0 ([`ContactLaw::all_rubs`]) and all rows have the
-/// same law. A sweep is one chain of dependent operations. If the compiler knows that the tip of the cone is at 0, it
-/// removes two operations of the chain, which saves 11 % of the time of a run.
+/// Projection of Coulomb's law. With `ALL_RUBS` the tip of the friction cone is at 0 ([`ContactLaw::all_rubs`]) and all
+/// contacts have the same law. A sweep is one chain of dependent operations. If the compiler knows that the tip of the
+/// cone is at 0, it removes two operations of the chain, which saves 11 % of the time of a run.
 pub(crate) enum CoulombFriction<const ALL_RUBS: bool> {}
 
 impl<const ALL_RUBS: bool> FrictionProjection for CoulombFriction<ALL_RUBS> {
@@ -96,8 +98,8 @@ impl<const ALL_RUBS: bool> FrictionProjection for CoulombFriction<ALL_RUBS> {
     }
 }
 
-/// Returns the shifted normal impulse σ projected onto σ ≥ 0, and the tangential impulse λ_t projected onto the
-/// friction bound of this σ, m/s.
+/// Returns trial impulses projected on Coulomb's law, m/s: the shifted normal impulse σ on σ ≥ 0, and the tangential
+/// impulse λ_t on the friction bound of the projected σ.
 #[inline(always)]
 pub(crate) fn project_by_coulomb<M: Model, T: Lanes>(
     law: &ContactLaw,
@@ -110,7 +112,8 @@ pub(crate) fn project_by_coulomb<M: Model, T: Lanes>(
     [shifted, law::coulomb(tangential, law.friction_bound(shifted))]
 }
 
-/// The projection of the friction model `tresca`. The friction bound, m/s, stays fixed during a solve.
+/// The projection of the friction model `tresca`: σ ≥ 0, and |λ_t| at most a friction bound, m/s, that stays fixed
+/// during a solve.
 pub(crate) enum BoundedFriction {}
 
 impl FrictionProjection for BoundedFriction {
@@ -122,8 +125,8 @@ impl FrictionProjection for BoundedFriction {
     }
 }
 
-/// The projection of the friction models `associated` and `desaxce`. They add to the normal velocity of a contact a
-/// number, m/s, that stays fixed during a solve.
+/// The projection of the friction models `associated` and `desaxce` on the friction cone. These models add to the
+/// normal velocity of a contact an opening speed, m/s, that stays fixed during a solve.
 pub(crate) enum ConeFriction {}
 
 impl FrictionProjection for ConeFriction {
@@ -138,7 +141,7 @@ impl FrictionProjection for ConeFriction {
 }
 
 impl<M: Model> StepProblem<M> {
-    /// Sets the friction model of a problem whose rows and velocities are already set up. Computes the numbers that
+    /// Sets the friction model of a problem whose contacts and velocities are already set up. Computes the numbers that
     /// stay fixed during a solve: the friction bounds of `tresca` from the present impulses, or the opening speeds of
     /// `desaxce` from the velocities at the beginning of the step.
     pub(crate) fn begin_friction(&mut self, model: FrictionModel) {
@@ -159,8 +162,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Makes Coulomb's law the friction model again, and deletes the numbers that another model keeps fixed during a
-    /// solve.
+    /// Makes Coulomb's law the friction model again, and deletes the friction bounds or opening speeds of the model
+    /// before.
     pub(crate) fn forget_bounds(&mut self) {
         self.friction.model = FrictionModel::Coulomb;
         self.friction.now.clear();
@@ -176,8 +179,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the number of each row that stays fixed during a solve to `lagged_of`, a function of the contact law, the
-    /// row and its tangential velocity.
+    /// Sets the friction bound or opening speed of each contact to the result of `lagged_of`, a function of the contact
+    /// law, the row (data of the contact) and its tangential velocity, m/s.
     fn lag_by(&mut self, lagged_of: impl Fn(&ContactLaw, &Row<M>, f64) -> f64) {
         let mut lagged = std::mem::take(&mut self.friction.now);
         lagged.clear();
@@ -188,12 +191,13 @@ impl<M: Model> StepProblem<M> {
     }
 }
 
-/// Returns the friction bound g of `tresca`, m/s, that follows from the impulses of a solve.
+/// Returns the friction bound g of a contact under `tresca`, m/s: the bound of Coulomb's law for the contact's present
+/// shifted normal impulse.
 fn bound<M: Model>(law: &ContactLaw, row: &Row<M>, _: f64) -> f64 {
     law.friction_bound(row.shifted_impulse)
 }
 
-/// Returns the opening speed s of `desaxce`, m/s, that follows from the tangential velocity of a solve.
+/// Returns the opening speed s = μ|v_t| of a contact under `desaxce`, m/s, from its tangential velocity, m/s.
 fn opening<M: Model>(law: &ContactLaw, _: &Row<M>, tangential_velocity: f64) -> f64 {
     law.friction * tangential_velocity.abs()
 }

@@ -1,4 +1,5 @@
-//! Measures of a solved step, computed in one pass over the rows: residual, velocity error, contact counts and works.
+//! Measures of a solved step, computed in one pass over the contacts: residual, velocity error, contact counts and
+//! works.
 
 use super::residual::{Sums, natural_map};
 use super::row_velocities::{RowVelocities, sum_of_rows};
@@ -24,25 +25,26 @@ pub struct Measures {
     pub compressive_contacts: u32,
     /// Number of contacts with a normal impulse P_n < 0.
     pub tensile_contacts: u32,
-    /// Work of the normal contact impulses, J.
+    /// Work of the normal contact impulses on the grains in the step, J.
     pub normal_work: f64,
-    /// Work of the tangential contact impulses and of the rolling moments, J.
+    /// Work of the tangential contact impulses and of the rolling moments on the grains in the step, J.
     pub tangential_work: f64,
-    /// The part of the normal and tangential work that moving surfaces do, J.
+    /// Work that moving walls and other moving bodies that are not grains do on the grains, J; contained in the normal
+    /// and tangential work.
     pub wall_work: f64,
-    /// Work that images of grains beyond a sheared periodic border do on the grains that touch them, J; not part of the
-    /// other works.
+    /// Work that the periodic images of grains beyond a sheared border do on the grains that touch them, J; not
+    /// contained in the other works.
     pub border_work: f64,
 }
 
 impl Measures {
-    /// Sets the model residual of a step that was solved under Coulomb's law to its residual. This is for runs in which
-    /// other steps were solved under another friction model.
+    /// Sets the model residual of a step that was solved under Coulomb's law to its residual, for runs in which other
+    /// steps were solved under another friction model and have a model residual of their own.
     pub(crate) fn measure_as_a_model(&mut self) {
         self.model_residual = self.model_residual.or(Some(self.residual));
     }
 
-    /// Adds the contact counts and works of other rows of the same problem.
+    /// Adds the contact counts and works of further contacts of the same problem.
     fn add_rows(&mut self, rows: Self) {
         self.compressive_contacts += rows.compressive_contacts;
         self.tensile_contacts += rows.tensile_contacts;
@@ -51,8 +53,8 @@ impl Measures {
         self.border_work += rows.border_work;
     }
 
-    /// Adds the measures of a later part of the same step. Works are added, the larger errors are kept, and the contact
-    /// counts are the counts of the later part.
+    /// Adds the measures of the next piece of a step that is divided into shorter time steps. Works are added, the
+    /// larger errors are kept, and the contact counts become the counts of the next piece.
     pub fn add(&mut self, piece: Self) {
         let Self { residual, model_residual, velocity_error, .. } = piece;
         let Self { compressive_contacts, tensile_contacts, .. } = piece;
@@ -69,7 +71,8 @@ impl Measures {
     }
 }
 
-/// Returns the residual of the friction model of a problem, dimensionless; `None` under Coulomb's law.
+/// Returns the residual of a problem under its own friction model, dimensionless; `None` under Coulomb's law.
+/// `common_residual` is the residual under Coulomb's law, which is the result if contacts have no friction.
 fn model_residual<M: Model>(problem: &StepProblem<M>, common_residual: f64) -> Option<f64> {
     match problem.friction.model {
         FrictionModel::Coulomb => None,
@@ -91,13 +94,13 @@ pub fn worst(one: f64, other: f64) -> f64 {
     if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
 }
 
-/// Computes residual, velocity error, contact counts and works of a problem in one pass over its rows.
+/// Computes residual, velocity error, contact counts and works of a problem in one pass over its contacts.
 ///
 /// Works are computed so that the energy balance closes. From v^n = v^{n−1} + M⁻¹(ΔtF + HP) (M: inertias, F: gravity,
 /// HP: contact impulses on the bodies) the kinetic energy changes by ½(v^n + v^{n−1})·(ΔtF + HP). So a contact impulse
 /// P does the work P·½(u^n + u^{n−1}), with u its relative velocity. Together with the work of gravity this closes the
-/// energy balance to rounding, however large the solver's error is. If j is a sliding image, u is relative to the
-/// image, and P times the slide velocity is the work of the periodic border.
+/// energy balance to rounding, however large the solver's error is. If body j is a periodic image beyond a sheared
+/// border, u is relative to the image, and P times the velocity of the image relative to j is the work of the border.
 // Without inlining, the function is compiled once per model, in this crate.
 #[inline(never)]
 pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {

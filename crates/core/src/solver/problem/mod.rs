@@ -1,8 +1,9 @@
-//! The contact problem of one step: its data, its set-up, and the measures of its solution.
+//! The contact problem of one time step (find impulses that satisfy the laws of all contacts): its data, its set-up,
+//! and the measures of its solution.
 //!
-//! [`StepProblem::prepare`] sets up a problem in this order: bodies, rows (one per contact) in the order of the sweep,
-//! moving surfaces, the velocities due to the rows' initial impulses, and last the numbers of the friction model that
-//! stay fixed during a solve.
+//! [`StepProblem::prepare`] sets up a problem in this order: bodies, rows (the data of one contact each) in the order
+//! of the sweep, moving surfaces, the velocities due to the initial impulses, and last the friction bounds or opening
+//! speeds of a convex friction model.
 
 mod friction;
 mod measures;
@@ -45,25 +46,27 @@ use crate::number::Parts;
 use crate::threads;
 use crate::world::{FrictionCone, World};
 
-/// The contact problem of one step. The memory is reused for the next step.
+/// The contact problem of one time step, including its present impulses. The memory is reused for the next step.
 ///
 /// Code outside this crate can read a problem. Only methods change its impulses: the methods of this crate, or a method
 /// of your own through [`BodySystem`](crate::solver::BodySystem), which keeps bodies and rows consistent.
 #[derive(Clone, Debug, Default)]
 pub struct StepProblem<M: Model> {
-    /// The grains, with three velocities each: before the step, after the step without contacts, and with the rows'
-    /// impulses.
+    /// The grains, with three velocities each: before the step, after the step without contacts, and with the present
+    /// contact impulses.
     pub bodies: Bodies<M>,
     /// The data of the contacts, one row per contact.
     pub rows: ContactRows<M>,
-    /// The contact law of all contacts. Contacts with their own numbers modify it ([`StepProblem::law_of`]).
+    /// The contact law that all contacts share. Contacts with their own friction coefficient and capture speed modify
+    /// it ([`StepProblem::law_of`]).
     pub law: ContactLaw,
-    /// Fixed bodies whose surfaces move, and walls that a force drives.
+    /// Moving surfaces of walls and other bodies that are not grains, and walls that a force drives.
     pub(crate) walls: MovingWalls,
-    /// The friction model, and the numbers of each contact that it keeps fixed during a solve.
+    /// The friction model, and the friction bound or opening speed of each contact that the model keeps fixed during a
+    /// solve.
     pub(crate) friction: LaggedFriction,
-    /// Scale of velocity errors, m/s: √(g d), the speed after a fall by half a mean diameter d. Without gravity
-    /// C₀/m_ij, the acceleration by cohesion, replaces g.
+    /// Scale of velocity errors, m/s: √(g d), the speed after a fall by half a mean diameter d. Without gravity the
+    /// acceleration by cohesion, C₀/m_ij (cohesion force divided by effective mass), replaces g.
     pub(crate) fall_speed: f64,
     /// True for each grain that has contacts; empty if all grains have contacts.
     pub(super) touches: Vec<bool>,
@@ -71,14 +74,15 @@ pub struct StepProblem<M: Model> {
     pub(super) touching_mass: f64,
     /// Longest side of the bounding box of the grains with contacts, in mean diameters; 0 if positions are not known.
     pub(super) extent: f64,
-    /// Unit vector along the sum of the normals of the contacts with fixed bodies; 0 if the sum is 0.
+    /// Mean direction away from the fixed bodies: unit vector along the sum of the normals of the contacts with them; 0
+    /// if the sum is 0.
     pub(super) way_out: DVec2,
     pub(super) order: RowOrder,
     /// √m_ij, the square root of each contact's effective mass, kg^½, for methods with scaled variables.
     pub(super) root_masses: Vec<f64>,
 }
 
-/// The numbers that a step's contact problem is set up with.
+/// The parameters that a step's contact problem is set up with.
 #[derive(Clone, Copy, Debug)]
 pub struct ProblemNumbers {
     /// Time step Δt, s.
@@ -95,16 +99,17 @@ pub struct ProblemNumbers {
     pub cone: FrictionCone,
 }
 
-/// Computes the numbers of the contact law for a contact with an effective mass m_ij in kg.
+/// Function that returns the coefficients of the contact law for a contact with an effective mass m_ij in kg.
 pub type NumbersOfContact<'a> = &'a dyn Fn(&Contact, f64) -> RowNumbers;
 
-/// Relative normal velocity and gap of a contact's bodies before the step.
+/// State of a contact before the step, from which the contact law computes its restitution term: normal velocity, gap
+/// and coefficient of restitution.
 #[derive(Clone, Copy, Debug)]
 pub struct Approach {
     /// Normal velocity v_n^{n−1} of the contact at the beginning of the step, relative to the wall if the wall moves,
     /// m/s.
     pub velocity: f64,
-    /// Gap, m; negative is overlap.
+    /// Gap between the two bodies, m; a negative gap is an overlap.
     pub gap: f64,
     /// True if the pair touches or is bonded, false if it is only close enough to be detected.
     pub in_touch: bool,
@@ -113,11 +118,11 @@ pub struct Approach {
 }
 
 impl<M: Model> StepProblem<M> {
-    /// Sets up the contact problem of a step: velocities without contact impulses, and rows in the order that the
-    /// method and its settings need. The rows start with the impulses of `contacts` (warm start) or with zero impulses.
-    /// `rebound` returns the term, m/s, that the law adds to the normal velocity of a contact. `surfaces` are the
-    /// moving surfaces, if there are any. `numbers_of` returns the numbers of a contact, if contacts have different
-    /// numbers.
+    /// Sets up the contact problem of a step: velocities without contact impulses, and rows (the data of one contact
+    /// each) in the order that the method and its settings need. The initial impulses are the impulses of `contacts`
+    /// (warm start) or zero. `rebound` returns the term, m/s, that the law adds to the normal velocity of a contact.
+    /// `surfaces` are the moving surfaces, if there are any. `numbers_of` returns the coefficients of a contact's law,
+    /// if contacts have different coefficients.
     #[expect(clippy::too_many_arguments, reason = "all of a step's problem")]
     pub fn prepare(
         &mut self,
@@ -163,8 +168,8 @@ impl<M: Model> StepProblem<M> {
         self.begin_friction(settings.friction_model);
     }
 
-    /// Records the numbers of each contact's law: friction, restitution and capture speed. The capture speed is 0 for a
-    /// pair that does not touch yet.
+    /// Records the coefficients of each contact's law: friction, restitution and capture speed. The capture speed is 0
+    /// for a pair of bodies that does not touch yet.
     fn take_numbers(
         &mut self,
         world: &World,
@@ -188,7 +193,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Stores the bodies' velocities at the beginning of the step, and their velocities after gravity without contacts.
+    /// Stores the grains' velocities at the beginning of the step, and their velocities at its end under gravity
+    /// without contacts.
     fn place_bodies(&mut self, world: &World, time_step_secs: f64) {
         let grains = &world.grains;
         let Bodies { before, free, masses, mean_mass, .. } = &mut self.bodies;
@@ -201,7 +207,7 @@ impl<M: Model> StepProblem<M> {
         });
     }
 
-    /// Creates the rows, one per contact; the first `fixed` rows are contacts with fixed bodies.
+    /// Creates the rows (the data of one contact each); the first `fixed` rows are contacts with fixed bodies.
     fn fill_rows(
         &mut self,
         world: &World,
@@ -288,7 +294,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Records the extent of the grains with contacts, and the mean direction away from the fixed bodies.
+    /// Records the size of the region of the grains with contacts, in mean diameters, and the mean direction away from
+    /// the fixed bodies.
     fn find_extent(&mut self, world: &World) {
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for (&place, touches) in world.grains.positions.iter().zip(&self.touches) {
@@ -302,13 +309,15 @@ impl<M: Model> StepProblem<M> {
         self.way_out = normals.sum::<DVec2>().normalize_or_zero();
     }
 
-    /// Estimates the number of grains in the longest chain that transmits a push.
+    /// Estimates the number of grains in the longest chain of grains, each of which pushes the next: the extent of the
+    /// grains with contacts in mean diameters, or the root of the number of grains if positions are not known.
     fn grains_in_a_row(&self) -> f64 {
         let grains = self.bodies.masses.len() as f64;
         if self.extent > 0.0 { self.extent.min(grains) } else { grains.sqrt() }
     }
 
-    /// Takes the scales of velocity errors from `whole`, the problem of which this problem has a subset of the rows.
+    /// Copies the data that scale and weight velocity errors from `whole`, the problem of which this problem has a
+    /// subset of the contacts.
     pub(crate) fn hold_errors_against(&mut self, whole: &Self) {
         self.fall_speed = whole.fall_speed;
         self.touches.clone_from(&whole.touches);
@@ -321,8 +330,8 @@ impl<M: Model> StepProblem<M> {
         if self.touches.is_empty() { self.bodies.masses.iter().sum() } else { self.touching_mass }
     }
 
-    /// Sets the bodies' velocities to their velocities without contacts plus the changes due to the impulses of all
-    /// rows.
+    /// Sets the bodies' velocities to their velocities without contacts plus the changes due to the present impulses of
+    /// all contacts.
     pub fn form_velocities(&mut self) {
         let Bodies { now, free, .. } = &mut self.bodies;
         now.clone_from(free);
@@ -351,8 +360,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sorts by colours the rows of a problem that [`StepProblem::prepare`] has not set up, for the method
-    /// `nsgs-parallel`.
+    /// Sorts the contacts by colours (groups of contacts that share no grain) for the method `nsgs-parallel`. Only
+    /// problems that [`StepProblem::prepare`] has not set up need this.
     pub fn sort_by_colours(&mut self) {
         let Self { rows, order, bodies, .. } = self;
         let contact = |row: &Row<M>, other: u32| Contact {
@@ -386,7 +395,8 @@ impl<M: Model> StepProblem<M> {
         self.rows.law(number, &self.law)
     }
 
-    /// Returns true if the tip of the friction cone is at 0 and all rows have the same friction coefficient.
+    /// Returns true if friction is bounded by the whole shifted normal impulse (the tip of the friction cone is at 0)
+    /// and all contacts have the same friction coefficient.
     pub(crate) fn has_one_simple_law(&self) -> bool {
         self.law.all_rubs() && self.rows.frictions.is_empty()
     }
@@ -403,8 +413,9 @@ impl<M: Model> StepProblem<M> {
         self.rows.iter().enumerate()
     }
 
-    /// Calls `visit` for each row (contact) in order, with the relative velocity (v_n, v_t) of the contact, m/s, if the
-    /// bodies have the velocities `bodies`. v_t is relative to moving surfaces.
+    /// Calls `visit` for each row (the data of one contact) in order, with the relative velocity (v_n, v_t) of the
+    /// contact, m/s, that follows from the body velocities `bodies`. v_t is relative to the surface of a fixed body if
+    /// that surface moves.
     #[inline(always)]
     pub(crate) fn for_each_velocity(
         &self,
@@ -419,7 +430,7 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Writes the rows' impulses back to the contacts, in N·s.
+    /// Writes the present impulses of the problem back to the list of contacts, in N·s.
     pub(crate) fn store_impulses(&self, contacts: &mut ContactList) {
         self.store_rolling(contacts);
         let impulses = contacts.impulses_mut();
@@ -431,7 +442,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the rows' impulses to impulses that another algorithm has found for this step, one per contact, N·s.
+    /// Replaces the impulses of all contacts by impulses of another algorithm for the same step, N·s, in the order of
+    /// the list of contacts. The velocities are not recomputed.
     pub(crate) fn set_impulses(&mut self, impulses: &[Impulse]) {
         for number in 0..self.rows.len() {
             let Impulse { normal, tangential } = impulses[self.rows.contacts[number] as usize];

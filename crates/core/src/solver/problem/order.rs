@@ -1,7 +1,7 @@
 //! The order in which a sweep visits the contacts, and the groups of contacts that can be solved at the same time.
 //!
-//! In every order, contacts with fixed bodies come first, then contacts between grains, so that each of the two kinds
-//! has its own loop. An order applies within each kind.
+//! In every order, contacts with fixed bodies come first, then contacts between grains, so that each of these two kinds
+//! of contact has its own loop. The chosen order applies to each kind separately.
 
 use std::ops::Range;
 
@@ -11,15 +11,15 @@ use crate::contact::{Contact, Numbering};
 use crate::solver::method::Ordering;
 use crate::world::World;
 
-/// Groups of rows (contacts) that can be solved at the same time. All rows are of one kind (with fixed bodies, or
-/// between grains) and are sorted by tiles and colours.
+/// Groups of rows (each the data of one contact) that can be solved at the same time. All rows are contacts of one kind
+/// (with fixed bodies, or between grains) and are sorted by tiles and colours.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RowGroups {
-    /// For each colour of each tile, the number of the row after its last row, counted within the kind. Rows of one
-    /// colour share no grain.
+    /// End of each colour of each tile: the number of the row after the colour's last row, counted among the contacts
+    /// of one kind (with fixed bodies, or between grains). Rows of one colour share no grain.
     pub colour_ends: Vec<usize>,
-    /// For each tile, the number of the colour after its last colour. Rows of two different tiles share no grain. The
-    /// colours after the last tile contain the contacts between tiles.
+    /// End of each tile: the number of the colour after the tile's last colour. Rows of two different tiles share no
+    /// grain. The colours after the last tile contain the contacts between tiles.
     pub tile_ends: Vec<usize>,
 }
 
@@ -41,20 +41,22 @@ impl RowGroups {
     }
 }
 
-/// Number of segments into which the list of detected contacts is cut to interleave it. Neighbours in the list share a
-/// grain, so each update would wait until the update before it has finished; interleaved updates change different
-/// grains. With fewer segments, updates wait for each other; with many more, a sweep over a large pile uses the cache
-/// badly. If there are at most this many contacts of a kind, the interleaved order is the order of detection.
+/// Number of segments into which the list of detected contacts is cut for the interleaved order, which takes one
+/// contact of each segment in turn. Neighbours in the list share a grain, so each update would wait until the update
+/// before it has finished; interleaved updates change different grains. With fewer segments, updates wait for each
+/// other; with many more, a sweep over a large pile uses the cache badly. If there are at most this many contacts of a
+/// kind (with fixed bodies, or between grains), the interleaved order is the order of detection.
 const STREAMS: usize = 8;
 
 /// Number of colours that are tracked per grain. If a grain has so many neighbours that a contact finds no free colour,
 /// the contact gets a colour of its own.
 const COLOURS: u32 = u128::BITS;
 
-/// Sorts contacts by an order. The memory is reused for the next step.
+/// Sorts the contacts of a step into the order of the sweep. The memory is reused for the next step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RowOrder {
-    /// Groups of the rows against fixed bodies, then groups of the rows between grains; empty if rows are not coloured.
+    /// Groups of the contacts with fixed bodies, then groups of the contacts between grains; empty if contacts are not
+    /// coloured.
     pub groups: [RowGroups; 2],
     detected: Vec<u32>,
     keys: Vec<(f64, u32)>,
@@ -63,11 +65,12 @@ pub(crate) struct RowOrder {
     coloured: Vec<(u32, u32)>,
     /// Contacts whose grains are in different tiles.
     between: Vec<u32>,
-    /// Contacts that found no free colour.
+    /// Contacts for which no colour was free at both of their grains. Each of them forms a colour by itself.
     of_their_own: Vec<u32>,
-    /// First the number of contacts of each colour of each tile, then, while contacts are placed, the next free index.
+    /// First the number of contacts of each colour of each tile; then, while contacts are placed in the sorted list,
+    /// the next free index of each colour.
     counts: Vec<usize>,
-    /// The colours used at each grain, as a bit set.
+    /// The colours of the contacts of each grain, as a bit set.
     taken: Vec<u128>,
 }
 
@@ -102,8 +105,8 @@ impl RowOrder {
         fixed
     }
 
-    /// Returns the contacts sorted by colours, if only their bodies are known. The first `fixed` contacts are with
-    /// fixed bodies.
+    /// Returns the contacts sorted by tiles and colours, for a problem in which the positions of the grains are not
+    /// known. The first `fixed` contacts are with fixed bodies.
     pub(super) fn sort_by_colours(
         &mut self,
         grains: usize,
@@ -120,7 +123,8 @@ impl RowOrder {
         rows
     }
 
-    /// Selects the contacts of one kind (0: with fixed bodies, 1: between grains).
+    /// Selects the contacts that are sorted next, all of one kind (0: with fixed bodies, 1: between grains), by their
+    /// numbers.
     fn take(&mut self, numbers: impl Iterator<Item = u32>, kind: usize) {
         self.detected.clear();
         self.detected.extend(numbers);
@@ -134,7 +138,8 @@ impl RowOrder {
         }
     }
 
-    /// Sorts by the potential of gravity at the contact points, which is g times the height if gravity is uniform.
+    /// Sorts contacts by the potential of gravity at the contact points, which is g times the height if gravity is
+    /// uniform.
     fn sort_by_height(&mut self, world: &World, contacts: &[Contact], rows: &mut Vec<u32>) {
         let potential = |&number: &u32| {
             let contact = &contacts[number as usize];
@@ -190,8 +195,8 @@ impl RowOrder {
         self.coloured.push((tile as u32 * COLOURS + colour, number));
     }
 
-    /// Counts the contacts of each colour of each tile, and puts them into `rows` group by group in the order of
-    /// detection.
+    /// Counts the contacts of each colour of each tile, and adds them to `rows` colour by colour, within a colour in
+    /// the order of detection.
     fn group(&mut self, rows: &mut Vec<u32>, kind: usize) {
         let tiles = self.tiles.count;
         let (counts, groups) = (&mut self.counts, &mut self.groups[kind]);
@@ -226,13 +231,14 @@ impl RowOrder {
 }
 
 /// Number of grains per tile of a dense pile: the velocities of 512 grains take 16 KB, a third of the first-level cache
-/// of a current processor. With fewer grains, more contacts lie between tiles. With more grains, the rows that pass
-/// through the cache push velocities out of it, and a small pile has too few tiles for several threads.
+/// of a current processor. With fewer grains, more contacts lie between tiles. With more grains, the data of the
+/// contacts push velocities out of the cache, and a small pile has too few tiles for several threads.
 const GRAINS_IN_TILE: usize = 512;
-/// Largest number of grains that form a single tile: their rows fit in the second-level cache, and waking a thread
-/// costs more than it gains.
+/// Largest number of grains that form a single tile: the data of their contacts fit in the second-level cache, and
+/// waking a second thread would cost more than it gains.
 const GRAINS_IN_ONE: usize = 2048;
-/// Minimum mean number of grains per tile of a scene that is not dense, so that empty tiles cost nothing.
+/// Minimum number of grains per tile, on average, in a scene with large gaps between grains. It limits the number of
+/// empty tiles.
 const LEAST_GRAINS_A_TILE: usize = 64;
 
 /// The tile of each grain. Tiles are squares of the plane, so small that the velocities of one tile's grains stay in
@@ -246,7 +252,8 @@ struct Tiles {
 }
 
 impl Tiles {
-    /// Divides the grains of a world into square tiles. The tiles depend only on the relative positions of the grains.
+    /// Divides the grains of a world into square tiles of equal size. The tiles depend only on the relative positions
+    /// of the grains.
     fn lay(&mut self, world: &World) {
         let positions = &world.grains.positions;
         if positions.len() <= GRAINS_IN_ONE {
@@ -310,7 +317,8 @@ mod tests {
         World::of(Grains::new(&grains, 1.0), gravity, 2.0 * grains[0].radius)
     }
 
-    /// Returns a world of discs whose height rises and falls with their number.
+    /// Returns a world of discs at irregular heights: from disc to disc in the order of their numbers, the height rises
+    /// or falls.
     fn uneven() -> World {
         world(
             (0..138)
@@ -379,7 +387,7 @@ mod tests {
         assert!(heights.is_sorted() && heights[0] < heights[rows.len() - 1]);
     }
 
-    /// Returns a world of discs on a square lattice, each moved by `place`.
+    /// Returns a world of discs whose positions are the points of a square lattice, transformed by `place`.
     fn lattice(place: impl Fn(DVec2) -> DVec2) -> World {
         let lattice = (0..SIDE * SIDE).map(|k| DVec2::new((k % SIDE) as f64, (k / SIDE) as f64));
         world(lattice.map(|at| Grain::at_rest(place(at), 0.5)))

@@ -1,5 +1,5 @@
-//! The natural map of a step's problem: the residual that is common to all methods, and the residuals of the friction
-//! models.
+//! The natural map of a contact problem, the change that an update of all contacts would make to the impulses: the
+//! residual that all methods share, and the residuals of the friction models.
 
 use super::friction::{FrictionProjection, with_projection};
 use super::row_velocities::{RowVelocities, sum_of_rows};
@@ -17,15 +17,16 @@ use crate::solver::settings::FrictionModel;
 /// > residual = ‖(e_n, e_t)‖₂ / ‖(m_n v_n^free, m_t v_t^free)‖₂,
 ///
 /// with v^free the relative velocity without any contact impulse, including the restitution term, and m_n and m_t the
-/// effective masses of a contact. If nothing would move without contacts, the residual is 0 if the error is only
-/// rounding, and infinite otherwise. Rows store p/m_n and P_t/m_n, so each row's terms are computed in m/s and weighted
-/// by m_n. Rolling moments add their own errors (`problem::rolling`).
+/// effective masses of a contact. If the denominator is 0 because no contact moves without contact impulses, the
+/// residual is 0 if the error is only rounding, and infinite otherwise. The problem stores p/m_n and P_t/m_n, so the
+/// terms of each contact are computed in m/s and weighted by m_n. Rolling moments add their own errors
+/// (`problem::rolling`).
 #[inline(never)]
 pub fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
     common_map(problem).residual::<M>(problem)
 }
 
-/// Computes the sums over all contacts that make up [`residual`].
+/// Computes the squared numerator and denominator of [`residual`] as sums over all contacts.
 fn common_map<M: Model>(problem: &StepProblem<M>) -> Sums {
     let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
         sums.add_error(problem, number, row, &motion);
@@ -33,8 +34,9 @@ fn common_map<M: Model>(problem: &StepProblem<M>) -> Sums {
     sum_of_rows(problem, add_error, Sums::add_all)
 }
 
-/// Computes the sums of the natural map of the friction model that a problem is solved under (`problem::friction`). The
-/// denominator is the denominator of [`residual`], so that both residuals can be compared.
+/// Computes the squared numerator and denominator of the residual under the convex friction model that a problem is
+/// solved under (`problem::friction`). The denominator is the denominator of [`residual`], so that both residuals can
+/// be compared.
 fn projection_map<M: Model, P: FrictionProjection>(problem: &StepProblem<M>) -> Sums {
     let compliance = 1.0 / M::TANGENTIAL_COMPLIANCE;
     let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
@@ -49,20 +51,21 @@ fn projection_map<M: Model, P: FrictionProjection>(problem: &StepProblem<M>) -> 
     sum_of_rows(problem, add_error, Sums::add_all)
 }
 
-/// Computes the sums of the natural map of the projection `P`: Coulomb's law or another friction model.
+/// Computes the squared numerator and denominator of the residual under the projection `P`, of Coulomb's law or another
+/// friction model.
 fn map_of<M: Model, P: FrictionProjection>(problem: &StepProblem<M>) -> Sums {
     if P::LAGS { projection_map::<M, P>(problem) } else { common_map(problem) }
 }
 
-/// Returns the residual of the natural map of the projection `P`, dimensionless.
+/// Returns the residual under the projection `P`, of Coulomb's law or another friction model, dimensionless.
 pub(crate) fn projection_residual<M: Model, P: FrictionProjection>(
     problem: &StepProblem<M>,
 ) -> f64 {
     map_of::<M, P>(problem).residual(problem)
 }
 
-/// Computes the sums of the natural map of the friction model that a problem is solved under, which may be Coulomb's
-/// law.
+/// Computes the squared numerator and denominator of the residual under the friction model that a problem is solved
+/// under, which may be Coulomb's law.
 pub(super) fn natural_map_sums<M: Model>(problem: &StepProblem<M>) -> Sums {
     with_projection!(problem, M, P => map_of::<M, P>(problem))
 }
@@ -142,7 +145,8 @@ impl Sums {
         }
     }
 
-    /// Adds a contact's errors (e_n, e_t) in the natural map, divided by its effective mass, m/s.
+    /// Adds a contact's errors (e_n, e_t) in the natural map, divided by the contact's effective mass, m/s, to the
+    /// squared numerator. Also adds the contact's contribution to the denominator.
     #[inline(always)]
     fn add<M: Model>(
         &mut self,
@@ -158,8 +162,8 @@ impl Sums {
         }
     }
 
-    /// Adds a contact's contribution to the denominator of the residual, from its relative velocity (v_n, v_t) without
-    /// contact impulses, m/s.
+    /// Adds a contact's contribution to the squared denominator of the residual, from its relative velocity (v_n, v_t)
+    /// without contact impulses, m/s.
     #[inline(always)]
     fn add_scale<M: Model>(&mut self, row: &Row<M>, free: [f64; 2]) {
         let squared_mass = row.effective_mass * row.effective_mass;
@@ -180,13 +184,13 @@ impl Sums {
     }
 }
 
-/// Relative rounding error of impulses. The residual divides by the impulses that would stop the contacts' free motion.
-/// If there is no free motion, errors of at most this fraction of the impulses count as 0. With a smaller value,
-/// methods that scale impulses would not solve a step in which nothing moves; with a larger value, real errors would
-/// count as 0.
+/// Relative rounding error of impulses. The residual divides by the impulses that would stop the relative motion at the
+/// contacts without contact impulses. If there is no such motion, errors of at most this fraction of the impulses count
+/// as 0. With a smaller value, methods that scale impulses would not solve a step in which nothing moves; with a larger
+/// value, real errors would count as 0.
 pub(super) const ROUNDING: f64 = 1e-14;
 
-/// Returns the largest error that counts as rounding if nothing moves without contacts, N·s.
+/// Returns the largest numerator of [`residual`] that counts as rounding error if the denominator is 0, N·s.
 pub(super) fn rounding<M: Model>(problem: &StepProblem<M>) -> f64 {
     let squared = |row: &Row<M>| squared_impulse(row.effective_mass, row.impulse());
     let squares = problem.rows.iter().map(squared).sum::<f64>();
@@ -200,8 +204,8 @@ pub(super) fn squared_rolling<M: Model>(problem: &StepProblem<M>) -> f64 {
     rolling.map(|(row, rolling)| (row.effective_mass * rolling.impulse).powi(2)).sum()
 }
 
-/// Returns the squared impulse P², (N·s)², of impulses (λ_n, λ_t) that are divided by the effective mass `mass` (kg),
-/// m/s.
+/// Returns the squared impulse P², (N·s)², of a contact with the impulses (λ_n, λ_t), m/s: impulses divided by the
+/// effective mass `mass`, kg.
 #[inline(always)]
 pub(crate) fn squared_impulse(mass: f64, [normal, tangential]: [f64; 2]) -> f64 {
     mass * mass * (normal * normal + tangential * tangential)

@@ -1,7 +1,7 @@
 //! Rolling resistance: a moment M at each contact against the relative spin of its bodies.
 //!
-//! **Law.** The reduced radius R of bodies with the radii r_i and r_j has 1/R = 1/r_i + 1/r_j, or R = r_i against a
-//! boundary. With the angular velocities ω and the spins s = rω, the rolling velocity is
+//! **Law.** The reduced radius R of bodies with the radii r_i and r_j has 1/R = 1/r_i + 1/r_j, or R = r_i if the other
+//! body is a boundary. With the angular velocities ω and the spins s = rω, the rolling velocity is
 //!
 //! > v_r = R (ω_i − ω_j) = a_i s_i − a_j s_j,  s = rω,  a_i = R/r_i,  a_j = R/r_j = 1 − a_i,
 //!
@@ -11,7 +11,7 @@
 //!
 //! > |ψ| ≤ μ_r σ',  ψ = −μ_r σ' sign(v_r) unless v_r = 0,
 //!
-//! with μ_r the coefficient of rolling friction, σ' the part of the shifted normal impulse σ that bounds friction
+//! with μ_r the coefficient of rolling friction, σ' (m/s) the part of the shifted normal impulse σ that bounds friction
 //! (`contact::law`), and v_r at the end of the step. So M does no work while it prevents rolling, and dissipates energy
 //! otherwise. J. Ai, J.-F. Chen, J. M. Rotter and J. Y. Ooi (2011) call this a directional constant torque; in this
 //! program the torque also acts at v_r = 0.
@@ -23,13 +23,13 @@
 //!
 //! The update of a contact is ψ ← clamp(ψ − v_r/W, ±μ_r σ'), after the update of (σ, λ_t). ψ changes v_t, too, unless
 //! g_i a_i = (1 − g_i) a_j, so the updates of λ_t and ψ are two steps of Gauss–Seidel. The error in the natural map is
-//! the change that the update would make. ψ acts on v_r as λ_t acts on v_t, so it adds μ_r σ'|v_r| + ψ v_r to the gap
-//! in `velocity_error`.
+//! the change that the update would make. ψ acts on v_r as λ_t acts on v_t, so rolling adds μ_r σ'|v_r| + ψ v_r to the
+//! duality gap in `velocity_error`.
 
 use crate::contact::{ContactLaw, law};
 use crate::solver::kinematics::Model;
 
-/// Rolling resistance of a contact.
+/// Rolling resistance of a contact: a moment against the relative spin of its two bodies.
 #[derive(Clone, Copy, Debug)]
 pub struct Rolling {
     /// Reduced rolling impulse ψ = MΔt/(R m_ij), with the rolling moment M, m/s.
@@ -61,7 +61,8 @@ impl Rolling {
         law::coulomb(trial, self.bound(law, shifted_impulse))
     }
 
-    /// Returns the error of the rolling impulse ψ = MΔt/(R m_ij) in the natural map, m/s.
+    /// Returns the error of the rolling impulse ψ = MΔt/(R m_ij) in the natural map, m/s: the change that an update by
+    /// the law would make to ψ.
     #[inline(always)]
     pub(crate) fn error(&self, law: &ContactLaw, shifted_impulse: f64, velocity: f64) -> f64 {
         self.impulse - self.solved(law, shifted_impulse, velocity)

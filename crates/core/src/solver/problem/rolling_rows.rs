@@ -1,4 +1,5 @@
-//! Rolling resistance of the rows of a problem: sets up, returns and stores it.
+//! Rolling resistance of the contacts of a problem: computes its coefficients, its rolling velocity, and its moments in
+//! N·m·s for the next step.
 
 use super::{MovingSurfaces, NumbersOfContact, Rolling, Row, StepProblem};
 use crate::contact::{Contact, ContactList, Numbering, Other, law};
@@ -6,8 +7,9 @@ use crate::solver::kinematics::Model;
 use crate::world::World;
 
 impl<M: Model> StepProblem<M> {
-    /// Adds the rolling resistance of each contact if the model has rolling and its coefficient is not 0. The
-    /// coefficient μ_r is `friction`, or comes from `numbers_of` if contacts have different coefficients.
+    /// Sets up the rolling resistance of each contact, if the model has rolling resistance and the coefficient is not
+    /// zero. The coefficient of rolling friction μ_r is `friction`, or comes from `numbers_of` if contacts have
+    /// different coefficients.
     pub(super) fn fill_rolling(
         &mut self,
         world: &World,
@@ -49,7 +51,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the surface speeds of contacts whose fixed body turns.
+    /// Sets the term of the rolling velocity that is due to the rotation of a fixed body: reduced radius times angular
+    /// velocity, m/s.
     pub(super) fn turn_surfaces(&mut self, contacts: &[Contact], surfaces: &MovingSurfaces<'_>) {
         for (rolling, &index) in self.rows.rolling.iter_mut().zip(&self.rows.contacts) {
             let surface = (surfaces.of)(&contacts[index as usize]);
@@ -57,7 +60,7 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Stores the rolling impulses (moment times time step, N·m·s) in the contacts.
+    /// Stores the rolling impulses (moment times time step, N·m·s) in the list of contacts.
     pub(super) fn store_rolling(&self, contacts: &mut ContactList) {
         let stored = contacts.rolling_mut();
         stored.clear();
@@ -71,8 +74,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Returns the rolling resistance of the contact in row `number`, and its rolling velocity v_r, m/s, if the bodies
-    /// have the velocities `bodies`. Returns `None` without rolling resistance.
+    /// Returns the rolling resistance of the contact in row `number`, and the rolling velocity v_r, m/s, that follows
+    /// from the body velocities `bodies`. Returns `None` without rolling resistance.
     #[inline(always)]
     pub(crate) fn rolling(
         &self,

@@ -1,4 +1,5 @@
-//! Visits the rows (contacts) of a problem in order with their relative velocities, and sums over the rows.
+//! Visits the rows of a problem (each the data of one contact) in order with their relative velocities, and sums over
+//! them.
 
 use std::ops::Range;
 
@@ -17,7 +18,8 @@ pub struct RowVelocities {
     pub free: [f64; 2],
 }
 
-/// Calls `visit` for each row (contact) of a problem with the row's number and relative velocities.
+/// Calls `visit` for each contact of a problem with the number of its row, the row (data of the contact) and its
+/// relative velocities.
 pub fn for_each_row<M: Model>(
     problem: &StepProblem<M>,
     visit: impl FnMut(usize, &Row<M>, RowVelocities),
@@ -25,8 +27,8 @@ pub fn for_each_row<M: Model>(
     for_each_row_of(problem, 0..problem.rows.len(), visit);
 }
 
-/// Sums over the rows (contacts), in chunks of fixed length: `visit` adds a row to the sum of its chunk, and `join`
-/// adds the sum of the next chunk to the total.
+/// Sums over the contacts, in chunks of fixed length: `visit` adds a row (data of one contact) to the sum of its chunk,
+/// and `join` adds the sum of the next chunk to the total.
 pub(super) fn sum_of_rows<M: Model, S: Default + Send>(
     problem: &StepProblem<M>,
     visit: impl Fn(&mut S, (usize, &Row<M>), RowVelocities) + Sync,
@@ -67,8 +69,8 @@ fn for_each_row_of<M: Model>(
     }
 }
 
-/// Computes the normal velocity of every contact, m/s, if the bodies have the velocities `bodies`. The velocity is
-/// relative to the wall if the wall moves. Clears `speeds` first.
+/// Computes the normal velocity of every contact, m/s, that follows from the body velocities `bodies`. It is relative
+/// to the wall if the wall moves. Clears `speeds` first.
 pub fn relative_velocities<M: Model>(
     problem: &StepProblem<M>,
     bodies: &[M::Body<f64>],

@@ -1,4 +1,5 @@
-//! The bodies of a step's contact problem, and its rows: the data of each contact, in the order of the sweep.
+//! The bodies of a step's contact problem, and its rows: one row with the data of each contact, in the order of the
+//! sweep.
 
 use std::ops::{Deref, DerefMut};
 
@@ -6,10 +7,10 @@ use super::rolling::Rolling;
 use crate::contact::ContactLaw;
 use crate::solver::kinematics::Model;
 
-/// The bodies of a step's contact problem, one per grain.
+/// Velocities and masses of the bodies of a step's contact problem, one body per grain.
 #[derive(Clone, Debug)]
 pub struct Bodies<M: Model> {
-    /// Velocities that follow from the present impulses of the rows.
+    /// Velocities that follow from the present contact impulses.
     pub now: Vec<M::Body<f64>>,
     /// Velocities at the beginning of the step.
     pub before: Vec<M::Body<f64>>,
@@ -31,8 +32,7 @@ impl<M: Model> Default for Bodies<M> {
 /// The data that a contact with a fixed body and a contact between grains have in common.
 ///
 /// Impulses are reduced impulses λ = P/m_ij, impulse divided by effective mass, in m/s (see `solver::kinematics` and
-/// `contact::law`). This is plain data: code outside this crate can read the rows of a problem, but cannot replace
-/// them.
+/// `contact::law`). Code outside this crate can read the rows of a problem, but cannot replace them.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Row<M: Model> {
@@ -42,8 +42,8 @@ pub struct Row<M: Model> {
     pub j: u32,
     /// Unit normal n of the contact, from body j (or the fixed body) to grain i.
     pub normal: M::Normal<f64>,
-    /// The term that the contact law adds to v_n, m/s: ρ v_n^{n−1}, or 0 if the approach is slower than the threshold
-    /// of restitution, minus the speed of an approaching wall (`problem::walls`).
+    /// The term that the contact law adds to v_n, m/s: ρ v_n^{n−1}, or 0 if the bodies approach each other more slowly
+    /// than the threshold of restitution, minus the speed of a moving wall along n (`problem::walls`).
     pub restitution_velocity: f64,
     /// Shifted normal impulse σ = λ_n + capture speed, m/s.
     pub shifted_impulse: f64,
@@ -53,24 +53,24 @@ pub struct Row<M: Model> {
     pub effective_mass: f64,
 }
 
-/// A contact with a fixed body: exactly one cache line in the plane.
+/// The data of a contact with a fixed body: exactly one cache line in the plane.
 ///
-/// A structure of arrays was 1.1 to 1.2 times slower (`assets/reports/parts.md`).
+/// A structure of arrays made sweeps 1.1 to 1.2 times slower (`assets/reports/parts.md`).
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct FixedRow<M: Model> {
-    /// The data that all contacts have.
+    /// The data that contacts with fixed bodies and contacts between grains have in common.
     pub row: Row<M>,
     /// Speed of the fixed body's surface along the tangent, m/s. The tangential velocity v_t of the law is relative to
     /// it.
     pub surface_speed: f64,
 }
 
-/// A contact between two grains: exactly one cache line in the plane.
+/// The data of a contact between two grains: exactly one cache line in the plane.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct PairRow<M: Model> {
-    /// The data that all contacts have.
+    /// The data that contacts with fixed bodies and contacts between grains have in common.
     pub row: Row<M>,
     /// Mass ratio g_i = m_ij/m_i. An impulse P changes the velocity of grain i by g_i P/m_ij.
     pub share: f64,
@@ -108,9 +108,9 @@ impl<M: Model> Row<M> {
 }
 
 impl<M: Model> FixedRow<M> {
-    /// Returns the velocity (v_n, v_t) of the grain at the contact, m/s. v_t is relative to the surface of the fixed
-    /// body. v_n is relative to a body at rest, because the speed of an approaching wall is part of
-    /// `restitution_velocity`.
+    /// Returns the velocity (v_n, v_t) of the grain at its contact with the fixed body, m/s. v_t is relative to the
+    /// surface of the fixed body. v_n is relative to a body at rest, because the speed of a moving wall along the
+    /// normal is part of `restitution_velocity`.
     #[inline(always)]
     pub fn velocity(&self, bodies: &[M::Body<f64>]) -> [f64; 2] {
         let [normal, tangential] = M::velocity(self.normal, &bodies[self.i as usize]);
@@ -134,26 +134,27 @@ pub struct ContactRows<M: Model> {
     pub fixed: Vec<FixedRow<M>>,
     /// Rows of contacts between grains.
     pub pairs: Vec<PairRow<M>>,
-    /// Index of each row's contact in the list of contacts.
+    /// Index of each row's contact in the list of detected contacts.
     pub contacts: Vec<u32>,
-    /// Capture speed of each row, m/s, if rows have different capture speeds (law `range`, pairs of materials); else
-    /// empty. Sweeps in the shifted cone do not need it because they use the shifted impulse σ only.
+    /// Capture speed of each contact, m/s, if contacts have different capture speeds (contact law `range`, pairs of
+    /// materials); else empty. Sweeps with the shifted friction cone do not need it because they use the shifted
+    /// impulse σ only.
     pub captures: Vec<f64>,
-    /// Friction coefficient μ of each row, if pairs of materials have their own numbers; else empty.
+    /// Friction coefficient μ of each contact, if pairs of materials have their own coefficients; else empty.
     pub frictions: Vec<f64>,
-    /// Coefficient of restitution ρ of each row, if pairs of materials have their own numbers; else empty.
+    /// Coefficient of restitution ρ of each contact, if pairs of materials have their own coefficients; else empty.
     pub restitutions: Vec<f64>,
-    /// The rolling resistance of each row; empty without rolling friction.
+    /// The rolling resistance of each contact; empty without rolling friction.
     pub rolling: Vec<Rolling>,
 }
 
 impl<M: Model> ContactRows<M> {
-    /// Returns the number of rows.
+    /// Returns the number of rows, one per contact.
     pub fn len(&self) -> usize {
         self.fixed.len() + self.pairs.len()
     }
 
-    /// Returns true if there are no rows.
+    /// Returns true if there are no rows (no contacts).
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -208,8 +209,8 @@ impl<M: Model> ContactRows<M> {
         number.checked_sub(self.fixed.len()).map_or(1.0, |number| self.pairs[number].share)
     }
 
-    /// Returns the speed along the tangent of the surface of the fixed body in row `number`, m/s; 0 for a contact
-    /// between grains.
+    /// Returns the speed of the fixed body's surface along the tangent at the contact in row `number`, m/s; 0 for a
+    /// contact between grains.
     #[inline(always)]
     pub(crate) fn surface_speed(&self, number: usize) -> f64 {
         self.fixed.get(number).map_or(0.0, |row| row.surface_speed)
@@ -222,15 +223,15 @@ impl<M: Model> ContactRows<M> {
         if self.captures.is_empty() { law.capture_speed() } else { self.captures[number] }
     }
 
-    /// Returns the contact law of the contact in row `number`: `law`, modified by the numbers of the contact's pair of
-    /// materials, if it has any.
+    /// Returns the contact law of the contact in row `number`: `law`, or if pairs of materials have their own
+    /// coefficients, `law` with the contact's own friction coefficient and capture speed.
     #[inline(always)]
     pub(crate) fn law(&self, number: usize, law: &ContactLaw) -> ContactLaw {
         law_of_row([&self.frictions, &self.captures], number, law)
     }
 
-    /// Adds a copy of row `number` of `others`, modified by `change`. The copy's entry in `contacts` is `number`
-    /// instead of the index of the contact.
+    /// Adds a copy of row `number` of `others`, modified by `change`. In `contacts`, the copy gets `number` instead of
+    /// the index of its contact.
     pub(crate) fn push_copy(
         &mut self,
         others: &Self,
@@ -251,8 +252,8 @@ impl<M: Model> ContactRows<M> {
         self.contacts.push(number as u32);
     }
 
-    /// Copies the impulses (σ, λ_t) of all rows, m/s, then (ψ, 0) of all rows that resist rolling, with ψ the reduced
-    /// rolling impulse. Clears `impulses` first.
+    /// Copies the impulses (σ, λ_t) of all contacts, m/s, then a pair (ψ, 0) per contact if the problem has rolling
+    /// resistance, with ψ the reduced rolling impulse. Clears `impulses` first.
     pub(crate) fn read_impulses(&self, impulses: &mut Vec<[f64; 2]>) {
         impulses.clear();
         impulses.extend(self.iter().map(Row::impulse));
@@ -260,8 +261,8 @@ impl<M: Model> ContactRows<M> {
     }
 }
 
-/// Returns the contact law of the contact in row `number`: `law`, with the contact's own friction coefficient and
-/// capture speed (m/s) if these lists are not empty.
+/// Returns the contact law of the contact in row `number`: `law` with the contact's own friction coefficient and
+/// capture speed (m/s), or `law` itself if the list of friction coefficients is empty.
 #[inline(always)]
 pub(crate) fn law_of_row(
     [frictions, captures]: [&[f64]; 2],

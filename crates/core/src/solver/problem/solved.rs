@@ -1,4 +1,4 @@
-//! Decides whether a step is solved. No other code decides this.
+//! Decides whether the contact problem of a step is solved. No other code decides this.
 
 use super::residual::{natural_map_sums, rounding, squared_impulse, squared_rolling};
 use super::{StepProblem, velocity_error};
@@ -8,10 +8,11 @@ use crate::solver::settings::{SolverSettings, StopTest};
 /// Returns true if a problem is solved to the tolerance of the settings. The test does not depend on the method that
 /// solved the problem.
 ///
-/// **Error bound from a small change.** The error e_k of contact k in the natural map is the change that a Gauss–Seidel
-/// update would now make to its impulses. A contact has no error just after its own update, and the later updates of
-/// the same sweep bring some error back. Projections do not increase distances. So with W the Delassus operator, m_k
-/// the effective mass, and ΔP_l the changes of the impulses in the sweep,
+/// **Error bound from a small change**, for the stopping tests on the change of the impulses. The error e_k of contact
+/// k in the natural map is the change that a Gauss–Seidel update would now make to its impulses. A contact has no error
+/// just after its own update, and the later updates of the same sweep bring some error back. Projections do not
+/// increase distances. So with W the Delassus operator, m_k the effective mass, and ΔP_l the changes of the impulses in
+/// the sweep,
 ///
 /// > |e_k| ≤ m_k Σ_l |W_kl ΔP_l|,  l the later contacts of the bodies of k.
 ///
@@ -34,9 +35,9 @@ pub(crate) fn is_solved<M: Model>(problem: &StepProblem<M>, settings: &SolverSet
     error.is_finite() && error <= LEFT_OF_CHANGE * change + rounding(problem)
 }
 
-/// Largest allowed ratio C of the error ‖e‖ to the change ‖ΔP‖ in a sweep, see [`is_solved`]. With a smaller value,
-/// good sweeps among discs of many sizes might be rejected. With a larger value, impulses that have stopped changing
-/// far from a solution would be accepted.
+/// Largest allowed ratio C of the error ‖e‖ to the change ‖ΔP‖ of the impulses in a sweep, see [`is_solved`]. With a
+/// smaller value, accurate results of sweeps among discs of many sizes might count as unsolved. With a larger value,
+/// impulses that have stopped changing far from a solution would count as solved.
 const LEFT_OF_CHANGE: f64 = 8.0;
 
 /// Returns Σ P² of all contact impulses plus Σ (MΔt/R)² of the rolling moments M with the reduced radii R, (N·s)².

@@ -51,22 +51,24 @@ use crate::number::Parts;
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
-/// Minimum cosine n·u between the normal n of a contact with a fixed body and the mean normal u of all such contacts,
-/// at which a motion along u ends the contact's shortfall. If it was smaller, the motion could be more than ten times
-/// as long as the shortfall.
+/// Minimum cosine n·u between the normal n of a contact with a fixed body and the mean normal u of all such contacts. A
+/// contact with a smaller cosine is not opened by a motion along u: to end the shortfall of its normal velocity, the
+/// motion could have to be more than ten times as fast as the shortfall.
 const LEAST_ALONG: f64 = 0.1;
 
-/// Estimated error of the velocities of a step, and the scale that it is compared with.
+/// Estimated error of the velocities of a step, and the speed by which it is divided for the comparison with the
+/// tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VelocityError {
-    /// Estimated root mean square error over the grains with contacts, weighted by mass, m/s.
+    /// Estimated error of the velocities, m/s: root mean square over the grains with contacts, weighted by mass.
     pub told: f64,
     /// Scale of the error, m/s: √(g d + mean square of the velocities that contacts cancel), with the mean diameter d.
     pub scale: f64,
 }
 
 impl VelocityError {
-    /// Returns true if the error is at most `share` times the scale; false if it is NaN.
+    /// Returns true if the error is at most `share`, a dimensionless tolerance, times the scale; false if the error is
+    /// NaN.
     pub(crate) fn is_within(self, share: f64) -> bool {
         self.told <= share * self.scale
     }
@@ -85,17 +87,20 @@ pub fn velocity_error<M: Model>(problem: &StepProblem<M>) -> VelocityError {
     VelocityError { told: sums.error(problem), scale }
 }
 
-/// The sums over the rows that a velocity error is computed from.
+/// Sums over the contacts of a problem, from which its velocity error is computed.
 #[derive(Default)]
 pub(super) struct ErrorSums {
-    /// The duality gap S, J.
+    /// The duality gap S, J: a sum over the contacts that is 0 at the solution and estimates the squared velocity
+    /// error, times the mass of the grains.
     gap: f64,
-    /// Σ m_ij (v^free)², with v^free the contact velocities without contact impulses as in the residual, J.
+    /// Σ m_ij (v^free)², J, with v^free the relative velocities at the contacts without contact impulses, defined as in
+    /// the residual.
     undone: f64,
     /// Σ m_ij |λ|², J, with λ the impulses divided by the effective masses.
     impulses: f64,
     /// Sums of squared shortfalls, (m/s)²: Σ (z/(n·u))² of contacts with fixed bodies, and Σ z² of the other contacts.
-    /// `counts` has the number of contacts in each sum.
+    /// The shortfall z is the increase of normal velocity that a contact needs to satisfy its law; n·u is the cosine
+    /// between its normal and the mean normal u. `counts` has the number of contacts in each sum.
     lacks: [f64; 2],
     counts: [f64; 2],
 }
@@ -111,7 +116,7 @@ impl ErrorSums {
         }
     }
 
-    /// Adds the contribution of a contact under the friction model that the problem is solved under.
+    /// Adds a contact's contribution to the sums, under the friction model that the problem is solved under.
     #[inline(always)]
     fn add_by_model<M: Model>(
         &mut self,
@@ -148,7 +153,7 @@ impl ErrorSums {
         self.add(problem, number, row, of_normal + rubbing + tangential * across, lacking);
     }
 
-    /// Adds the contribution of a contact under Coulomb's law.
+    /// Adds a contact's contribution to the sums, under Coulomb's law.
     #[inline(always)]
     pub(super) fn add_by_law<M: Model>(
         &mut self,
@@ -179,8 +184,8 @@ impl ErrorSums {
         self.add(problem, number, row, of_contact, lacking);
     }
 
-    /// Adds a contact's contribution to the duality gap S, divided by its effective mass, (m/s)², and its shortfall z,
-    /// m/s.
+    /// Adds a contact's contributions to the sums: to the duality gap S the term `of_contact`, (m/s)², times the
+    /// effective mass, and to the squared shortfalls `lacking`, the shortfall z of its normal velocity, m/s.
     #[inline(always)]
     fn add<M: Model>(
         &mut self,
@@ -200,8 +205,9 @@ impl ErrorSums {
         self.counts[kind] += 1.0;
     }
 
-    /// Returns the velocity error, m/s: the larger of √S (S is the duality gap) divided by the root of the mass, and of
-    /// the speed f of the motion that ends all shortfalls. Returns NaN if S is NaN.
+    /// Returns the estimated velocity error, m/s: the larger of √(S/m), with the duality gap S and the mass m of the
+    /// grains with contacts, and the speed f of a motion of all grains that ends the shortfalls of the normal
+    /// velocities. Returns NaN if S is NaN.
     pub(super) fn error<M: Model>(&self, problem: &StepProblem<M>) -> f64 {
         // A gap S within the rounding of the impulses counts as 0.
         let is_rounding = self.gap.abs() <= ROUNDING * ROUNDING * self.impulses;

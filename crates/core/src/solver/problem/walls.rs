@@ -1,11 +1,11 @@
-//! Moving surfaces, and walls that a force drives, in the contacts of a step.
+//! Contacts of a step with moving surfaces, and with walls that a force drives.
 //!
-//! **Along the normal.** Relative to a surface of speed V a grain has the normal velocity v_n − V. So the expression
-//! v_n + ρ v_n^{n−1} of the contact law becomes v_n − V + ρ (v_n^{n−1} − V⁻): only the term added to v_n changes, and
-//! methods need no change. V⁻ is the speed of the surface at the beginning of the step. A grain that rests on an
-//! accelerating surface has v_n^{n−1} = V⁻, so it does not bounce.
+//! **Along the normal.** Relative to a surface that moves with the speed V along the normal a grain has the normal
+//! velocity v_n − V. So the expression v_n + ρ v_n^{n−1} of the contact law becomes v_n − V + ρ (v_n^{n−1} − V⁻): only
+//! the term added to v_n changes, and methods need no change. V⁻ is the speed of the surface at the beginning of the
+//! step. A grain that rests on an accelerating surface has v_n^{n−1} = V⁻, so it does not bounce.
 //!
-//! **Along the tangent** the law's v_t becomes v_t − V_t, which the added term cannot express. A row (the data of a
+//! **Along the tangent.** The law's v_t becomes v_t − V_t, which the added term cannot express. A row (the data of a
 //! contact) against a fixed body stores the surface speed V_t at the address where a pair of grains stores its mass
 //! ratio g_i, which is 1 against a fixed body. A sweep subtracts V_t, which is in the row's own cache line and changes
 //! no bit if it is 0.
@@ -37,27 +37,28 @@ use crate::solver::kinematics::Model;
 /// Marks a contact whose fixed body is not a driven wall.
 const NONE: u32 = u32::MAX;
 
-/// Motion of the surface of a fixed body at a contact.
+/// Motion of the surface of a fixed body (disc or wall that is not a grain) at a contact.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
-    /// Velocity of the shape at the contact in the step, m/s: for a prescribed motion, the mean over the step.
+    /// Velocity of the body at the contact in the step, m/s: for a prescribed motion, the mean over the step.
     pub velocity: DVec2,
-    /// Velocity of the shape at the contact at the beginning of the step, m/s.
+    /// Velocity of the body at the contact at the beginning of the step, m/s.
     pub before: DVec2,
-    /// Additional speed along the tangent of a surface that runs around its shape while the shape does not move, m/s.
+    /// Additional speed of the surface along the tangent, m/s, if the surface runs around a body that does not move, as
+    /// a conveyor belt does.
     pub round: f64,
-    /// Angular velocity of the shape, or of a fixed disc whose surface runs around it, rad/s.
+    /// Angular velocity of the body, or of the surface of a disc that runs around the disc, rad/s.
     pub spin: f64,
-    /// True if the shape is a half-space, whose gaps do not change if it moves along its surface.
+    /// True if the body is a half-space. If a half-space moves along its surface, gaps do not change.
     pub is_half_space: bool,
-    /// True if the shape moves only along its normal.
+    /// True if the body moves only along its normal.
     pub is_pushed: bool,
-    /// The driven wall and its direction at the contact, if a force drives the shape.
+    /// The driven wall and its direction at the contact, if a force drives the body.
     pub driven: Option<DrivenBy>,
 }
 
 impl Surface {
-    /// Returns this surface for contacts without friction, which have no speeds along the tangent.
+    /// Returns this surface without its speeds along the tangent, which have no effect on contacts without friction.
     fn smooth(self) -> Self {
         let smooth = |by: DrivenBy| DrivenBy { along: [by.along[0], 0.0], ..by };
         Self { is_pushed: true, round: 0.0, driven: self.driven.map(smooth), ..self }
@@ -76,28 +77,29 @@ impl Surface {
 pub struct DrivenWall {
     /// Index of the wall's motion in the scene's list of motions.
     pub motion: usize,
-    /// Response r = 1/(M + cΔt) to an impulse, 1/kg, with the wall's mass M and damping coefficient c.
+    /// Response r = 1/(M + cΔt) of the wall's speed to an impulse on the wall, 1/kg, with the wall's mass M and damping
+    /// coefficient c.
     pub response: f64,
     /// Speed V⁻ of the wall at the beginning of the step, m/s.
     pub before: f64,
     /// Speed V_free that the wall would have at the end of the step if no contact acted, m/s.
     pub free: f64,
-    /// Speed V of the wall with the present impulses, m/s.
+    /// Speed V of the wall that follows from the present contact impulses, m/s.
     pub now: f64,
 }
 
-/// The driven wall of a contact, and its direction at the contact.
+/// The driven wall that a contact touches, and the wall's direction of motion at the contact.
 #[derive(Clone, Copy, Debug)]
 pub struct DrivenBy {
     /// Index of the wall in the list of driven walls.
     pub wall: u32,
-    /// Components b of the wall's direction along the contact's normal and tangent.
+    /// Components b of the wall's unit direction of motion along the contact's normal and tangent.
     pub along: [f64; 2],
 }
 
 impl DrivenBy {
-    /// Returns P·b, the impulse that a contact impulse with these components gives the wall, in the unit of the
-    /// impulse.
+    /// Returns P·b, the part of a contact impulse with the given normal and tangential components that acts on the wall
+    /// along its direction of motion, in the unit of the given impulse.
     #[inline(always)]
     pub(crate) fn part_along(&self, [normal, tangential]: [f64; 2]) -> f64 {
         self.along[0] * normal + self.along[1] * tangential
@@ -107,36 +109,37 @@ impl DrivenBy {
 /// The data of a contact with a wall that a force drives.
 #[derive(Clone, Copy, Debug)]
 pub struct DrivenRow {
-    /// Number of the contact's row among the rows against fixed bodies.
+    /// Number of the contact's row among the rows of contacts with fixed bodies.
     pub number: u32,
-    /// The wall, and its direction at the contact.
+    /// The wall, and its direction of motion at the contact.
     pub by: DrivenBy,
-    /// Values of the row's `restitution_velocity` and `surface_speed` if the wall's speed V is 0, m/s.
+    /// Values that the fields `restitution_velocity` and `surface_speed` of the contact's row would have if the wall's
+    /// speed V was 0, m/s.
     pub still: [f64; 2],
-    /// Speed of the wall's surface along the contact's normal if the wall's speed V is 0, m/s.
+    /// Speed of the wall's surface along the contact's normal that remains if the wall's speed V is 0, m/s.
     pub speed: f64,
 }
 
-/// Moving surfaces of a step's problem. The memory is reused for the next step.
+/// Moving surfaces of the walls and other fixed bodies of a step's problem. The memory is reused for the next step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MovingWalls {
-    /// For each row against a fixed body, the speed of the body along the normal, m/s; empty if no fixed body moves.
+    /// For each contact with a fixed body, the speed of that body along the normal, m/s; empty if no fixed body moves.
     pub speeds: Vec<f64>,
-    /// For each row against a fixed body, the body's moving surface, if it moves.
+    /// For each contact with a fixed body, the motion of that body's surface, or `None` if the surface does not move.
     surfaces: Vec<Option<Surface>>,
     /// Walls that a force drives.
     pub driven: Vec<DrivenWall>,
     /// The contacts with driven walls.
     pub driven_rows: Vec<DrivenRow>,
-    /// For each row against a fixed body, its index in `driven_rows`, or [`NONE`]; empty if no wall is driven.
+    /// For each contact with a fixed body, its index in `driven_rows`, or [`NONE`]; empty if no wall is driven.
     driven_row_of: Vec<u32>,
 }
 
-/// The moving surfaces of a step, as its contact problem needs them.
+/// The moving surfaces of a step, from which its contact problem is set up.
 pub struct MovingSurfaces<'a> {
     /// Walls that a force drives.
     pub driven: Vec<DrivenWall>,
-    /// Returns the surface that a contact touches, if that surface moves.
+    /// Returns the motion of the surface that a contact touches, or `None` if that surface does not move.
     pub of: &'a dyn Fn(&Contact) -> Option<Surface>,
 }
 
@@ -156,9 +159,9 @@ impl MovingWalls {
         self.driven_rows.get(*self.driven_row_of.get(number)? as usize)
     }
 
-    /// Records the next row against a fixed body: its driven wall (if it has one), the wall's speed along the normal,
-    /// and the row's `restitution_velocity` and `surface_speed`, all in m/s at the wall's speed at the beginning of the
-    /// step.
+    /// Records the next contact with a fixed body: its driven wall (if it has one), the wall's speed along the normal,
+    /// and the fields `restitution_velocity` and `surface_speed` of the contact's row, all in m/s, for the wall's speed
+    /// at the beginning of the step.
     fn add_row(&mut self, by: Option<DrivenBy>, wall_speed: f64, [added, slide]: [f64; 2]) {
         if self.driven.is_empty() {
             return;
@@ -174,7 +177,8 @@ impl MovingWalls {
 }
 
 impl<M: Model> StepProblem<M> {
-    /// Adds the speeds of moving surfaces to the rows against fixed bodies, which have just been created.
+    /// Sets the terms of moving surfaces in the rows of all contacts with fixed bodies, which have just been created
+    /// without these terms.
     pub(super) fn add_surfaces(
         &mut self,
         contacts: &ContactList,
@@ -206,7 +210,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the normal of row `number`. Returns the speed of the fixed body along the new normal, m/s.
+    /// Replaces the unit normal of the contact in row `number`, and updates the speeds of its moving surface. Returns
+    /// the speed of the fixed body along the new normal, m/s.
     pub(crate) fn turn_row(&mut self, number: usize, normal: DVec2) -> f64 {
         let row = self.rows.get_mut(number);
         row.normal = M::sliding(M::normal(normal.to_array()), M::slide(row.normal));
@@ -217,13 +222,15 @@ impl<M: Model> StepProblem<M> {
         speed
     }
 
-    /// Returns the speed of the fixed body of the contact in row `number` along the normal, m/s; 0 if it does not move.
+    /// Returns the speed along the normal of the fixed body that the contact in row `number` touches, m/s; 0 if that
+    /// body does not move.
     #[inline(always)]
     pub fn wall_speed(&self, number: usize) -> f64 {
         self.walls.speeds.get(number).copied().unwrap_or(0.0)
     }
 
-    /// Returns the speed of the fixed body of row `number` along the normal at the beginning of the step, m/s.
+    /// Returns the speed, at the beginning of the step and along the normal, of the fixed body that the contact in row
+    /// `number` touches, m/s. For a driven wall the result is its present speed.
     pub(crate) fn wall_speed_before(&self, number: usize) -> f64 {
         if self.gives_way(number) {
             return self.wall_speed(number);
@@ -233,8 +240,8 @@ impl<M: Model> StepProblem<M> {
         surface.before.dot(DVec2::new(x, y))
     }
 
-    /// Returns the speed of the fixed body's surface along the tangent for each row, m/s: 0 for pairs of grains. The
-    /// list is empty if no surface moves.
+    /// Returns for each contact the speed of the fixed body's surface along the tangent, m/s: 0 for contacts between
+    /// grains. The list is empty if no surface moves.
     pub fn surface_speeds(&self) -> Vec<f64> {
         if !self.has_moving_walls() {
             return Vec::new();
@@ -242,13 +249,13 @@ impl<M: Model> StepProblem<M> {
         (0..self.rows.len()).map(|number| self.rows.surface_speed(number)).collect()
     }
 
-    /// Returns true if the problem may have moving surfaces.
+    /// Returns true if the problem was set up with moving surfaces.
     pub(crate) fn has_moving_walls(&self) -> bool {
         !self.walls.speeds.is_empty()
     }
 
-    /// Returns the part of the velocity of the fixed body of row `number` that changes the gap, m/s. For a half-space
-    /// this is the component along `normal`, for other shapes the whole velocity.
+    /// Returns the part of the velocity of a fixed body that changes the gap of its contact in row `number`, m/s. For a
+    /// half-space this is the component along `normal`, for other bodies the whole velocity.
     pub(crate) fn shape_velocity(&self, number: usize, normal: DVec2) -> DVec2 {
         match self.walls.surfaces.get(number) {
             Some(Some(surface)) if !surface.is_half_space => surface.velocity,
@@ -256,9 +263,9 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Returns the work that moving surfaces do through the rows' impulses, J, and the tangential part of this work.
-    /// Works computed from the rows' velocities lack the tangential part, because these velocities are relative to the
-    /// surfaces.
+    /// Returns two works, J: the work that moving surfaces do on the grains in a step, and the part of this work that
+    /// is done along the tangents. The tangential part is needed separately: the tangential velocities of a problem are
+    /// relative to the surfaces, so a work that is computed from them lacks this part.
     pub(crate) fn surface_works(&self) -> [f64; 2] {
         let [whole, along_tangents] = self.surface_works_of(self, |number| number);
         // The rows contain the final speed V of a driven wall, but the wall does work at its mean speed ½(V + V⁻). So
@@ -277,8 +284,9 @@ impl<M: Model> StepProblem<M> {
         [whole - surplus, along_tangents]
     }
 
-    /// Returns the works as [`Self::surface_works`] does, for the rows of `part`, a problem with a subset of the rows
-    /// of this problem. `number_here` translates the row numbers of `part` to row numbers of this problem.
+    /// Returns the work of moving surfaces and its tangential part, J, for the contacts of `part`, a problem with a
+    /// subset of the contacts of this problem. `number_here` translates the row numbers of `part` to row numbers of
+    /// this problem. Unlike [`Self::surface_works`], counts a driven wall with its final speed.
     pub(crate) fn surface_works_of(
         &self,
         part: &Self,
@@ -300,8 +308,8 @@ impl<M: Model> StepProblem<M> {
         [whole, along_tangents]
     }
 
-    /// Iterates over mutable references to all rows, with the speeds of their fixed bodies along the normal, m/s: 0 if
-    /// there is no fixed body or if it does not move.
+    /// Iterates over all contacts: a mutable reference to the contact's data, and the speed of its fixed body along the
+    /// normal, m/s; 0 if there is no fixed body or if that body does not move.
     pub(crate) fn rows_with_walls(&mut self) -> impl Iterator<Item = (&mut Row<M>, f64)> {
         let walls = self.walls.speeds.iter().copied().chain(std::iter::repeat(0.0));
         self.rows.iter_mut().zip(walls)
@@ -313,14 +321,14 @@ impl<M: Model> StepProblem<M> {
         !self.walls.driven.is_empty()
     }
 
-    /// Returns true if the fixed body of the contact in row `number` is a driven wall.
+    /// Returns true if the contact in row `number` is with a wall that a force drives.
     #[inline(always)]
     pub(crate) fn gives_way(&self, number: usize) -> bool {
         self.walls.driven_row(number).is_some()
     }
 
-    /// Allows the bodies of the contact in row `number` to approach each other with up to `allowed`, m/s. `wall_speed`
-    /// is the speed of the fixed body along the normal, m/s.
+    /// Changes the law of the contact in row `number` so that its bodies may approach each other with up to `allowed`,
+    /// m/s. `wall_speed` is the speed of the fixed body along the normal, m/s.
     pub(crate) fn let_close(&mut self, number: usize, allowed: f64, wall_speed: f64) {
         self.rows.get_mut(number).restitution_velocity = allowed - wall_speed;
         let MovingWalls { driven_rows, driven_row_of, .. } = &mut self.walls;
@@ -330,8 +338,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Returns the speed of the fixed body of row `number` along the normal at the beginning of the step, and its
-    /// increase in the step, m/s.
+    /// Returns two speeds along the normal, m/s, of the fixed body that the contact in row `number` touches: the speed
+    /// at the beginning of the step, and its increase in the step.
     pub(crate) fn wall_speed_and_gain(&self, number: usize) -> [f64; 2] {
         let Some(known) = self.walls.driven_row(number) else {
             let before = self.wall_speed_before(number);
@@ -342,10 +350,13 @@ impl<M: Model> StepProblem<M> {
         [known.speed + along * wall.before, along * (wall.now - wall.before)]
     }
 
-    /// Scales the relative velocity (v_n, v_t) of row `number` to a fixed wall, m/s; `None` if the wall is not driven.
-    /// v_n, with its restitution term, is divided by 1 + κ b_n², and v_t by 1 + κ b_t² m_t/m_n, the row's compliances
-    /// relative to a fixed wall (κ and b: see the head of the file). So impulses of the row change the result as much
-    /// as they would change the relative velocity at a fixed wall.
+    /// Scales the relative velocity (v_n, v_t) of a contact with a driven wall, m/s, for the error in the natural map;
+    /// `None` if the contact is not with a driven wall.
+    ///
+    /// A contact with a driven wall has larger compliances than a contact with a fixed wall, because the wall gives
+    /// way. v_n, with its restitution term, is divided by the ratio of these compliances 1 + κ b_n², and v_t by 1 + κ
+    /// b_t² m_t/m_n (κ and b: see the head of the file). So an impulse changes the scaled velocity as much as it would
+    /// change the velocity at a fixed wall.
     #[inline(always)]
     pub(super) fn own_part(
         &self,
@@ -361,8 +372,9 @@ impl<M: Model> StepProblem<M> {
         Some([(normal + added) / of_normal - added, tangential / of_tangential])
     }
 
-    /// Scales a relative velocity like [`Self::own_part`], but for the wall at its speed without contact impulses. The
-    /// given (v_n, v_t) are relative to the wall's present speed.
+    /// Computes the relative velocity (v_n, v_t), m/s, of a contact with a driven wall for the wall's speed without
+    /// contact impulses, and scales it like [`Self::own_part`]. The given (v_n, v_t) are relative to the wall's present
+    /// speed.
     #[inline(always)]
     pub(super) fn free_part(
         &self,
@@ -376,7 +388,8 @@ impl<M: Model> StepProblem<M> {
         self.own_part(number, row, [normal + along[0] * slower, tangential + along[1] * slower])
     }
 
-    /// Sets driven walls to the speeds that follow from the rows' impulses, and updates the rows.
+    /// Sets driven walls to the speeds that follow from the present contact impulses, and updates the contacts with
+    /// these walls.
     pub(super) fn form_wall_velocities(&mut self) {
         for wall in &mut self.walls.driven {
             wall.now = wall.free;
@@ -391,7 +404,7 @@ impl<M: Model> StepProblem<M> {
         self.tell_of_walls();
     }
 
-    /// Sets driven walls to given speeds, one per wall, m/s, and updates the rows.
+    /// Sets driven walls to given speeds, one per wall, m/s, and updates the contacts with these walls.
     pub(crate) fn set_wall_velocities(&mut self, velocities: impl Iterator<Item = f64>) {
         for (wall, velocity) in self.walls.driven.iter_mut().zip(velocities) {
             wall.now = velocity;
@@ -399,7 +412,7 @@ impl<M: Model> StepProblem<M> {
         self.tell_of_walls();
     }
 
-    /// Recomputes the terms of the rows that depend on the present speeds of driven walls.
+    /// Recomputes the terms in the contacts' data that depend on the present speeds of driven walls.
     pub(crate) fn tell_of_walls(&mut self) {
         let MovingWalls { driven, driven_rows, speeds, .. } = &mut self.walls;
         for known in driven_rows {
@@ -411,8 +424,9 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// For each row against a fixed body, computes κ (b_n² + b_t² m_t/m_n) times the number of contacts of its driven
-    /// wall; `None` if the body is not a driven wall.
+    /// For each contact with a fixed body, computes κ (b_n² + b_t² m_t/m_n) times the number of contacts of its driven
+    /// wall (κ and b: see the head of the file), or `None` if the body is not a driven wall. Methods that update all
+    /// contacts at once need this bound on the wall's compliance.
     pub(crate) fn wall_compliances(&self) -> impl Iterator<Item = Option<f64>> {
         let MovingWalls { driven, driven_rows, .. } = &self.walls;
         let mut counts = vec![0.0; driven.len()];
