@@ -6,3 +6,4 @@ mod invariance;
 mod network;
 mod packings;
 mod piles;
+mod rolling_heaps;
