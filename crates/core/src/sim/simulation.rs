@@ -252,7 +252,7 @@ impl Simulation {
         with_model!(parts, M => visitor.visit::<M>(&mut M::slot(&mut slots).problem, &contacts))
     }
 
-    /// Prepares the next step in a copy. Returns the compiled model of its physics, the memory that contains its contact
+    /// Prepares the next step in a copy. Returns the compiled model of its physics, the memory with its contact
     /// problem, and its contacts. This function is not generic, so that it is compiled only in this crate.
     fn prepared(&self) -> (ModelParts, Slots, ContactList) {
         let Self { mut state, settings, mut slots, mut memory, .. } = self.clone();
