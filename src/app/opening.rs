@@ -86,8 +86,8 @@ impl StartSource for Opening {
     }
 }
 
-/// Returns the scene of a configuration. If a new pile must settle first, its grains are shown and the progress is
-/// reported.
+/// Returns the scene of a configuration. If the grains of a new pile must be deposited first, calls `tell` with the
+/// progress and a picture of the grains.
 fn settled(config: &Config, tell: Tell<'_>) -> Result<Scene> {
     let mut making = SettlingProgress::new();
     config.scene(|settling| tell(making.look(&settling)))

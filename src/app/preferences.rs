@@ -35,7 +35,7 @@ pub struct Preferences {
     pub starts_again: bool,
     /// True if outlines of the earlier run are drawn behind the present run.
     pub ghost: bool,
-    /// True if idle cores compute the mean over other initial states.
+    /// True if idle cores compute the mean slump of runs from other initial states (other seeds).
     #[serde(rename = "other_piles")]
     pub ensemble: bool,
     /// True if the plots are open.
@@ -153,7 +153,7 @@ impl Default for LessonPlace {
     }
 }
 
-/// Choices that a lesson replaces while it is open.
+/// The user's choices that a lesson replaces by its own while it is open.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Choices {
     pub quantities: Vec<String>,
@@ -166,7 +166,7 @@ pub(super) struct Choices {
 }
 
 impl Choices {
-    /// Applies these choices and returns the previous choices.
+    /// Writes these choices to the preferences and returns the choices that they replace.
     fn swap(self, preferences: &mut Preferences) -> Self {
         Self {
             quantities: std::mem::replace(&mut preferences.quantities, self.quantities),
