@@ -1,4 +1,5 @@
-//! Reads and writes requests for runs: options of the command line, scene files, lines of a study, and saved runs.
+//! Reads and writes configurations of runs, which come from options of the command line, scene files, lines of a study,
+//! and saved runs.
 
 mod facts;
 mod option_words;

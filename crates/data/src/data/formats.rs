@@ -27,10 +27,10 @@ pub fn formats_of(settings: &DataSettings) -> Result<Vec<FormatName>> {
     formats.map(|format| check_format(format).map(|()| format)).collect()
 }
 
-/// Fails if this build cannot write a format.
+/// Fails if this build of the program cannot write a format.
 ///
 /// # Errors
-/// The error names the formats that this build can write, and the missing feature.
+/// The error names the formats that this build can write, and the Cargo feature that is missing.
 pub fn check_format(format: FormatName) -> Result<()> {
     if cfg!(feature = "data") || format != FormatName::Parquet {
         return Ok(());

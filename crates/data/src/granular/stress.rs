@@ -12,7 +12,8 @@ use glam::DVec2;
 
 use super::network::Network;
 
-/// Computes Σ f ⊗ ℓ over all contacts, J, with the contact force f (N) and the branch vector ℓ (m).
+/// Computes Σ f ⊗ ℓ over all contacts, N·m, with the contact force f (N) and the branch vector ℓ (m), which leads to
+/// the centre of grain i from the centre of grain j or the touched point of a wall.
 pub(super) fn stress_of_contacts(network: &Network) -> Tensor {
     let mut sum = Tensor::default();
     for link in &network.links {
@@ -21,7 +22,7 @@ pub(super) fn stress_of_contacts(network: &Network) -> Tensor {
     sum
 }
 
-/// Computes the contribution of each grain to Σ f ⊗ ℓ ([`stress_of_contacts`]), J, in the order of the grains.
+/// Computes the contribution of each grain to Σ f ⊗ ℓ ([`stress_of_contacts`]), N·m, in the order of the grains.
 pub(super) fn stress_of_grains(network: &Network) -> Vec<Tensor> {
     let mut sums = vec![Tensor::default(); network.grains.len()];
     for link in &network.links {
@@ -52,7 +53,7 @@ pub(super) struct Tensor {
 }
 
 impl Tensor {
-    /// Adds the tensor product a ⊗ b.
+    /// Adds the tensor product a ⊗ b to this tensor.
     pub(super) fn add(&mut self, a: DVec2, b: DVec2) {
         self.xx += a.x * b.x;
         self.xy += a.x * b.y;
@@ -66,7 +67,7 @@ impl Tensor {
         Self { xx: xx / divisor, xy: xy / divisor, yx: yx / divisor, yy: yy / divisor }
     }
 
-    /// Returns the mean of the two principal values.
+    /// Returns the mean of the two principal values, which is half the trace.
     pub(super) fn mean(self) -> f64 {
         0.5 * (self.xx + self.yy)
     }

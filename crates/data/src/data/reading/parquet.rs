@@ -8,11 +8,11 @@ use super::rows::{
 use crate::data::parquet::{Decoded, ParquetFile};
 use crate::error::{Error, Result};
 
-/// Largest number of rows in one file. A row of a table is identified by the index of its file times this number plus
-/// the index of the row.
+/// Largest number of rows in one Parquet file. A row of a table in several files is identified by the index of its file
+/// times this number plus the index of the row.
 const MOST_ROWS: u64 = 1 << 32;
 
-/// Reads the discs of the step `step`, or of the last step if `step` is `None`, from the Parquet files of a table,
+/// Reads the discs of the time step `step`, or of the last step if `step` is `None`, from the Parquet files of a table,
 /// which are in ascending order.
 pub(super) fn read_parts(
     path: &Path,
@@ -54,7 +54,7 @@ pub(super) fn read_parts(
 }
 
 impl ParquetFile {
-    /// Returns a column of whole numbers ≥ 0; `None` if the file has no such column.
+    /// Reads a column of whole numbers ≥ 0; `None` if the file has no such column.
     fn whole(&self, name: &str) -> Result<Option<Vec<u64>>> {
         let allowed = "a whole number ≥ 0";
         let of = |(row, value): (usize, Option<i64>)| {
