@@ -92,7 +92,7 @@ pub(super) fn too_long(
     })
 }
 
-/// Time step from which on the hint suggests a shorter instead of a longer time step, s.
+/// Time step from which on the window suggests to try a shorter time step instead of a longer one, s.
 const LONG_STEP_SECS: f64 = 5e-3;
 /// Touch tolerance (largest gap at which a contact pulls), in mean diameters, above which no hint on Δt is given,
 /// because Δt then changes cohesion less (`docs/theory.md`).

@@ -135,8 +135,8 @@ pub(crate) struct ExperimentSeries {
 }
 
 impl ExperimentSeries {
-    /// Adds the main quantity of each simulation in a frame. If the run went back to an earlier step, removes later
-    /// values.
+    /// Adds the main quantity of each simulation in a frame. If the recorded run now ends at an earlier step, removes
+    /// the later values.
     pub(super) fn follow(&mut self, frame: &LiveFrame) {
         let quantity = frame.start.as_ref().and_then(|start| Some((start, quantity_of(start)?)));
         let Some((start, quantity)) = quantity else { return *self = Self::default() };

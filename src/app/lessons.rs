@@ -235,7 +235,7 @@ pub const LESSONS: [Lesson; 7] = [
         }),
         learnt: "Each method breaks somewhere. Test it on a case whose right answer you know.",
         scene: "mass-ratio",
-        // The light disc, of which one would see nothing beside the heavy one.
+        // The view shows the light disc, which would be too small to see next to the heavy disc.
         view: Some([DVec2::new(-1.3, -0.3), DVec2::new(1.3, 1.4)]),
         worlds: |base| {
             let solver = SolverSettings::to_residual(Method::Newton, 1e-6, 100);

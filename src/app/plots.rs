@@ -22,7 +22,7 @@ pub(super) const LEAST_WIDTH: f32 = 150.0;
 pub(super) const LEAST_SLUMP: f64 = 0.4;
 /// Name of the quantity that is also plotted for runs from other initial states (other seeds).
 const OTHERS: &str = "slump";
-/// Colour strength of runs from other initial states, relative to the visible run.
+/// Colour strength of the curves of runs from other initial states, relative to the curve of the visible run.
 const OTHERS_STRENGTH: f32 = 0.45;
 
 /// Line styles of the second and third curve in the plot of a quantity.
@@ -240,7 +240,7 @@ pub(crate) struct WorldCurve {
     pub name: String,
     pub colour: Color32,
     pub curve: Curve,
-    /// Slumps of runs with the same settings from other initial states.
+    /// Slumps of runs with the settings of this simulation from other initial states.
     pub others: Option<Arc<Band>>,
 }
 

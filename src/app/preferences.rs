@@ -25,7 +25,7 @@ use crate::render::Theme;
 pub struct Preferences {
     /// Light theme, dark theme, or the theme of the desktop.
     pub theme: egui::ThemePreference,
-    /// Style of the drawn scene, except that its colours of ground and text follow the theme of the window.
+    /// Drawing style of the scene. Only its colours of background and text follow the theme of the window instead.
     pub style: Style,
     /// The page of the sidebar that is open.
     pub page: Option<Page>,
@@ -38,7 +38,7 @@ pub struct Preferences {
     /// True if idle cores compute the mean slump of runs from other initial states (other seeds).
     #[serde(rename = "other_piles")]
     pub ensemble: bool,
-    /// True if the plots are open.
+    /// True if the plots are visible.
     pub plots: bool,
     /// Names of the plotted quantities.
     pub quantities: Vec<String>,

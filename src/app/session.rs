@@ -1,8 +1,8 @@
 //! Files of sessions (all simulations with their history and the arrangement of the window) and of saved runs.
 //!
-//! A session stores runs as the live history does: the initial state, some later states (keyframes), all changes of
-//! settings, and the displayed state. It therefore opens without computing. States between the keyframes are computed
-//! again, with the same bits, when the user moves to them on the timeline.
+//! A session stores runs as the program stores them in memory: the initial state, some later states (keyframes), all
+//! changes of settings, and the displayed state. It therefore opens without computing. States between the keyframes are
+//! computed again, with the same bits, when the user moves to them on the timeline.
 
 use std::path::{Path, PathBuf};
 

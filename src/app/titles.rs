@@ -9,7 +9,7 @@ use crate::number::millis_text;
 use crate::setting::Value;
 use crate::sim::Settings;
 
-/// Names of settings that usually change together with others; a title omits them unless nothing else differs.
+/// Names of settings that usually change together with other settings. A title omits them unless nothing else differs.
 const FOLLOWING: [&str; 2] = ["stop", "tolerance"];
 /// Names of settings that change together with the solver; a title that names the solver omits them.
 const FOLLOWING_METHOD: [&str; 2] = ["friction-model", "model-solves"];

@@ -38,7 +38,7 @@ const RULE: &str = "Idle cores run other piles with the present settings from th
 pub struct Ensemble {
     /// Folder in which the computed initial states are stored; `None` if the user has no folder for such files.
     folder: Option<PathBuf>,
-    /// The open scene as the window loaded it; `piles` are its other initial states.
+    /// The open scene as the window loaded it; `piles` are the same pile with other seeds.
     opened: Option<Arc<LiveStart>>,
     piles: Vec<NewPile>,
     pool: Option<WorkerPool>,
@@ -180,7 +180,7 @@ impl Ensemble {
         self.released.iter().filter(move |(settings, _)| is_open && !is_on_its_way(settings))
     }
 
-    /// Returns the slumps of the ensemble with the settings of a started run; `None` for settings of no started run.
+    /// Returns the slumps of the ensemble with the given settings; `None` if no started run has these settings.
     pub(crate) fn band(&self, settings: &Settings) -> Option<&Arc<Band>> {
         let mut released = self.released.iter().filter(|_| !self.piles.is_empty());
         released.find(|(own, _)| own == settings).map(|(_, band)| band)
@@ -262,7 +262,7 @@ fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
     let of = if count < planned { format!("{count} of {planned}") } else { count.to_string() };
     match (mean, summary.settling) {
         (Some((mean, half)), _) if half.is_finite() => {
-            // The digits show half the width of the interval with two digits, or with one below 0.01.
+            // Half the width of the interval is shown with two digits, or with one digit if it is below 0.01.
             let decimals = if half >= 0.1 { 2 } else { 3 };
             format!("other piles {mean:.decimals$} ± {half:.decimals$} (n = {of})")
         }

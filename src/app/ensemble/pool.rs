@@ -96,7 +96,7 @@ struct Jobs {
     /// of the visible simulations.
     released: Vec<Settings>,
     begun: Vec<(PileJob, JobState)>,
-    /// Results of finished runs, by their settings.
+    /// Slumps of finished runs, by their settings.
     bands: Vec<Released>,
     is_over: bool,
 }
@@ -175,7 +175,7 @@ struct PoolState {
 /// The worker threads of the ensemble. When this value is dropped, the threads end after their present step.
 pub(super) struct WorkerPool {
     state: Arc<PoolState>,
-    // A thread ends when its loop ends.
+    // Each thread runs one loop and ends when this loop ends.
     threads: Vec<rayon::ThreadPool>,
 }
 

@@ -33,7 +33,8 @@ pub(super) struct Gallery {
 }
 
 impl Gallery {
-    /// Shows a list of the scenes of some groups, which is closed until the user opens it. A click opens a scene.
+    /// Shows a list of the scenes of the given groups, which is closed until the user opens it. A click on a scene
+    /// opens the scene.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,

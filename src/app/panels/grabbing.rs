@@ -34,9 +34,9 @@ pub struct Grabbing {
 struct Grip {
     /// Index of the simulation.
     pub world: usize,
-    /// Index of the boundary.
+    /// Index of the wall among the boundaries of the simulation.
     pub boundary: usize,
-    /// Vector from the reference point of the boundary to the grabbed point, m.
+    /// Vector from the reference point of the wall to the grabbed point, m.
     pub from_place: DVec2,
     /// Target position of the reference point that was last sent to the solver's thread, m.
     pub sent: Option<DVec2>,

@@ -23,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     ui.separator();
 }
 
-/// Shows the pinned grain in a corner of the scene, if the page of the sidebar that shows it is not open.
+/// Shows the pinned grain in a corner of the scene, unless the sidebar shows this grain.
 pub(super) fn show_over_scene(ui: &Ui, context: &mut PanelContext<'_>) {
     if context.preferences.page == Some(Page::Pile) {
         return;

@@ -218,7 +218,7 @@ pub(super) fn choices(ui: &mut Ui, context: &mut PanelContext<'_>) {
 /// Shows the buttons that save the plots, and the simulated time between the plotted steps.
 fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let stem = format!("{}-curves", context.run.file_stem());
-    // The browser version must not wait for a graphics device.
+    // Waiting for a graphics device would block the browser version.
     if !IN_BROWSER
         && ui.button("Plot as PNG").on_hover_text("Save the plots as a picture.").clicked()
     {

@@ -43,7 +43,7 @@ pub(super) fn show(ui: &mut Ui, run: &WatchedRun) {
     });
 }
 
-/// Returns a text with a mark that shows whether the result is right.
+/// Returns `text` with a mark and a colour that show whether a result is right.
 pub(super) fn marked(ui: &Ui, is_right: bool, text: &str) -> RichText {
     let dark = ui.visuals().dark_mode;
     let (mark, colour) =

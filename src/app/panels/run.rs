@@ -25,7 +25,8 @@ const LARGE: usize = 2_000;
 /// (`docs/runs.md`, new piles).
 const RAIN_SECS: f64 = 116.0;
 const ROLL_SECS: f64 = 0.2;
-/// Computing time of a solved step of a slumping pile with [`LARGE`] grains, ms.
+/// Approximate computing time of a solved step of a slumping pile with [`LARGE`] grains, ms. The panel estimates the
+/// time for other numbers of grains from this value.
 const STEP_MILLIS: f64 = 60.0;
 /// Methods by which the grains of a new pile are deposited, with their names and hints.
 const DEPOSITIONS: [(Deposition, &str, &str); 2] = [

@@ -1,5 +1,5 @@
-//! Panel: grains and contacts at the displayed moment as a table, which the user can filter and sort. A click on a row
-//! pins the grain of that row.
+//! Panel: grains and contacts at the displayed simulated time as a table, which the user can filter and sort. A click
+//! on a row pins the grain of that row, so that its state is shown.
 
 use egui::{RichText, ScrollArea, TextEdit, Ui};
 

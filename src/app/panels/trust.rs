@@ -33,7 +33,7 @@ use crate::study::{BudgetAnswer, BudgetEffect, BudgetOptions, ErrorBudget, Trust
 const COST_SECS: f64 = 300.0;
 /// Quantity whose error is estimated in scenes that are not heaps, because slump is meaningful only for heaps.
 const OTHERWISE: &str = "mean(kinetic_energy)";
-/// Largest fraction of unsolved steps at which a run can be trusted.
+/// Largest fraction of the steps that may be unsolved (miss their tolerance) if a run can be trusted.
 const FEW: f64 = 0.01;
 
 /// Text that the panel shows until the error budget has its first result.
@@ -303,7 +303,7 @@ fn bar(ui: &mut Ui, effect: &BudgetEffect, within: f64, reach: f64) {
     response.response.on_hover_text(text);
 }
 
-/// Returns a warning if the time step of a simulation is too long.
+/// Returns a warning if a grain at rest would fall too far in one time step of a simulation.
 fn warning(world: &WorldFrame) -> Option<String> {
     too_long(&world.controls.settings, &world.snapshot.surroundings, world.substeps)
 }
