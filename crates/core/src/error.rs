@@ -10,7 +10,7 @@ pub enum Error {
     Value {
         /// Name of the field, as the user writes it.
         field: String,
-        /// The value that was found.
+        /// The value that the user or a file gives, as text.
         value: String,
         /// Description of the allowed values.
         allowed: String,

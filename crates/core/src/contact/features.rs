@@ -1,5 +1,5 @@
-//! Boundaries (shapes, other than discs, that grains cannot move), divided into features: half-spaces, segments and
-//! convex polygons. A disc touches each feature in at most one point.
+//! Boundaries (walls and other shapes that are not discs), divided into features: half-spaces, segments and convex
+//! polygons. A disc touches each feature in at most one point.
 
 use glam::DVec2;
 use parry2d_f64::query::{PointQuery, PointQueryWithLocation};

@@ -1,4 +1,4 @@
-//! Test that the error bound, which a solve with bounded friction reports, is not less than the distance of its
+//! Test that the error bound that a solve with bounded friction reports is not less than the distance of its
 //! velocities from the solution. The test runs over scenes, steppers, friction, restitution and time steps. It checks
 //! the solves that meet their tolerance. For all solves it computes the bound a second time, from the data of the
 //! contacts: the reported bound must equal this number, or exceed it if contacts violate their constraint

@@ -71,10 +71,10 @@ pub struct Scene {
     /// Contact laws of pairs of materials. A pair that is not listed has the coefficients in `parameters`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pairs: Vec<MaterialPair>,
-    /// Shapes, other than discs, that grains cannot move.
+    /// Walls and other shapes, other than discs, that are at rest or have a prescribed or force-driven motion.
     #[serde(default)]
     pub boundaries: Vec<Boundary>,
-    /// Discs that grains cannot move. They are at rest unless a motion moves them.
+    /// Fixed discs: discs that are at rest or have a prescribed or force-driven motion.
     #[serde(default)]
     pub fixed_discs: Vec<Disc>,
     /// Prescribed or force-driven motions of boundaries and fixed discs. Bodies without a motion stay at rest.
@@ -355,8 +355,8 @@ impl Scene {
         View { min, max }
     }
 
-    /// Removes the given mass of each grain for which it equals, bit by bit, the mass that follows from the grain's
-    /// material and radius.
+    /// Removes the mass that a grain lists, if this mass equals, bit by bit, the mass that follows from the material
+    /// and the radius of the grain.
     pub fn without_implied_masses(mut self) -> Self {
         for grain in &mut self.grains {
             let given = grain.mass.take();
@@ -366,7 +366,8 @@ impl Scene {
         self
     }
 
-    /// Returns this scene with `grains` in place of its grains. Their grey levels show the layers in which they start.
+    /// Returns this scene with `grains` in place of its grains. The grey levels of the new grains show the layers in
+    /// which they start.
     pub fn with_settled(mut self, grains: Vec<Grain>) -> Self {
         self.grains = grains;
         tone_in_layers(&mut self.grains, self.mean_diameter);

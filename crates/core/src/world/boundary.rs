@@ -1,5 +1,5 @@
-//! Shapes, other than grains, that grains cannot move: their geometry, own motion and outline. `contact::features`
-//! computes how a disc touches these shapes.
+//! Bodies that are not grains: fixed discs, walls and other boundaries, with their geometry, outline and own motion
+//! (pistons). `contact::features` computes how a disc touches boundaries.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::motion::{Carry, RigidVelocity, within};
 use crate::number::Parts;
 
-/// A disc that grains cannot move.
+/// Position and radius of a disc. As a body of a world it is a fixed disc: it is at rest, or has a prescribed or
+/// force-driven motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Disc {
@@ -17,7 +18,8 @@ pub struct Disc {
     pub radius: f64,
 }
 
-/// A shape, other than a disc, that grains cannot move. All lengths are in m.
+/// A wall or another shape, other than a disc, that is at rest or has a prescribed or force-driven motion. All lengths
+/// are in m.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "shape", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Boundary {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::materials::{Material, number_of};
 use crate::error::{self, Error, Result};
 
-/// One disc of a scene. The fields are public, and their values are checked together with the scene.
+/// One grain (a moving disc) of a scene. The fields are public, and their values are checked together with the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Grain {
@@ -116,7 +116,8 @@ pub struct Grains {
 }
 
 impl Grains {
-    /// Builds the lists from `grains`. `areal_density` (kg/m²) determines the masses that are not given.
+    /// Builds the lists from `grains`. A grain without a given mass gets the mass `areal_density` (kg/m²) times its
+    /// area.
     pub fn new(grains: &[Grain], areal_density: f64) -> Self {
         Self::of_materials(grains, areal_density, &[])
     }

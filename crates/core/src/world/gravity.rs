@@ -84,12 +84,13 @@ pub struct GravityTurn {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum TurnCourse {
-    /// Rotation at a constant rate.
+    /// Rotation of gravity at constant angular velocity.
     Rate {
         /// Angular velocity of the direction of gravity, rad/s.
         rate: f64,
     },
-    /// Angles from a table, linear between its rows. The angle is constant before the first and after the last row.
+    /// Angle of gravity from a table of times and angles, linear between its rows. The angle is constant before the
+    /// first and after the last row.
     Table {
         /// Times in increasing order, s.
         times_secs: Vec<f64>,

@@ -77,9 +77,9 @@ pub(crate) struct PairNumbers {
 }
 
 impl PairNumbers {
-    /// Returns the coefficients of the contact law `pair`. Coefficients that it does not give are taken from
-    /// `parameters`. Friction, rolling friction and cohesion are 0 if `physics` excludes friction, rotation or
-    /// cohesion.
+    /// Returns the coefficients of the contact law `pair`. A coefficient that this law does not give is taken from
+    /// `parameters`. Friction is 0 if `physics` excludes friction, rolling friction is 0 if it excludes rotation, and
+    /// cohesion is 0 if it excludes cohesion.
     pub(crate) fn new(
         pair: Option<&MaterialPair>,
         parameters: &Parameters,

@@ -37,9 +37,9 @@ use crate::error::{Error, Result};
 pub struct World {
     /// The grains: discs that move.
     pub grains: Grains,
-    /// Discs that grains cannot move, such as the rough base of the pile.
+    /// Fixed discs, such as the rough base of the pile: they are at rest, or have a prescribed or force-driven motion.
     pub fixed_discs: Vec<Disc>,
-    /// Shapes, other than discs, that grains cannot move.
+    /// Walls and other shapes, other than discs, that are at rest or have a prescribed or force-driven motion.
     pub boundaries: Vec<Boundary>,
     /// Prescribed or force-driven motions of fixed discs and boundaries. Bodies without a motion stay at rest.
     pub motions: Vec<Motion>,

@@ -1,5 +1,6 @@
 //! Prescribed and force-driven motion of fixed discs and boundaries, and speeds of surfaces that move along
-//! themselves, as of a conveyor belt. Grains cannot move these bodies by pushing, unless a force drives them.
+//! themselves, as of a conveyor belt. Contact forces of grains act only on bodies that a force drives, not on
+//! prescribed motions.
 
 use std::f64::consts::TAU;
 

@@ -58,7 +58,7 @@ impl Periodic {
         [self.x, self.y].map(|borders| borders.map(period))
     }
 
-    /// Returns 1 for each axis with periodic borders, and 0 for each other axis.
+    /// Returns a vector whose component is 1 along each axis with periodic borders, and 0 along each other axis.
     pub(crate) fn axes(self) -> DVec2 {
         DVec2::from(self.periods().map(|period| if period.is_some() { 1.0 } else { 0.0 }))
     }

@@ -215,7 +215,7 @@ enum Obstacle {
     Nothing,
 }
 
-/// Rolls a disc to one side, from disc to disc, until it is supported or falls off.
+/// Rolls a disc to one side, from disc to disc, until it meets a second support or falls off.
 fn rolled(deposit: &Deposit, mut roll: RollingDisc) -> RollEnd {
     loop {
         let RollingDisc { radius, on, side, .. } = roll;

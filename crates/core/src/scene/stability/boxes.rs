@@ -12,7 +12,7 @@ use crate::world::Boundary;
 const HIGH: u8 = 6;
 /// Distance between neighbouring columns at the end of the motion, in diameters.
 const NARROWEST: f64 = 0.6;
-/// Speed of each wall, m/s. At this speed the highest disc rises at no more than ½√(g d) (g: gravity, d: diameter).
+/// Speed of each wall, m/s. With it the highest disc rises with a speed of at most ½√(g d) (g: gravity, d: diameter).
 const SPEED: f64 = 0.007;
 
 /// Returns the exact equilibrium positions of the discs, in diameters, when neighbouring columns are `spacing`

@@ -47,8 +47,9 @@ pub fn mass_ratio(ratio: f64) -> Scene {
 const BELOW: usize = 5;
 
 /// Returns the scene of a column of five discs under a heavy disc, which is removed during the run. The heavy disc is
-/// `ratio` times as heavy as the other discs and is the last grain. The solve of the next step starts from the contact
-/// impulses that carried the heavy disc. In a correct step these impulses do not throw the other discs up.
+/// `ratio` times as heavy as the other discs and is the last grain. The solve of the first step after the removal
+/// starts from the contact impulses that carried the heavy disc. In a correct step these impulses do not throw the
+/// other discs up.
 pub fn lift_off(ratio: f64) -> Scene {
     let mut scene = column(BELOW);
     scene.name = "lift-off".into();

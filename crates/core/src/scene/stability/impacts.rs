@@ -20,7 +20,7 @@ pub fn bounce(restitution: f64) -> Scene {
     scene
 }
 
-/// Speed of the first ball, in √(g d) (g: gravity, d: diameter).
+/// Speed of the ball that hits the row of balls, in √(g d) (g: gravity, d: diameter).
 const BALL_SPEED: f64 = 3.0;
 
 /// Returns the scene of Newton's cradle, without gravity: one ball hits a row of `count` − 1 balls, which touch each
@@ -84,7 +84,7 @@ pub fn blow() -> Scene {
     scene
 }
 
-/// Speed of the disc at the start, in √(g d) (g: gravity, d: diameter).
+/// Initial speed of the sliding disc along the floor, in √(g d) (g: gravity, d: diameter).
 const SLIDING_SPEED: f64 = 3.0;
 
 /// Returns the scene of a disc that slides on the floor and does not rotate. In a correct solution the disc keeps its
