@@ -211,7 +211,7 @@ impl Simulation {
         // A state whose kinetic energy overflows counts as not finite, too, because nothing can be measured of it.
         let finite = self.state.is_finite() && self.observables.kinetic_energy.is_finite();
         let Self { state, settings, watch, observables, .. } = self;
-        // Not for `dem`, whose springs return stored energy, nor for `avbd`, whose works do not balance its energy.
+        // Does not count `dem`, whose springs return stored energy, nor `avbd`, whose works do not balance its energy.
         let is_balanced = |stepper| !matches!(stepper, Stepper::Dem | Stepper::Avbd);
         if finite && self.last_stepper.is_some_and(is_balanced) {
             watch.count_work(state, settings, observables);

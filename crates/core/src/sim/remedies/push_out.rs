@@ -1,4 +1,4 @@
-//! Remedy `push-out`: moves grains that overlap apart after a step.
+//! Remedy `push-out`: pushes overlapping grains apart after a step.
 
 use glam::DVec2;
 

@@ -66,8 +66,8 @@ const MOST_PASSES: u32 = 2000;
 /// of the normal impulses. Rounding and the tolerance of a step cause smaller values.
 const LEAST_GAIN: f64 = 1e-6;
 
-/// Largest number of times that the opening speeds after shocks are reduced in a step because bounces create energy: each time
-/// they are halved, and the last time they are set to 0.
+/// Largest number of times that the opening speeds after shocks are reduced in a step because bounces create energy:
+/// each time they are halved, and the last time they are set to 0.
 const HALVINGS: u32 = 5;
 
 /// Solver settings for a pass, which solves the contacts that close at the same time. They do not depend on the solver

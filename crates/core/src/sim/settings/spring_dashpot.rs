@@ -209,8 +209,8 @@ pub(in crate::sim) fn stable_substeps(
     (parameters.time_step_secs / longest_secs).ceil()
 }
 
-/// Checks that the springs are stable with at most the largest allowed number of substeps, if this number is chosen
-/// automatically. The error names the stiffness if it is too large, or else the time step if it is too long.
+/// Checks that the automatic number of substeps, for which the springs are stable, is at most [`MAX_SUBSTEPS`]. The
+/// error names the stiffness if it is too large, or else the time step if it is too long.
 pub(super) fn check_substeps(
     world: &World,
     physics: Physics,

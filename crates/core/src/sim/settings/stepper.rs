@@ -103,7 +103,7 @@ impl Stepper {
     }
 }
 
-/// Checks that there is no rolling friction, for steppers that do not compute it.
+/// Checks that the coefficient of rolling friction is 0, for steppers that do not compute rolling friction.
 fn without_rolling(parameters: &Parameters) -> Result<()> {
     let found = parameters.rolling_friction;
     check(found == 0.0, "rolling-friction", found, "0 where stepper is not moreau")

@@ -91,9 +91,9 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     substepping.end_step_of(stage, &contacts, substeps * (ITERATIONS + 1))
 }
 
-/// Smallest dimensionless stiffness κ = k h²/m_ij of a contact (stiffness k, substep h, effective mass m_ij), also of a
-/// new contact. With a smaller value new contacts sink in; with a larger value the descent body by body cannot transmit
-/// a force.
+/// Dimensionless stiffness κ = k h²/m_ij of a new contact (stiffness k, substep h, effective mass m_ij), and smallest
+/// stiffness of any contact. With a smaller value new contacts sink in; with a larger value the descent body by body
+/// cannot transmit a force.
 const SOFTEST: f64 = 1.0;
 /// Largest dimensionless stiffness κ = k h²/m_ij of a contact (stiffness k, substep h, effective mass m_ij). A stiffer
 /// contact would dominate all other forces on its two bodies.

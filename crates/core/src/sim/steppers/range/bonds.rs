@@ -4,7 +4,8 @@
 //! opens after the shocks of the step, and the load J, the change of this speed by all other forces in the step. So a
 //! step is solved several times, always with the same solver and the same contacts.
 //!
-//! 1. **Shocks** (`range::shocks`) give v. Bonds have no effect in a shock, because their force is finite.
+//! 1. **Shocks** (`range::shocks`) give v. Bonds have no effect in a shock, because it takes no time and their force is
+//!    finite.
 //! 2. **The step** is solved from the velocities after the shocks, with gravity. Each bond may pull with the impulse
 //!    C₀Δt at most.
 //! 3. **Breaks.** The solution gives the loads. A bond that would open by the debonding distance δ_c before the end of
@@ -28,11 +29,13 @@ use crate::sim::steppers::range::step_numbers::StepNumbers;
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{Model, RowVelocities, SolveReport, StepProblem, for_each_row, solve};
 
-/// Largest number of solutions of a step that search for the bounds of its bonds, the largest impulses that they may
-/// exert. After these solutions only few bonds still need a smaller bound, and the next step examines them again.
+/// Largest number of times that a step is solved while the bounds of its bonds (the largest impulses that they may
+/// exert) are searched. After these solutions only few bonds still need a smaller bound, and the next step examines
+/// them again.
 const MOST_ROUNDS: u32 = 8;
 
-/// Fraction of its strength with which a bond would break in a step if it counts as restless, that is about to break.
+/// Fraction of the strength of bonds in the search for restless bonds: a bond is restless, that is about to break, if
+/// it would break in the step with only this fraction of its strength.
 const STRENGTH_OF_RESTLESS_BONDS: f64 = 0.5;
 
 /// Largest motion of a grain in a step that counts as rest, in debonding distances δ_c. With a larger value, the slow

@@ -49,8 +49,8 @@ const MOST_TRAVEL: f64 = 0.1;
 /// a step of the requested length.
 const MOST_SUBSTEPS: f64 = 16.0;
 
-/// Returns the distances within which a step that has begun searches for contacts. They are sufficient if no grain
-/// becomes faster than the fastest grain or wall, except by gravity and body forces.
+/// Returns the distances within which the present step searches for contacts. They are sufficient if no grain becomes
+/// faster than the fastest grain or wall, except by gravity and body forces.
 fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     let world = &state.world;
     let travel = travel(state, time_step_secs);
@@ -60,7 +60,7 @@ fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     LookAhead { time_step_secs, distance, reach, in_touch: InTouch::Bonded }
 }
 
-/// Returns an upper bound for the distance that a grain moves in a step that has begun, m.
+/// Returns an upper bound for the distance that a grain moves in the present step, m.
 fn travel(state: &State, time_step_secs: f64) -> f64 {
     (state.fastest() + 2.0 * state.largest_acceleration() * time_step_secs) * time_step_secs
 }
@@ -78,8 +78,8 @@ struct StepCut {
 }
 
 impl StepCut {
-    /// Decides into how many substeps a step that has begun is divided. `restless` is true if bonds were about to break
-    /// in the previous step.
+    /// Decides into how many substeps the present step is divided. `restless` is true if bonds were about to break in
+    /// the previous step.
     fn of(state: &State, settings: &Settings, restless: bool) -> Self {
         let State { world, .. } = state;
         let parameters = &settings.parameters;
@@ -192,8 +192,8 @@ pub(super) fn separate<M: Model>(state: &mut State) {
 }
 
 /// Largest opening speed that the rotation of a bonded pair may cause in a step, divided by the escape speed of the
-/// bond: the smallest opening speed that breaks it. With a larger value, circling pairs separate too early; with a
-/// smaller value, steps are divided in vain.
+/// bond (the smallest opening speed after a shock that breaks the bond). With a larger value, circling pairs separate
+/// too early; with a smaller value, steps are divided in vain.
 const MOST_OF_ESCAPE_SPEED: f64 = 0.5;
 
 /// True if a bonded pair circles so fast that a step of this length would treat the rotation of the contact normal as a

@@ -133,14 +133,14 @@ struct ShockPair {
     stretch: f64,
     /// Unit normal n, from j to i: at the beginning of the step, or at the last meeting of the pair.
     normal: DVec2,
-    /// Gap along n at the beginning of the step, m. After a meeting: the value with which the gap is 0 at the time of
-    /// the meeting.
+    /// Gap along n at the beginning of the step, m. After a meeting: the value for which [`ShockPair::gap_at`] is 0 at the
+    /// time of the meeting.
     gap: f64,
     /// Change of the gap because shocks have changed the paths of the two grains, m.
     shift: f64,
     /// Normal velocity v_n of the pair, relative to the wall if the other body is a moving wall, m/s.
     speed: f64,
-    /// Acceleration a_n along n of a grain that falls on a fixed body, m/s²; 0 for other pairs.
+    /// Acceleration a_n along n of a grain that falls on a fixed disc or a boundary, m/s²; 0 for other pairs.
     acceleration: f64,
     touch: Touch,
     next: NextImpact,

@@ -27,8 +27,8 @@ impl Shocks {
         first
     }
 
-    /// Returns the acceleration a_n along the normal, m/s², of a grain that falls on a fixed body and has not met it
-    /// yet; 0 for other pairs.
+    /// Returns the acceleration a_n along the normal, m/s², of a grain that falls on a fixed disc or a boundary and has
+    /// not met it yet; 0 for other pairs.
     fn acceleration<M: Model>(&self, problem: &StepProblem<M>, number: usize) -> f64 {
         let (i, j) = grains(problem, number);
         let pair = &self.pairs[number];

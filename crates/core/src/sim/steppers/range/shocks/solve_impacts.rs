@@ -1,4 +1,4 @@
-//! Solution of one pass of shocks: the struck pairs form a contact problem of their own.
+//! Solution of one pass, the shocks that are computed together: the struck pairs form a contact problem of their own.
 
 use glam::DVec2;
 
