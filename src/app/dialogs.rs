@@ -8,9 +8,9 @@ use crate::error::Result;
 
 /// The file or folder that the user chose in a dialog.
 pub(crate) enum Chosen {
-    /// A file to be opened.
+    /// A file that the program opens.
     File(PathBuf),
-    /// The folder of saved files.
+    /// The new folder for saved files.
     Folder(PathBuf),
 }
 

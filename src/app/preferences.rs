@@ -62,7 +62,7 @@ pub struct Preferences {
     pub new_grain_diameters: f64,
     /// Folder of exported files.
     pub folder: PathBuf,
-    /// Choices for exported recordings of grains and contacts.
+    /// The user's choices for exported recordings of grains and contacts.
     pub data: DataChoices,
     /// Configuration of the scene that was open last.
     pub scene: Config,
