@@ -133,8 +133,8 @@ struct ShockPair {
     stretch: f64,
     /// Unit normal n, from j to i: at the beginning of the step, or at the last meeting of the pair.
     normal: DVec2,
-    /// Gap along n at the beginning of the step, m. After a meeting: the value for which [`ShockPair::gap_at`] is 0 at the
-    /// time of the meeting.
+    /// Gap along n at the beginning of the step, m. After a meeting: the value for which [`ShockPair::gap_at`] is 0 at
+    /// the time of the meeting.
     gap: f64,
     /// Change of the gap because shocks have changed the paths of the two grains, m.
     shift: f64,
