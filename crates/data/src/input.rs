@@ -10,8 +10,8 @@ use crate::error::{Error, Result};
 /// Largest accepted size, in bytes, of an unpacked page (block of data) of a Parquet file, and of a file with a contact
 /// problem.
 pub(crate) const MOST_BYTES: u64 = 256 << 20;
-/// Size of the largest accepted TOML file, bytes. Parsing takes about 60 times as much memory as the file is long. The
-/// file of a scene with 10,000 grains has about one MiB.
+/// Size of the largest accepted TOML file, bytes. Parsing a file takes about 60 times its size in memory. The file of a
+/// scene with 10,000 grains has about one MiB.
 pub const MOST_OF_TOML: u64 = 32 << 20;
 /// Length of the longest accepted line of a table in a text file, bytes.
 const MOST_OF_LINE: usize = 1 << 20;

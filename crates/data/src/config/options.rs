@@ -68,7 +68,7 @@ impl Args for Config {
     }
 }
 
-/// Creates the command-line option that sets a setting.
+/// Creates the command-line option for a setting from the description of the setting.
 fn option(about: &About) -> Arg {
     let parser: ValueParser = match about.kind {
         Kind::Number => clap::value_parser!(f64).into(),

@@ -192,7 +192,7 @@ impl Config {
     pub fn unread_by(&self, stepper: Stepper) -> Vec<String> {
         let (source, remedies) = (SceneSource::default(), RemedyChanges::default());
         let given = Self { source, stepper: None, remedies, ..self.clone() };
-        // A request has only named values, which can always be written as JSON.
+        // A configuration has only named values, which can always be written as JSON.
         let given = serde_json::to_value(&given).unwrap_or_default();
         let names = given.as_object().into_iter().flat_map(|given| given.keys());
         names.filter(|name| !stepper.reads(name)).cloned().collect()
@@ -220,8 +220,9 @@ impl Config {
     }
 
     /// Makes the scene of this configuration with all changes and checks it, but does not let the grains of a new pile
-    /// settle: the scene has the grains of the built-in scene, or the grains of the new pile at their initial
-    /// positions. This takes little time, so that a wrong value is reported before long work begins.
+    /// settle. The scene then has the grains of the built-in scene instead or, if a scene file describes the pile, the
+    /// new grains at their initial positions. This takes little time, so that a wrong value is reported before long
+    /// work begins.
     ///
     /// # Errors
     /// The error names the first field that is unknown or outside its range, or the file that cannot be read.

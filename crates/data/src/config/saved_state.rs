@@ -82,7 +82,7 @@ impl SavedState {
         SEAL.written(self)
     }
 
-    /// Reads a saved run from the bytes of a file; `path` is used only in messages.
+    /// Reads a saved run from the bytes of a file; `path` is used only in error messages.
     ///
     /// # Errors
     /// As [`SavedState::open`].

@@ -20,7 +20,7 @@ pub(super) fn empty_tables_of_frames() -> [Table; 6] {
     [empty_grains(), contacts, means::no_pairs(), walls, measures, histograms]
 }
 
-/// Returns all tables of a recording, with their columns but without rows.
+/// Returns all tables of a recording, including the table of steps, with their columns but without rows.
 pub(super) fn empty_tables() -> impl Iterator<Item = Table> {
     empty_tables_of_frames().into_iter().chain([Table::of_steps(&[])])
 }

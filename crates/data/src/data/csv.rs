@@ -140,7 +140,7 @@ impl TextTable {
     }
 
     /// Counts the rows of the file up to the time step `step`, but no more than `most` rows. Also returns the length of
-    /// the head and these rows, bytes. If the file does not exist, both numbers are 0.
+    /// the head and these rows, bytes. If the file does not exist, the number of rows and the length are 0.
     pub(super) fn rows_there(&self, step: Option<u64>, most: u64) -> Result<(KeptRows, u64)> {
         let mut file = match File::open(&self.path) {
             Ok(file) => BufReader::new(file),

@@ -1,4 +1,4 @@
-//! Lists the file formats of recordings that this build can write, and starts them.
+//! Lists the file formats of recordings that this build of the program can write, and creates their writers.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use super::vtk::{self, Vtk};
 use crate::error::{Error, Result};
 use crate::scene::{DataSettings, FormatName};
 
-/// Format of a recording if the user does not ask for a format.
+/// File format of a recording if the user does not ask for a format.
 pub const DEFAULT_FORMAT: FormatName =
     if cfg!(feature = "data") { FormatName::Parquet } else { FormatName::Csv };
 

@@ -1,7 +1,7 @@
 //! Writes recordings as LAMMPS dumps for OVITO and other readers. `ovito/grains.dump` is a text dump with one row per
-//! grain. `ovito/contacts.dump` is a `dump local` with one row per contact between two discs, as bonds.
-//! `ovito/walls.dump` has one row per wall. Contacts with boundaries are left out, because OVITO draws bonds only
-//! between particles and otherwise refuses the frame.
+//! grain. `ovito/contacts.dump` is a `dump local` with one row per contact between two discs, which readers show as
+//! bonds. `ovito/walls.dump` has one row per wall. Contacts with boundaries (walls that are not discs) are left out,
+//! because OVITO draws bonds only between particles and otherwise refuses the frame.
 //!
 //! Columns have the names that these readers expect. MDAnalysis finds the lines of a frame of grains by counting lines,
 //! and neither MDAnalysis nor ASE accepts grains without z or with unknown elements. The frames of grains therefore

@@ -18,7 +18,7 @@ struct WallTableRow {
     /// Index of the wall's name in the table's list of names.
     name: u32,
     motion: Option<f64>,
-    /// The boundaries and discs of the wall, and its motion.
+    /// Boundaries and fixed discs that form the wall, and their common motion.
     wall: MotionView,
     place: DVec2,
     force: DVec2,
@@ -105,7 +105,7 @@ const WALL_COLUMNS: &[ColumnSpec<WallTableRow>] = &[
 ];
 
 impl Table {
-    /// Makes the table of walls: one row per wall.
+    /// Makes the table of walls of a snapshot: one row per wall.
     pub fn of_walls(moment: &Moment) -> Self {
         let walls = walls(&moment.surroundings).into_iter().enumerate();
         let rows = walls.map(|(number, (wall, motion))| row(moment, number, motion, wall));
@@ -143,7 +143,8 @@ pub(super) fn fixed_discs(moment: &Moment) -> impl Iterator<Item = GrainState> +
     })
 }
 
-/// Returns all walls, each with the number of its prescribed motion in the scene; `None` for pistons and walls at rest.
+/// Returns all walls of a scene, each with the number of its prescribed motion in the scene; `None` for pistons and
+/// walls at rest.
 pub(super) fn walls(surroundings: &Surroundings) -> Vec<(MotionView, Option<f64>)> {
     let Surroundings { boundaries, fixed_discs, moving, .. } = surroundings;
     // Pistons come first in the list `moving` and have no number.

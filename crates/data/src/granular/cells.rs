@@ -134,8 +134,8 @@ fn sites(network: &Network, surroundings: &Surroundings) -> (Vec<usize>, Vec<Sit
     (indices, grains.chain(fixed).map(site).collect())
 }
 
-/// Returns the half-plane that bounds the cell of the disc `first` against the cell of the disc `second`. On its border
-/// both discs (centre x, radius r) have the same power |p − x|² − r², the distance measure of the cells.
+/// Returns the half-plane that bounds the cell of the disc `first` against the cell of the disc `second` (indices in
+/// `sites`). A point p on its border has the same power |p − x|² − r² with respect to both discs (centre x, radius r).
 fn cut(sites: &[Site], first: usize, second: usize) -> HalfPlane {
     let (site, other) = (&sites[first], &sites[second]);
     let branch = other.position - site.position;

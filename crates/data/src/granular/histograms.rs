@@ -1,6 +1,6 @@
 //! Counts the contact forces, contact directions, contacts per grain and overlaps of a pile in histograms.
 //!
-//! The bins are the same for all piles and moments, so that counts of several frames and runs can be added.
+//! The bins are the same for all piles and for all frames, so that counts of several frames and runs can be added.
 
 use super::MomentParts;
 use super::stress::axis_degrees;

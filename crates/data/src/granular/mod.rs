@@ -11,8 +11,8 @@
 //!
 //! Lengths are in m and forces in N. In a plane a stress is a force per length, in N/m. Compression is positive,
 //! directions are in degrees anticlockwise from the x axis, and an undefined quantity is NaN. Lost grains (grains that
-//! went through a wall or left the world) and their contacts do not count. Forces, normals and gaps of contacts belong
-//! to the moment's last step, and the positions of grains to the end of that step.
+//! went through a wall or left the scene) and their contacts do not count. Forces, normals and gaps of contacts are
+//! those of the last step before the snapshot, and the positions of grains are those at the end of that step.
 
 mod cells;
 mod fields;

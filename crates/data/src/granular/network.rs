@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use crate::sim::{ContactState, ContactStatus, GrainState, Moment, OtherBody};
 
-/// Force above which a contact bears a force, as a fraction of the mean force of all contacts. If the fraction is
+/// Smallest contact force that counts as a force, as a fraction of the mean force of all contacts. If the fraction is
 /// smaller, residual errors of the solver count as forces. If it is larger, weak contacts do not count.
 const BEARS_FROM: f64 = 1e-6;
 

@@ -13,7 +13,7 @@ use glam::DVec2;
 use super::network::Network;
 
 /// Computes Σ f ⊗ ℓ over all contacts, N·m, with the contact force f (N) and the branch vector ℓ (m), which leads to
-/// the centre of grain i from the centre of grain j or the touched point of a wall.
+/// the centre of grain i from the centre of grain j or from the touched point of a wall or fixed disc.
 pub(super) fn stress_of_contacts(network: &Network) -> Tensor {
     let mut sum = Tensor::default();
     for link in &network.links {

@@ -240,8 +240,8 @@ fn agree(found: f64, expected: f64, scale: f64) -> bool {
 /// at that time. `progress` is called with the simulated time, s.
 ///
 /// # Errors
-/// If the time is before the start, if there are no contacts at that time or too many for a file, or if the state or a
-/// number of the problem is not finite.
+/// If the time is before the start, if there are no contacts at that time, if a file cannot represent the problem
+/// ([`problem_file_of`]), or if the state or a number of the problem is not finite.
 pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> Result<ProblemFile> {
     if !(at_secs >= 0.0 && at_secs.is_finite()) {
         return Err(Error::value("at", at_secs, "a finite number of seconds ≥ 0"));
@@ -271,7 +271,8 @@ pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> R
 /// Returns the contact problem of a simulation's next step. The simulation does not change.
 ///
 /// # Errors
-/// If a file cannot represent the problem: it has rolling friction, driven bodies or shearing borders.
+/// If a file cannot represent the problem (walls driven by a force, rolling friction, or shearing periodic borders), or
+/// if its matrix W would have too many entries.
 pub fn problem_file_of(simulation: &Simulation) -> Result<ProblemFile> {
     let grains = &simulation.world().grains;
     simulation.next_problem(ProblemFileVisitor { grains })
@@ -344,7 +345,8 @@ impl ProblemVisitor for ProblemFileVisitor<'_> {
     }
 }
 
-/// Fails if a file cannot represent the problem: it has driven bodies, rolling friction or shearing periodic borders.
+/// Fails if a file cannot represent the problem, because of walls driven by a force, rolling friction, or shearing
+/// periodic borders.
 fn check_can_be_held<M: Model>(problem: &StepProblem<M>) -> Result<()> {
     let refuse = |field: &str, holds: &str| {
         Err(Error::value(field, "given", format!("left out: files hold problems of {holds}")))

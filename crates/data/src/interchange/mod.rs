@@ -4,10 +4,10 @@
 //! that maps contact impulses to changes of relative velocities (2 nc × 2 nc, 1/kg, rows and columns in the order N0,
 //! T0, N1, T1, …); `q` (2 nc, m/s), the relative velocities without contact impulses, including restitution; and `mu`,
 //! the coefficient of friction, as a number or a list. With cohesion it also has `c0`, the cohesion impulse C₀Δt of
-//! each contact (N·s), and `cone`, `"shifted"` or `"compressive"`. A solution consists of contact impulses r = (P_n,
-//! P_t) in N·s and relative velocities u = W r + q; `start` optionally gives initial impulses. Problems that Slump
-//! writes also contain their `bodies` ([`BodyForm`]). Text files of the program Siconos with plane problems can be read
-//! as well (`siconos`).
+//! each contact (N·s), and `cone`, the bound of friction: `"shifted"`, μ(P_n + C₀Δt), or `"compressive"`, μ max(P_n,
+//! 0). A solution consists of contact impulses r = (P_n, P_t) in N·s and relative velocities u = W r + q; `start`
+//! optionally gives initial impulses. Problems that Slump writes also contain their `bodies` ([`BodyForm`]). Text files
+//! of the program Siconos with plane problems can be read as well (`siconos`).
 
 mod bodies;
 mod several;
@@ -35,9 +35,9 @@ const FORM: &str = "the JSON of a contact problem, or Siconos' text of a plane o
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "mu must be a number or a list of numbers")]
 pub enum Friction {
-    /// One value for all contacts.
+    /// One coefficient of friction for all contacts.
     Same(f64),
-    /// One value for each contact.
+    /// One coefficient of friction for each contact.
     Each(Vec<f64>),
 }
 

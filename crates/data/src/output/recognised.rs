@@ -1,5 +1,5 @@
-//! Recognises files that Slump wrote by their first bytes. The name of a file, or a list of files that anyone can edit,
-//! is not sufficient evidence for removing a file.
+//! Recognises the files that Slump wrote. It compares the first bytes of a file, because the name of a file, or a list
+//! of files that anyone can edit, is not sufficient evidence for removing a file.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};

@@ -18,7 +18,7 @@ use crate::input::open;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Length of the longest first line, bytes.
 const MOST_OF_LINE: u64 = 256;
-/// Message for a file whose content does not match its checksum.
+/// Error message for a file whose content does not match its checksum.
 const DAMAGED: &str = "is damaged: its checksum is not that of its content, but must be, as it was when it was written";
 
 /// Header of a type of file that only Slump reads, and the words for such files in error messages.

@@ -282,8 +282,8 @@ impl Reader<'_> {
     }
 }
 
-/// Returns the nesting depth that is still accepted one level below `depth`, the depth accepted so far. Fails if
-/// `depth` is 0.
+/// Returns the number of nested levels that are still accepted inside a structure or list, if `depth` levels are
+/// accepted including the structure or list itself. Fails if `depth` is 0.
 fn depth_below(depth: usize) -> Checked<usize> {
     depth.checked_sub(1).ok_or_else(|| format!("has headers nested deeper than {MOST_DEPTH}"))
 }

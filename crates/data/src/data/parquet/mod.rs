@@ -29,10 +29,10 @@ use crate::sim::Observables;
 /// begins. If it is larger, each frame of a small scene costs more, because the last file is rewritten with every
 /// frame. If it is smaller, there are more files.
 const SIZE_OF_PART: usize = 256 << 10;
-/// Key of the file's metadata with units and meanings of the columns, as JSON.
+/// Key of the entry in a file's metadata that describes the units and meanings of the columns, as JSON.
 const COLUMNS_KEY: &str = "columns";
-/// Limit for writing a column of numbers as a dictionary and indices: its value must change in fewer than one of this
-/// many rows. Such a column then takes almost no space.
+/// Limit for writing a column of numbers as a dictionary and indices: on average, its value must change less often than
+/// once in this many rows. Such a column then takes almost no space.
 const FEW_CHANGES: usize = 8;
 
 /// Writer of a recording as Parquet files.

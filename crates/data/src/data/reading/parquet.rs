@@ -20,7 +20,7 @@ pub(super) fn read_parts(
     step: Option<u64>,
 ) -> Result<RecordedGrains> {
     let (mut known, mut rows, mut wanted) = (Vec::new(), Vec::new(), step);
-    // The search begins with the last file, because the last moment is in that file and a requested moment is usually
+    // The search begins with the last file, because the last frame is in that file and a requested frame is usually
     // near it.
     for (index, (_, part)) in parts.iter().enumerate().rev() {
         let table = ParquetFile::open(part)?;
@@ -29,7 +29,7 @@ pub(super) fn read_parts(
         wanted = wanted.or(steps.as_ref().and_then(|steps| steps.iter().copied().max()));
         let is_wanted = |row: &usize| match (&steps, wanted) {
             (Some(steps), Some(wanted)) => steps[*row] == wanted,
-            // A file without the column `step` has a single moment.
+            // A file without the column `step` has a single frame.
             (None, _) => step.is_none(),
             (Some(_), None) => false,
         };

@@ -21,7 +21,8 @@ use crate::sim::Moment;
 /// in lengths of the box's longer side. The largest margin that does not give too many cells is used. With less margin,
 /// grains that flow out of the box are soon left out. With more, a grain that flies off makes images larger for longer.
 const ROOM_IN_SIDES: [f64; 4] = [3.0, 1.0, 0.25, 0.0];
-/// Side length, in mean diameters, that the computation of the margin assumes for a smaller box around the grains.
+/// Smallest side length, in mean diameters, for which the margin is computed. A smaller box around the grains gets the
+/// margin of a box with this side length.
 const LEAST_SIDE_IN_DIAMETERS: f64 = 10.0;
 /// Name under which a file states the smoothing width, m.
 const WIDTH: &str = "smoothing_width";

@@ -294,7 +294,8 @@ fn file(
     file
 }
 
-/// Adds the columns of a table whose rows are not points of the file, with `prefix` before their names.
+/// Adds the columns of a table whose rows are not points of the file, as arrays that belong to the whole file. The
+/// names of the arrays are the names of the columns after `prefix`.
 fn with_arrays(mut file: VtkFile, prefix: &str, table: &Table) -> VtkFile {
     let columns = table.columns.iter().filter(|column| !OF_FRAME.contains(&column.name));
     for Column { name, values, .. } in columns {
