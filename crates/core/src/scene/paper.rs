@@ -18,7 +18,7 @@ const NAME: &str = "pile";
 /// Allowed widths of a rough base (a row of fixed discs on which a pile lies), in diameters.
 const BASE_WIDTHS_IN_DIAMETERS: RangeInclusive<f64> = 1.0..=1e5;
 /// Width of the rough base on either side of the box, divided by the height of the pile. In the paper's runs of one
-/// second, no grain of a collapsing pile moves farther from the box than this.
+/// second, no grain of a collapsing pile leaves this base.
 const BASE_MARGIN_IN_HEIGHTS: f64 = 5.0;
 /// Largest allowed height of a grain above the base, in diameters, to which two diameters per grain are added. The
 /// loosest initial lattice of a pile is a column with 1.3 diameters per grain, which is below this limit.
