@@ -266,7 +266,8 @@ impl Postorder {
 pub(crate) struct ContactGraph {
     /// The elimination order.
     pub elimination: Elimination,
-    /// The block of each row between two moving bodies, as an index in [`Elimination::later`].
+    /// For each contact between two moving bodies (grains or driven walls), the number of its block, an index in
+    /// [`Elimination::later`].
     pub pair_blocks: Vec<u32>,
     /// Number of bodies, and (next field) pairs of bodies in contact, for which `elimination` was computed.
     bodies: usize,

@@ -16,9 +16,9 @@ use crate::solver::method::Method;
 use crate::solver::problem::StepProblem;
 use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 
-/// Patience of Newton's method times the number of contacts of a problem. The *patience* is the number of
-/// factorisations that have not halved the residual, after which the method stops. It is limited by [`LEAST_PATIENCE`]
-/// and [`MOST_PATIENCE`].
+/// Patience of Newton's method times the number of contacts of a problem, so that the patience falls with the size of
+/// the problem. The *patience* is the number of factorisations that have not halved the residual, after which the
+/// method stops. It is limited by [`LEAST_PATIENCE`] and [`MOST_PATIENCE`].
 ///
 /// Both measurements are for a time step Δt of 1e-3 s. At 2,000 flowing grains (3,900 contacts) a patience of 5, 10 and
 /// 20 factorisations leaves a velocity error of 1.4e-2, 1.0e-2 and 0.8e-2 √(g d) in computing times with the ratio 1 :
@@ -26,12 +26,14 @@ use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 /// of 99 solves. Because of these unsolved steps the pile slumps.
 const PATIENCE_OF_CONTACTS: usize = 20_000;
 
-/// Minimum patience of Newton's method, without cohesion and with cohesion: a number of factorisations that have not
-/// halved the residual. A cohesive contact that breaks because of an unsolved step stays broken: a pile of 10,000
-/// grains at Bond number 100 and a time step of 5e-3 s falls with a patience of 5, which does not solve the first step.
-/// With a patience of 10 the first step is solved in 22 factorisations, and the pile does not fall.
+/// Minimum patience of Newton's method, without cohesion and with cohesion: the number of factorisations that have not
+/// halved the residual, after which the method stops. A cohesive contact that breaks because of an unsolved step stays
+/// broken: a pile of 10,000 grains at Bond number 100 and a time step of 5e-3 s falls with a patience of 5, which does
+/// not solve the first step. With a patience of 10 the first step is solved in 22 factorisations, and the pile does not
+/// fall.
 const LEAST_PATIENCE: [usize; 2] = [5, 10];
-/// Maximum patience of Newton's method: a number of factorisations that have not halved the residual.
+/// Maximum patience of Newton's method: the number of factorisations that have not halved the residual, after which the
+/// method stops.
 const MOST_PATIENCE: usize = 100;
 
 /// Minimum number of contacts of a flowing pile that `auto` solves by conjugate gradients. With fewer contacts Newton's

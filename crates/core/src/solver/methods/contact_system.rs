@@ -43,8 +43,9 @@ impl Clone for WorkVectors {
     }
 }
 
-/// One step's contact problem in scaled variables (see the head of the file). The argument `contact` of a function is
-/// an index below [`ContactSystem::len`].
+/// One step's contact problem in scaled variables: impulses s = (p, P_t)/√m_n, with the shifted normal impulse p, and
+/// velocities w = √m_n (u_n, v_t), √J, with w = A s + b. The argument `contact` of a function is an index below
+/// [`ContactSystem::len`].
 pub trait ContactSystem {
     /// True if contacts have tangential impulses. If not, tangential entries are 0.
     const FRICTION: bool;

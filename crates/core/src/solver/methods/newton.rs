@@ -64,12 +64,11 @@ const SWEEPS_AFTER: u32 = 4;
 /// doubled each time, up to [`MOST_SWEEPS_BETWEEN`].
 const SWEEPS_BETWEEN: u32 = 20;
 const MOST_SWEEPS_BETWEEN: u32 = 200;
-/// Number of factorisations of a solve without non-linear elimination (separate solution of the contacts that
-/// contribute most to the residual). Later factorisations are followed by it. If elimination begins with the first
-/// factorisation, easy steps, which need few factorisations, take twice as long. Of 21,600 steps of 138 grains, solved
-/// to 1e-6, 1,339 are unsolved without elimination, in a computing time of 60 s. With elimination after 0, 4, 8, 16 and
-/// 32 factorisations, 878, 961, 875, 893 and 921 steps are unsolved, in computing times of 136, 124, 121, 120 and 100
-/// s.
+/// Number of factorisations at the beginning of a solve that are not followed by non-linear elimination (a separate
+/// solution of the contacts that contribute most to the residual). If elimination begins with the first factorisation,
+/// easy steps, which need few factorisations, take twice as long. Of 21,600 steps of 138 grains, solved to 1e-6, 1,339
+/// are unsolved without elimination, in a computing time of 60 s. With elimination after 0, 4, 8, 16 and 32
+/// factorisations, 878, 961, 875, 893 and 921 steps are unsolved, in computing times of 136, 124, 121, 120 and 100 s.
 const FACTORISATIONS_FIRST: u32 = 8;
 
 /// Limits of Newton's method, and of the conjugate gradients that follow if it fails.

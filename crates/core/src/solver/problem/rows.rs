@@ -159,7 +159,7 @@ impl<M: Model> ContactRows<M> {
         self.len() == 0
     }
 
-    /// Removes all rows.
+    /// Removes all rows (contacts).
     pub(crate) fn clear(&mut self) {
         self.fixed.clear();
         self.pairs.clear();
@@ -170,12 +170,12 @@ impl<M: Model> ContactRows<M> {
         self.rolling.clear();
     }
 
-    /// Iterates over the rows in the order of their numbers.
+    /// Iterates over the rows (the data of one contact each) in the order of their numbers.
     pub fn iter(&self) -> impl Iterator<Item = &Row<M>> {
         self.fixed.iter().map(|row| &row.row).chain(self.pairs.iter().map(|row| &row.row))
     }
 
-    /// Iterates over mutable references to the rows in the order of their numbers.
+    /// Iterates over mutable references to the rows (the data of one contact each) in the order of their numbers.
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut Row<M>> {
         let fixed = self.fixed.iter_mut().map(|row| &mut row.row);
         fixed.chain(self.pairs.iter_mut().map(|row| &mut row.row))

@@ -15,9 +15,9 @@
 //! J the derivative of Π. The Hessian is positive definite, with the blocks of the interior point's systems. At the
 //! minimum of F, V agrees with the impulses Π(y), and the update p ← Π(y) brings the impulses nearer to the solution
 //! (R. T. Rockafellar, 1976; with Newton's method inside X. Li, D. Sun, K.-C. Toh, 2018; for contacts A. Castro and
-//! others, 2022). F is quadratic as long as the pieces of Π stay the same, so a full step within one piece reaches the
-//! minimum. Along a Newton step the derivative F′ is piecewise linear and increasing; its root, the step length, is
-//! found by Newton's method.
+//! others, 2022). Π is piecewise linear, so F is quadratic as long as no contact changes its piece of Π, and a full
+//! step without such a change reaches the minimum. Along a Newton step the derivative F′ is piecewise linear and
+//! increasing; its root, the step length, is found by Newton's method.
 //!
 //! V is not recomputed from the impulses: each step adds its changes to the velocities of contacts and to M(V −
 //! V_free), because a small ε magnifies rounding errors.
