@@ -277,8 +277,8 @@ impl Recording {
 
 impl Drop for Recording {
     fn drop(&mut self) {
-        // The writing thread must end before the folder is unlocked for other processes. Its error is ignored here; only
-        // `finish` reports it.
+        // The writing thread must end before the folder is unlocked for other processes. Its error is ignored here;
+        // only `finish` reports it.
         if let Some(WriterThread { sender, thread }) = self.writer.take() {
             drop(sender);
             let _ = thread.join();

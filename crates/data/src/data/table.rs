@@ -39,7 +39,7 @@ pub enum Values {
     Flags(Vec<Option<bool>>),
     /// Words from a short list, which belongs to the column.
     Words {
-        /// The list of words.
+        /// List of the words that may occur in the column.
         words: Vec<String>,
         /// The index of each row's word in `words`.
         codes: Vec<u32>,

@@ -187,7 +187,7 @@ impl GrainBox {
         if size.y < 0.0 { f64::NAN } else { area }
     }
 
-    /// Returns the four sides of the box as half-planes relative to `centre`, a point inside the box.
+    /// Returns the four sides of the box around all grains as half-planes relative to `centre`, a point inside the box.
     fn cuts(&self, centre: DVec2) -> [HalfPlane; 4] {
         let (mut above, mut below) = (self.high - centre, centre - self.low);
         let [width, height] = self.periodic.unwrap_or_default().periods();
@@ -210,7 +210,8 @@ impl GrainBox {
 /// A half-plane that cuts a cell: the points p with (p − x)·direction ≤ offset, with the centre x of the cell's disc.
 #[derive(Clone, Copy, Debug)]
 struct HalfPlane {
-    /// Distance of the half-plane's border from the disc's centre, m; negative if the centre is outside the half-plane.
+    /// Distance of the half-plane's border from the centre of the cell's disc, m; negative if that centre is outside
+    /// the half-plane.
     offset: f64,
     /// Unit normal of the half-plane's border, pointing out of the half-plane.
     direction: DVec2,
@@ -335,7 +336,7 @@ impl CellPolygon {
         }
     }
 
-    /// Reduces the cell to the part that is inside all half-planes.
+    /// Reduces the cell to the part that is inside all half-planes `cuts`.
     fn clip<const COUNT: usize>(&mut self, cuts: [HalfPlane; COUNT]) {
         for HalfPlane { offset, direction } in cuts {
             if offset < 0.0 && offset * offset >= self.farthest_squared() {

@@ -11,11 +11,11 @@ use crate::sim::Moment;
 const DEGREES: f64 = 5.0;
 /// Number of bins of normal forces per mean force: a bin is 1/5 of the mean force wide.
 const FORCE_BINS_IN_ONE: i32 = 5;
-/// Largest tensile normal force, in mean forces, up to which the histogram of normal forces has bins of equal width.
-/// One more bin contains all stronger tensile forces.
+/// Largest tensile normal force, in units of the mean force, up to which the histogram of normal forces has bins of
+/// equal width. One more bin contains all stronger tensile forces.
 const FORCES_PULLING: i32 = 4;
-/// Largest compressive normal force, in mean forces, up to which the histogram of normal forces has bins of equal
-/// width. One more bin contains all stronger compressive forces.
+/// Largest compressive normal force, in units of the mean force, up to which the histogram of normal forces has bins of
+/// equal width. One more bin contains all stronger compressive forces.
 const FORCES_PUSHING: i32 = 8;
 /// Number of contacts per grain at which the last bin of their histogram begins. This bin includes all larger numbers.
 /// Equal discs have at most 6 contacts.

@@ -67,18 +67,18 @@ impl Tensor {
         Self { xx: xx / divisor, xy: xy / divisor, yx: yx / divisor, yy: yy / divisor }
     }
 
-    /// Returns the mean of the two principal values, which is half the trace.
+    /// Returns the mean of the tensor's two principal values, which is half the trace.
     pub(super) fn mean(self) -> f64 {
         0.5 * (self.xx + self.yy)
     }
 
-    /// Returns half the difference of the principal values of the symmetric part.
+    /// Returns half the difference between the two principal values of the tensor's symmetric part.
     pub(super) fn deviator(self) -> f64 {
         self.half_differences().length()
     }
 
-    /// Returns the direction of the larger principal value of the symmetric part, degrees anticlockwise from the x
-    /// axis, in [0, 180). It is NaN if the principal values are equal.
+    /// Returns the direction of the larger principal value of the tensor's symmetric part, degrees anticlockwise from
+    /// the x axis, in [0, 180). It is NaN if the principal values are equal.
     pub(super) fn direction(self) -> f64 {
         let differences = self.half_differences();
         if differences.length() > 0.0 {
@@ -88,8 +88,8 @@ impl Tensor {
         }
     }
 
-    /// Returns the components a and b of the deviator, the matrix (a b; b −a), which is the symmetric part minus the
-    /// mean of its principal values.
+    /// Returns the components a and b of the tensor's deviator, the matrix (a b; b −a), which is the symmetric part
+    /// minus the mean of its principal values.
     fn half_differences(self) -> DVec2 {
         0.5 * DVec2::new(self.xx - self.yy, self.xy + self.yx)
     }

@@ -164,8 +164,8 @@ impl Destination {
         Err(Error::file(path, "is a symbolic link that leads back to itself"))
     }
 
-    /// Returns the file to write to: a file without a name if the destination is a plain file, else the destination
-    /// itself.
+    /// Returns the file to write to: a file without a name if the destination is a regular file, else the destination
+    /// itself (a device or a pipe).
     fn draft(&self) -> std::io::Result<DraftFile> {
         #[cfg(not(target_arch = "wasm32"))]
         if self.is_special {
