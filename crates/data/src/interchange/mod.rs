@@ -140,8 +140,8 @@ impl ProblemFile {
         self.c0.clone().unwrap_or_else(|| vec![0.0; self.nc])
     }
 
-    /// Returns the contact problem in terms of the matrix W, without bodies. It starts from the initial impulses of the
-    /// file.
+    /// Returns the contact problem in terms of the matrix W, without bodies. Its initial guess is the initial impulses
+    /// of the file.
     ///
     /// # Errors
     /// The error names the field whose length or value is not valid.
