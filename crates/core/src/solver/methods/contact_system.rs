@@ -30,7 +30,7 @@ pub type ScaledVector = Vec<[f64; 2]>;
 /// Work memory of methods on a [`ContactSystem`]. The memory is reused for the next solve; its contents are not.
 #[derive(Debug, Default)]
 pub(crate) struct WorkVectors {
-    /// Scaled vectors for intermediate results, as many as any method needs.
+    /// Vectors of scaled impulses or velocities for intermediate results, as many as any method needs.
     pub pairs: [ScaledVector; 8],
     /// One dimensionless weight per contact, computed by [`ContactSystem::splitting`].
     pub weights: Vec<f64>,

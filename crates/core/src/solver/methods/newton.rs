@@ -74,7 +74,7 @@ const FACTORISATIONS_FIRST: u32 = 8;
 /// Limits of Newton's method, and of the conjugate gradients that follow if it fails.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NewtonEffort {
-    /// Number of factorisations that have not halved the best residual, after which Newton's method stops.
+    /// Number of factorisations that have not halved the smallest residual, after which Newton's method stops.
     pub patience: u32,
     /// Maximum number of sweeps of conjugate gradients after Newton's method has failed. The maximum number of sweeps
     /// of the settings applies, too.

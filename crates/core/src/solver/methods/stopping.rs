@@ -20,7 +20,7 @@ use crate::solver::settings::{SolverSettings, StopTest};
 pub struct SolveReport {
     /// Number of sweeps, or of iterations if the method has no sweeps.
     pub sweeps: u32,
-    /// Number of matrix factorisations.
+    /// Number of factorisations of the matrix of a linear system; 0 for methods without linear systems.
     pub factorisations: u32,
     /// True if the stopping test was met: the error is within the tolerance.
     pub converged: bool,
@@ -134,7 +134,7 @@ const LOOKS_IN_VAIN: u32 = 2;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StallWatch {
     next_look: u32,
-    /// The residuals of the last two comparisons, the older one first.
+    /// The last two residuals that were computed for a comparison, the older one first.
     looks: [f64; 2],
     in_vain: u32,
 }

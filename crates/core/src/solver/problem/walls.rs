@@ -34,7 +34,7 @@ use super::{Approach, Row, StepProblem};
 use crate::contact::{Contact, ContactList};
 use crate::solver::kinematics::Model;
 
-/// Marks a contact whose fixed body is not a driven wall.
+/// Index that marks a contact whose fixed body is not a driven wall.
 const NONE: u32 = u32::MAX;
 
 /// Motion of the surface of a fixed body (disc or wall that is not a grain) at a contact.
@@ -129,7 +129,7 @@ pub(crate) struct MovingWalls {
     surfaces: Vec<Option<Surface>>,
     /// Walls that a force drives.
     pub driven: Vec<DrivenWall>,
-    /// The contacts with driven walls.
+    /// Data of the contacts with driven walls.
     pub driven_rows: Vec<DrivenRow>,
     /// For each contact with a fixed body, its index in `driven_rows`, or [`NONE`]; empty if no wall is driven.
     driven_row_of: Vec<u32>,

@@ -53,7 +53,7 @@ pub(super) struct PathWorkspace<const D: usize> {
     pub best: Vec<[f64; 2]>,
     /// Impulses (σ, λ_t) of all contacts at the start of the solve, m/s.
     pub first: Vec<[f64; 2]>,
-    /// Data of all contacts in the proximal multiplier method.
+    /// Impulses and velocities of all contacts in the proximal multiplier method.
     pub near: Vec<ProximalContact>,
     /// Momenta M(V − V_free) of the bodies in the proximal multiplier method, in elimination order, kg m/s.
     pub momenta: Vec<[f64; D]>,
@@ -68,7 +68,7 @@ pub(super) struct InteriorPoint<'a, M: Model, S, const D: usize> {
     pub workspace: &'a mut PathWorkspace<D>,
     pub numbers: ContactNumbers,
     pub report: SolveReport,
-    /// Largest shifted normal impulse σ that a solution may have, m/s.
+    /// Largest shifted normal impulse σ, m/s, with which a result counts as a solution.
     pub largest_impulse: f64,
     /// The smallest residual of the natural map so far; `workspace.best` has the impulses with this residual.
     pub best: f64,

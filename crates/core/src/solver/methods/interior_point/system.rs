@@ -13,11 +13,11 @@ use crate::solver::linear::{
 };
 use crate::solver::problem::{DrivenBy, Row, StepProblem};
 
-/// The matrix of a Newton step; after the factorisation, its factors.
+/// The matrix of the linear system of a Newton step; after the factorisation, its factors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StepMatrix<const D: usize> {
     symmetric: SymmetricBlockMatrix<D>,
-    /// The matrix under Coulomb's law, for which it is not symmetric.
+    /// The matrix under Coulomb's law, which makes the matrix unsymmetric.
     unsymmetric: BlockMatrix<D>,
 }
 

@@ -1,5 +1,5 @@
-//! Tests of the interior point with random contact problems that have a solution: proximal multipliers, which finish a
-//! solve or replace the path, find the same velocities as the path.
+//! Tests of the interior point method with random contact problems that have a solution: proximal multipliers find the
+//! same velocities as the method's path, no matter whether they finish a solve or replace the path.
 
 use super::*;
 use crate::contact::ContactLaw;

@@ -21,7 +21,7 @@ pub(super) const LANES: usize = 4;
 pub(super) struct BodySlot([f64; LANES]);
 
 impl BodySlot {
-    /// Creates the slot that stores the velocity of a body.
+    /// Creates the memory slot for the velocity of a body.
     pub(super) fn of<M: Model>(body: &M::Body<f64>) -> Self {
         let [x, y, spin] = M::coordinates(body);
         Self([x, y, spin, 0.0])

@@ -266,7 +266,7 @@ struct BlockPlace {
 /// is reused for the next step.
 #[derive(Clone, Debug, Default)]
 struct TileLayout {
-    /// Tiles, in the same order as their blocks and slots.
+    /// Tiles, in the order in which their blocks and slots are stored.
     tiles: Vec<ContactTile>,
     /// Blocks of contacts tile by tile, and within a tile colour by colour. Their slot indices are counted from the
     /// tile's first slot. The blocks of contacts between tiles come last; their slot indices are counted from the first
@@ -279,7 +279,7 @@ struct TileLayout {
     slots: Vec<BodySlot>,
     /// For each block, the range of the row numbers of its contacts in the problem.
     places: Vec<Range<u32>>,
-    /// For each slot, the index of its grain, or [`NOBODY`].
+    /// For each velocity slot, the index of its grain, or [`NOBODY`].
     grains: Vec<u32>,
     marks: Vec<GrainMark>,
     colours: u32,
