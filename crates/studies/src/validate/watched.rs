@@ -141,7 +141,7 @@ pub(super) fn centre_of_mass(simulation: &Simulation) -> DVec2 {
 }
 
 /// Returns the solid fraction in a region: the total area of those grains whose centres are in the region, divided by
-/// the total area of their Voronoi cells.
+/// the total area of their cells (the cell of a grain is the region nearer to it than to any other grain).
 pub(super) fn solid_fraction(moment: &Moment, is_inside: impl Fn(DVec2) -> bool) -> f64 {
     let (mut discs, mut cells) = (0.0, 0.0);
     for (grain, measures) in moment.grains.iter().zip(&measure(moment).grains) {
