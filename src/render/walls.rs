@@ -42,7 +42,7 @@ struct WallLines<'a> {
     links: Vec<LinkInstance>,
 }
 
-/// Returns the links of all `boundaries` that are visible in a picture of `size` pixels.
+/// Returns the lines (links) that show all `boundaries` visible in a picture of `size` pixels.
 pub(super) fn boundary_links(
     boundaries: &[Boundary],
     camera: &Camera,
