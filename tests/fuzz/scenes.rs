@@ -1,4 +1,5 @@
-//! Fuzzing of the simulation: runs absurd scenes with every stepper, method and remedy, for fifty steps.
+//! Fuzzing of the simulation: runs absurd scenes with every stepper, solver method and remedy (optional correction),
+//! for fifty steps.
 
 use arbitrary::{Result, Unstructured};
 use glam::DVec2;
@@ -348,8 +349,8 @@ fn is_gone(scene: &Scene, simulation: &Simulation, grain: usize) -> bool {
     scene.boundaries.iter().any(beyond) || is_far(scene, to)
 }
 
-/// Returns true if a position is far from the initial scene. Always false if the scene has an infinite wall or no walls
-/// at all.
+/// Returns true if a position is far from the initial scene. Always false if the scene has an infinite wall, or if it
+/// consists only of grains.
 fn is_far(scene: &Scene, place: DVec2) -> bool {
     let mut fixed: Vec<DVec2> = scene.fixed_discs.iter().map(|disc| disc.position).collect();
     for boundary in &scene.boundaries {

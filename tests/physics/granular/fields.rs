@@ -1,5 +1,5 @@
-//! Tests of smoothed fields (quantities of grains averaged over their surroundings): their sums are exact for any
-//! position of the borders, and their width is the stated width.
+//! Tests of smoothed fields (quantities of grains averaged over their surroundings): their sums over all cells equal
+//! those over the grains for any position of the periodic borders, and their width is the stated width.
 
 use glam::DMat2;
 use slump::granular::{Fields, PileMeasures};

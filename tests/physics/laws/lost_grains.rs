@@ -1,5 +1,5 @@
 //! Tests of grains that pass through walls or leave the simulated region ("lost" grains): Slump reports them and omits
-//! them from the slump. Contacts that are detected before grains touch prevent that grains pass through walls.
+//! them from the slump. If contacts are detected before grains touch, grains do not pass through walls.
 
 use slump::scene::stability::{WALL_DISTANCE, heap, thin_wall};
 
@@ -143,7 +143,7 @@ const PHASES: u32 = 20;
 
 /// Runs a disc that flies at a thin wall with restitution ρ and moves `travel` diameters per step. Returns the final
 /// velocity divided by the initial velocity (negative after a rebound), for 20 different times of the impact within a
-/// step. `mend` changes the scene, for example its remedies.
+/// step. `mend` changes the scene before the run.
 fn rebounds(travel: f64, restitution: f64, mend: impl Fn(&mut Scene)) -> Vec<f64> {
     let rebound = |phase| {
         let mut scene = thin_wall(travel, (f64::from(phase) + 0.5) / f64::from(PHASES));

@@ -1,5 +1,5 @@
-//! Tests of the scenes at which solvers and steppers fail. A quick run of the stability tests must give the verdicts of
-//! the stored table, and measured limits must agree with theory.
+//! Tests of the limits of solvers and steppers, in scenes in which they fail. A quick run of the stability tests must
+//! give the verdicts of the stored table, and measured limits must agree with theory.
 //!
 //! After a change that improves a verdict, or worsens it for a good reason, write the table again: `cargo run --release
 //! -- stability --quick --table tests/physics/stability/table.csv --overwrite`.
@@ -228,8 +228,9 @@ fn a_step_is_cut_into_no_more_than_a_hundred_pieces() {
     }
 }
 
-/// Stability tests (scene and level) that fail with every remedy. At this distance from the origin, neighbouring
-/// floating-point numbers are 2·10⁻³ d apart, so positions are too coarse.
+/// Stability tests (scene and level of difficulty) that fail with every remedy (an optional correction of the
+/// simulation). At this distance from the origin, neighbouring floating-point numbers are 2·10⁻³ d apart, so positions
+/// are too coarse.
 const UNMENDED: [(&str, f64); 1] = [("far", 1e13)];
 
 #[test]

@@ -55,7 +55,7 @@ fn goes_on(scene: &Scene, simulation: &Simulation, steps: usize, what: &str) -> 
     goes_on_with(scene, simulation, steps, what, |_| {})
 }
 
-/// Returns settings with one remedy switched on.
+/// Returns settings with one remedy (an optional correction of the simulation, such as `push_out`) switched on.
 fn with(remedy: &Remedy) -> Remedies {
     let mut remedies = Remedies::default();
     let about = Remedies::ABOUT.iter().find(|about| about.name == remedy.name).expect("a setting");
