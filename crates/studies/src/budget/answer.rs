@@ -1,5 +1,5 @@
-//! Assembles the error budget of one quantity: one row per possible cause of an effect on it (such as the time step or
-//! the contact law), its limit for small time steps, and a verdict.
+//! Assembles the error budget of one quantity: one row per possible cause of an error (such as the time step or the
+//! contact law), the limit of the quantity for small time steps, and a verdict.
 
 use super::causes::{Cause, Variant};
 use super::collect::{BudgetEnd, Runs};

@@ -35,13 +35,14 @@ use crate::output::{check_writable, note_line, print_line, print_text, remove_dr
 use crate::scene::Scene;
 use crate::sim::Settings;
 
-/// Options of an error budget.
+/// Options of an error budget, which estimates how much of a result is due to the grains, the contact law and the
+/// numerical method.
 #[derive(Clone, Debug)]
 pub struct BudgetOptions {
     /// Scene whose results are examined, with its settings.
     pub config: Config,
     /// Quantities to examine: columns of the tables `steps` and `measures`, or `mean(…)`, `min(…)`, `max(…)`,
-    /// `total(…)` of such a column over a window of time. The slump is examined if the list is empty.
+    /// `total(…)` of such a column over an interval of simulated time. The slump is examined if the list is empty.
     pub quantities: Vec<String>,
     /// Simulated time from which on results are examined, s; `None` for 0.
     pub from_secs: Option<f64>,

@@ -11,7 +11,8 @@ use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverSettings, St
 pub(super) enum Family {
     /// The default solver of the program, which chooses among methods itself.
     Default,
-    /// Methods that sweep over the contacts and update the impulse of one contact after the other.
+    /// Methods that sweep over the contacts and update the impulse of each contact by itself, such as Gauss–Seidel and
+    /// Jacobi.
     Sweeps,
     /// First-order methods, which only multiply vectors by the operator of the whole contact problem and factorise no
     /// matrix.

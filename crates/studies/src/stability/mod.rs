@@ -343,8 +343,8 @@ fn unrest(simulation: &Simulation, scene: &Scene) -> f64 {
     longest_way(simulation, scene).max(jitter(simulation))
 }
 
-/// Returns the vertical force of the grains on all bodies that are not grains, such as the floor, N: the sum of normal
-/// force times y component of the normal over the contacts with these bodies.
+/// Returns the vertical force with which all bodies that are not grains, such as the floor, push the grains, N;
+/// positive upwards. It is the sum of normal force times y component of the normal over the contacts with these bodies.
 fn force_on_ground(simulation: &Simulation) -> f64 {
     let numbering = Numbering::of(simulation.world());
     let list = simulation.contacts();

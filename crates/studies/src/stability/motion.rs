@@ -206,7 +206,7 @@ const SMALL_STEP_SECS: f64 = 2e-4;
 const ROWS: usize = 4;
 /// Half the side length of the box around the heap, in the test with randomly moved sliders, in mean diameters d.
 const BOX: f64 = 12.0;
-/// Simulated time after which the settings on all sliders are changed at random again, s.
+/// Simulated time between two random changes of all sliders, in the test with randomly moved sliders, s.
 const CHANGE_SECS: f64 = 0.05;
 /// Most sweeps per step in the test with randomly moved sliders. The number is so small that the graphical window could
 /// show the run in real time.

@@ -71,7 +71,8 @@ fn sunk_in(trial: &Trial, scene: &Scene) -> Result<f64> {
     Ok(sunk(&simulation, scene))
 }
 
-/// Returns the displacement of the last grain since the initial state in `scene`, in mean diameters d.
+/// Returns the displacement of the last grain (the top of a column) since the initial state in `scene`, in mean
+/// diameters d.
 pub(super) fn sunk(simulation: &Simulation, scene: &Scene) -> f64 {
     let last = scene.grains.len() - 1;
     let [before, now] = [scene.grains[last].position, simulation.world().grains.positions[last]];
@@ -208,8 +209,8 @@ const CHAIN_HALVINGS: u32 = 9;
 const WATCH_SECS: f64 = 0.25;
 pub(super) const CANTILEVER: i32 = 4;
 const BRIDGE: i32 = 10;
-/// Time step in the test of the paper's cradle, s. At this time step the bond opens in the paper, because the paper's
-/// solver has not converged.
+/// Time step in the test of the paper's cradle (a disc hits two bonded discs), s. At this time step the bond opens in
+/// the paper, because the paper's solver has not converged.
 const SHOCK_STEP_SECS: f64 = 5e-4;
 
 /// Returns the relative error of the Bond number below which a hanging chain breaks.
@@ -238,8 +239,8 @@ pub(super) fn bridge(trial: &Trial) -> Result<f64> {
     way_in(trial, WATCH_SECS, with_time_step(trial, scenes::bridge(BRIDGE)))
 }
 
-/// Returns the gap between the discs i and j of the paper's cradle after the shock, in diameters. If the steps are
-/// solved well, the gap stays closed.
+/// Runs the paper's cradle, in which disc k hits two bonded discs i and j. Returns the gap between i and j at the end,
+/// in diameters. If the steps are solved accurately, the bond holds, and the gap is 0.
 pub(super) fn shock(trial: &Trial) -> Result<f64> {
     let mut scene = cradle();
     scene.parameters.time_step_secs = SHOCK_STEP_SECS;

@@ -11,7 +11,7 @@ use crate::sim::{Simulation, Snapshot};
 /// A measure of the error of a stability test that can be evaluated at a single simulated time.
 #[derive(Clone, Copy, Debug)]
 pub struct SeenError {
-    /// Name and unit of the error.
+    /// Name and unit of the error, as text.
     pub name: &'static str,
     /// Function that returns the error from the simulation at the start of the run and the present snapshot; `None` if
     /// it is too early to judge the run.

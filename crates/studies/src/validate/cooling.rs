@@ -71,7 +71,7 @@ pub(super) fn side(discs: f64) -> f64 {
     (discs * 0.25 * PI * DIAMETER * DIAMETER / SOLID_FRACTION).sqrt()
 }
 
-/// Returns the pair correlation χ of the discs at contact, dimensionless: the factor by which it makes collisions more
+/// Returns the pair correlation χ of the discs at contact, dimensionless: the factor by which collisions are more
 /// frequent than in a dilute gas.
 fn contact_value() -> f64 {
     (1.0 - 7.0 / 16.0 * SOLID_FRACTION) / (1.0 - SOLID_FRACTION).powi(2)

@@ -2,18 +2,19 @@
 //! Unger, L. Brendel, D. E. Wolf, J. Kertész, Phys. Rev. E 65, 061305, 2002).
 //!
 //! Discs of mass m and diameter d form a row on a wall. In each step of length Δt, the solver makes N sweeps that start
-//! from the impulses of the previous step. Consider a long wave along the row. Let v be its velocity, and x the change
-//! of v per step that the present impulses cause (more than the impulses at rest). Impulses with x = −v would end the
-//! motion. The sweeps reduce the distance x + v from this solution by a factor S. So with x' and v' after the step
+//! from the impulses of the previous step. Consider a long wave along the row. Let v be the velocity amplitude of the
+//! discs, and x the change of v per step that the present impulses cause, compared with the impulses at rest. Impulses
+//! with x = −v would end the motion. The sweeps reduce the distance x + v from this solution by a factor S. So with x'
+//! and v' after the step
 //!
 //! > x' = −v + S (x + v),  v' = v + x' = S (x + v),
 //!
 //! which is a matrix with trace 2S and determinant S. Its solution is a damped wave whose amplitude is multiplied by √S
 //! in each step, and whose phase advances by θ per step, with cos θ = √S. On a wave of wave number k, sweeps act like
 //! diffusion, S = exp(−q N (kd)²), with a coefficient q. For small kd this wave is the wave on a row of springs with
-//! the stiffness κ = q m N/Δt² and dashpots with the coefficient γ = q m N/Δt, as found by Unger et al. Its speed is c
-//! = √(qN) d/Δt and its decay rate 1/τ = q N (kd)²/2Δt. So q can be computed both from the period and from the damping
-//! of the wave. The longest wave on n discs has kd = π/2n.
+//! the stiffness κ = q m N/Δt² and dashpots with the coefficient γ = q m N/Δt, as found by Unger et al. Its propagation
+//! speed is c = √(qN) d/Δt and its decay rate 1/τ = q N (kd)²/2Δt. So q can be computed both from the period and from
+//! the damping of the wave. The longest wave on n discs has kd = π/2n.
 //!
 //! The value of q depends on the solver method. One parallel (Jacobi) sweep multiplies the wave by cos kd, so q = ½.
 //! The method `jacobi` of this program splits the mass of a disc among its contacts, which halves q, because a disc has
@@ -50,7 +51,8 @@ const TOUCHES_WITHIN: f64 = 1e-2;
 /// wave is then measured.
 const PERIODS: [f64; 2] = [1.0, 3.0];
 
-/// A solver method, the order in which its sweeps visit the contacts, and its theoretical coefficient q.
+/// A solver method, the order in which its sweeps visit the contacts, and the theoretical coefficient q with which its
+/// sweeps spread velocities like diffusion.
 #[derive(Clone, Copy, Debug)]
 struct SweepVariant {
     method: Method,
@@ -95,8 +97,8 @@ fn wave_number(discs: usize) -> f64 {
     FRAC_PI_2 / discs as f64
 }
 
-/// Returns the theoretical number of steps per period of the longest wave on a row of discs, computed from the
-/// coefficient q of the solver method.
+/// Returns the theoretical number of steps per period of the longest wave on a row of discs, computed from the solver
+/// method's diffusion coefficient q.
 fn period(variant: &SweepVariant, discs: usize, sweeps: u32) -> f64 {
     let shrinkage = (-variant.q * f64::from(sweeps) * wave_number(discs).powi(2)).exp();
     TAU / shrinkage.sqrt().acos()
@@ -107,8 +109,8 @@ fn steps(variant: &SweepVariant, discs: usize, sweeps: u32) -> f64 {
 }
 
 /// Simulates a row of discs that begins without contact impulses, so that gravity along the row excites the longest
-/// wave. Measures the period of the wave, and the coefficient q of the solver method from the period and from the
-/// damping.
+/// wave. Measures the period of the wave, and the solver method's diffusion coefficient q, once from the period and
+/// once from the damping.
 fn ring(variant: &SweepVariant, discs: usize, sweeps: u32) -> Result<RunReadings> {
     let mut scene = column_on_line(discs);
     scene.gap_tolerance = TOUCHES_WITHIN * scene.mean_diameter;

@@ -45,8 +45,8 @@ const REFERENCE: Method = Method::Newton;
 const TOLERANCES: [f64; 2] = [1e-8, 1e-9];
 /// Slump below which a pile counts as stable.
 const HOLDS: f64 = 0.1;
-/// Stepper, which defines the contact law, with which the floor is measured: the difference between two reference
-/// simulations.
+/// Stepper of those reference simulations from which the floor is measured (the difference between two references). The
+/// stepper defines the contact law.
 const FLOOR_LAW: Stepper = Stepper::Moreau;
 /// Number of steps of a timed simulation between two checks whether its computing time exceeds the limit.
 const STEPS_PER_LOOK: u64 = 16;
@@ -75,7 +75,7 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
 /// step.
 struct BudgetedVariant {
     charted: Change,
-    /// Stepper, which defines the contact law, of the reference simulations with which this variant is compared.
+    /// Stepper of the reference simulations with which this variant is compared. The stepper defines the contact law.
     law: Stepper,
     /// Change of the settings that selects the variant and its effort. The name of the change describes the effort.
     change: Change,
