@@ -183,8 +183,8 @@ pub(super) fn share(studies: &StudyRunner) -> Result<Figure> {
     let claims = at_large_steps.into_iter().map(|(tolerance, large)| {
         let listed: Vec<String> =
             large.iter().map(|point| format!("{:.0} % at {}", 100.0 * point.y, point.x)).collect();
-        // The claim is accepted if the intervals at the smallest and at the largest of the tested time steps do not
-        // overlap.
+        // The claim counts as true if the interval at the largest tested time step is above the interval at the
+        // smallest one.
         let ends = large.first().zip(large.last());
         let intervals = ends.and_then(|(first, last)| first.interval.zip(last.interval));
         let rises = intervals.is_some_and(|(first, last)| last.0 > first.1);

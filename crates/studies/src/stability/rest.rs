@@ -9,8 +9,9 @@ use crate::scene::{Scene, cradle};
 use crate::sim::Simulation;
 use crate::world::Parameters;
 
-// Columns: the load on the floor, and the sinking of the top. A step that is not solved leaves a speed, so that a
-// column sinks as if its discs were soft: the apparent elasticity of a solver that has not converged.
+// Columns: the load on the floor, and the sinking of the top. A step that is not solved accurately leaves the discs
+// with a speed, so that a column sinks as if its discs were soft: the apparent elasticity of a solver that has not
+// converged.
 
 const COLUMN_SECS: f64 = 0.1;
 /// Most sweeps per step in tests that do not vary this number. It is small, as in the graphical window, which must show
@@ -71,8 +72,8 @@ fn sunk_in(trial: &Trial, scene: &Scene) -> Result<f64> {
     Ok(sunk(&simulation, scene))
 }
 
-/// Returns the displacement of the last grain (the top of a column) since the initial state in `scene`, in mean
-/// diameters d.
+/// Returns the displacement of the last grain, such as the top disc of a column, since the initial state in `scene`, in
+/// mean diameters d.
 pub(super) fn sunk(simulation: &Simulation, scene: &Scene) -> f64 {
     let last = scene.grains.len() - 1;
     let [before, now] = [scene.grains[last].position, simulation.world().grains.positions[last]];
@@ -251,7 +252,7 @@ pub(super) fn shock(trial: &Trial) -> Result<f64> {
     Ok(((places[1].x - places[0].x) / scene.mean_diameter - 1.0).abs())
 }
 
-// Discs in too little space.
+// Discs in a space that is too small.
 
 const RECOVERY_SECS: f64 = 0.3;
 const SETTLING_SECS: f64 = 0.2;

@@ -36,7 +36,7 @@ impl StabilityVerdict {
         }
     }
 
-    /// Returns the verdict as a word: "holds", "degrades" or "fails".
+    /// Returns the verdict as a single word, such as "holds" or "fails".
     pub fn name(self) -> &'static str {
         match self {
             Self::Holds => "holds",
@@ -58,7 +58,7 @@ pub struct StabilityCell {
     pub level: f64,
     /// Verdict on the solver variant in this run.
     pub verdict: StabilityVerdict,
-    /// Error of the run as text, with two digits, because further digits differ between builds of the program.
+    /// Error with two digits, because further digits differ between builds of the program.
     pub error: String,
 }
 
@@ -208,8 +208,7 @@ const WIDTH: u32 = 1200;
 const ROW: u32 = 32;
 const BELOW: u32 = 150;
 
-/// Colours of the verdicts "holds", "degrades" and "fails". The colours also differ in lightness, for readers who
-/// cannot distinguish their hues.
+/// Colours of the verdicts "holds", "degrades" and "fails". They also differ in lightness.
 const COLOURS: [Rgb; 3] = [(206, 234, 214), (253, 226, 147), (240, 150, 130)];
 
 pub(super) fn colour(verdict: f64) -> Rgb {
