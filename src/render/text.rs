@@ -154,12 +154,12 @@ fn runs(line: &str) -> Vec<(&str, Script)> {
 /// alignment of the lines of a block relative to each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Align {
-    /// The point at which the block is drawn is at its left or top edge.
+    /// The block is drawn with its left or top edge at the point.
     #[default]
     Start,
-    /// The point at which the block is drawn is in its middle.
+    /// The block is drawn with its middle at the point.
     Centre,
-    /// The point at which the block is drawn is at its right or bottom edge.
+    /// The block is drawn with its right or bottom edge at the point.
     End,
 }
 
