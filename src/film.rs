@@ -14,9 +14,9 @@ use tempfile::NamedTempFile;
 use crate::error::{Error, Result};
 use crate::output::{DraftFile, PendingFile, Texts, folder_of};
 
-/// Lowest and highest frame rate of a video, Hz.
+/// Lowest and highest allowed frame rate of a video, Hz.
 pub(crate) const VIDEO_RATES_HZ: [f64; 2] = [1.0, 240.0];
-/// Shortest and longest side of a video, pixels. Encoders refuse longer sides.
+/// Shortest and longest allowed side of a video, pixels. Encoders refuse longer sides.
 pub(crate) const VIDEO_SIDES: [u32; 2] = [16, 16_384];
 /// Encoders of ffmpeg for videos that browsers can play, in order of preference, with options for good quality. The
 /// first encoder that the installed ffmpeg has is used.

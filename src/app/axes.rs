@@ -5,11 +5,12 @@ use egui_plot::{AxisHints, GridInput, GridMark, Plot};
 
 use crate::render::numbers::{decimal, ticks};
 
-/// Smallest range of a linear vertical axis, as a fraction of its largest value.
+/// Smallest length of a linear axis, as a fraction of the largest absolute value on it. A shorter axis would show
+/// rounding errors.
 const LEAST_SPAN: f64 = 1e-3;
-/// Smallest range of a logarithmic axis, in decades. An axis of two decades always contains two powers of ten.
+/// Smallest length of a logarithmic axis, in decades. An axis of two decades always contains two powers of ten.
 const LEAST_DECADES: f64 = 2.0;
-/// Returns a plot in the style that all plots share. The mouse wheel does not zoom the plot.
+/// Returns an empty plot in the common style of all plots in the window. The mouse wheel does not zoom the plot.
 pub(super) fn bare_plot<'a>(
     ui: &Ui,
     id: impl std::hash::Hash + std::fmt::Debug,
@@ -23,9 +24,9 @@ pub(super) fn bare_plot<'a>(
         .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
 }
 
-/// Returns a plot with numbered axes; the x axis has the unit `x_unit`. `log` states which axes (x, y) are logarithmic.
-/// Along a logarithmic axis with a unit, the labels are decimal numbers; without a unit they are powers of ten. Times
-/// along a linear axis are in seconds, and their labels are in milliseconds.
+/// Returns an empty plot with numbered axes; the x axis has the unit `x_unit`. `log` states which axes (x, y) are
+/// logarithmic. Along a logarithmic axis with a unit, the labels are decimal numbers; without a unit they are powers of
+/// ten. Times along a linear axis are in seconds, and their labels are in milliseconds.
 pub(super) fn plot_with_axes<'a>(
     ui: &Ui,
     id: impl std::hash::Hash + std::fmt::Debug,
@@ -43,14 +44,15 @@ pub(super) fn plot_with_axes<'a>(
         .custom_y_axes(vec![axis(y_hints, log[1], "")])
 }
 
-/// Makes a plot show at least the ranges `ends` of x and y.
+/// Extends a plot so that it shows at least the ranges `ends`: the lowest and highest x, then the lowest and highest y.
 pub(super) fn with_least(plot: Plot<'_>, ends: [[f64; 2]; 2]) -> Plot<'_> {
     let [[left, right], [bottom, top]] = ends;
     plot.include_x(left).include_x(right).include_y(bottom).include_y(top)
 }
 
-/// Returns the smallest range of an axis that contains these values, or their logarithms. If the values hardly differ,
-/// the range is larger than their rounding errors: a fraction of the largest value, or two decades.
+/// Returns the lowest and highest value of an axis that contains all finite `values`. If `log` is true, the values are
+/// decimal logarithms. If the values hardly differ, the range is widened to a fraction of the largest value or to two
+/// decades, so that the axis does not show rounding errors.
 pub(super) fn with_room(values: impl Iterator<Item = f64>, log: bool) -> [f64; 2] {
     let ends = values.filter(|value| value.is_finite()).map(|value| [value, value]);
     let ends = ends.reduce(|ends, [value, _]| [ends[0].min(value), ends[1].max(value)]);
@@ -61,7 +63,7 @@ pub(super) fn with_room(values: impl Iterator<Item = f64>, log: bool) -> [f64; 2
     [low - room, high + room]
 }
 
-/// Returns two to five marks at round numbers, or at whole powers of ten.
+/// Returns two to five marks along an axis, at round numbers or, if `log` is true, at whole powers of ten.
 fn round_marks(grid: GridInput, log: bool) -> Vec<GridMark> {
     let (low, high) = grid.bounds;
     if log {
@@ -79,7 +81,7 @@ fn round_marks(grid: GridInput, log: bool) -> Vec<GridMark> {
     values.into_iter().map(|value| GridMark { value, step_size }).collect()
 }
 
-/// Returns the labels of the marks: numbers, or powers of ten if the marks are logarithms.
+/// Sets the labels of an axis: numbers with the unit `unit`, or powers of ten along a logarithmic axis without a unit.
 fn axis(hints: AxisHints<'static>, log: bool, unit: &'static str) -> AxisHints<'static> {
     hints.label_spacing(10.0..=18.0).formatter(move |mark, _| {
         if log && unit.is_empty() {

@@ -1,4 +1,4 @@
-//! The browser version: the parts that replace window, files and threads.
+//! Functions of the browser version that replace the window, the files and the threads of the desktop version.
 
 use std::path::PathBuf;
 
@@ -28,8 +28,8 @@ pub fn prepare(resources: &mut CallbackResources, format: wgpu::TextureFormat) {
     resources.insert(TargetFormat(format));
 }
 
-/// Opens the browser version with its `stored` preferences. It shows the run that its `address` names, otherwise the
-/// lessons or the last scene.
+/// Opens the browser version with the preferences `stored` at the last visit. It shows the run or lesson that the
+/// page's `address` describes, otherwise the present lesson or the last scene.
 pub fn begin(live: Live, stored: &str, address: &str, context: &Context) -> AppState {
     let stored: StoredWindow = ron::from_str(stored).unwrap_or_default();
     context.memory_mut(|memory| *memory = stored.layout);
@@ -54,7 +54,7 @@ pub fn begin(live: Live, stored: &str, address: &str, context: &Context) -> AppS
     state
 }
 
-/// Returns the text that the browser stores until the next visit.
+/// Returns the preferences and the layout as a text, which the browser stores until the next visit.
 pub fn stored(preferences: &Preferences, context: &Context) -> String {
     ron::to_string(&StoredWindow::of(preferences, context)).unwrap_or_default()
 }
@@ -66,7 +66,7 @@ pub fn open_file(state: &mut AppState, path: PathBuf, bytes: Vec<u8>) {
     state.open(Opening::With { path, bytes, opening: Box::new(opening) });
 }
 
-/// Computes the first simulation of a link and returns the hash of its last state, for tests.
+/// Computes the first simulation of a link up to its last step and returns the hash of that state, for tests.
 ///
 /// # Errors
 /// Names the invalid part of the link.

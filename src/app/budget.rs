@@ -1,4 +1,4 @@
-//! Presets of the solver that the window offers, and hints on experiments with Bond and Δt.
+//! Presets of the solver that the window offers, and hints on experiments with the Bond number and the time step Δt.
 
 use crate::sim::{Settings, Stepper, Surroundings};
 use crate::solver::{Method, SolverSettings};
@@ -14,8 +14,9 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// Returns the settings of the preset for a scene. If the scene has sheared periodic borders, driven walls, rolling
-    /// friction or materials that the preset's solver does not support, the settings use `nsgs`.
+    /// Returns the solver settings of the preset for a scene. If the scene has sheared periodic borders, walls driven
+    /// by a force, rolling friction or materials that the preset's solver does not support, the solver is `nsgs`
+    /// (Gauss-Seidel) instead.
     pub(super) fn among(
         &self,
         surroundings: &Surroundings,
@@ -37,7 +38,7 @@ impl Budget {
     }
 }
 
-/// Preset of 40 sweeps per step on all cores.
+/// Preset of a fast solver: at most 40 parallel Gauss-Seidel sweeps per step, even if the step is then unsolved.
 pub(super) const FAST: Budget = Budget {
     name: "Fast",
     hint: "40 sweeps per step on all cores, solved or not. Without cohesion, large piles slump nearly as in \
@@ -46,7 +47,8 @@ pub(super) const FAST: Budget = Budget {
     settings: SolverSettings::to_residual(Method::NsgsParallel, 1e-6, 40),
 };
 
-/// Preset of the paper's solver.
+/// Preset of the solver of the paper that Slump reproduces: Gauss-Seidel until a sweep changes the impulses by less
+/// than 1e-7 of their norm.
 pub(super) const PAPER: Budget = Budget {
     name: "Paper",
     hint: "The paper's solver: Gauss-Seidel to a relative change of 1e-7. With a touch tolerance of 0 it gives the \
@@ -54,7 +56,7 @@ pub(super) const PAPER: Budget = Budget {
     settings: SolverSettings::PAPER,
 };
 
-/// The default preset.
+/// Preset of the default solver: Newton's method, which tries to solve each step under Coulomb friction.
 pub(super) const SOLVED: Budget = Budget {
     name: "Solved",
     hint: "Newton's method tries to solve each step under Coulomb friction. If it does not solve a step of a \
@@ -65,12 +67,12 @@ pub(super) const SOLVED: Budget = Budget {
 /// All presets, in the order of their buttons.
 pub(super) const BUDGETS: [Budget; 3] = [FAST, SOLVED, PAPER];
 
-/// Largest Bond number at which a larger Δt makes a pile with the shifted cone more stable (`docs/paper.md`, Fig. 5a).
-/// For stronger piles this need not be true.
+/// Largest Bond number at which a longer time step makes a pile more stable if cohesion adds to the bound on friction
+/// (shifted cone; `docs/paper.md`, Fig. 5a). At larger Bond numbers a longer time step need not have this effect.
 const WEAK: f64 = 50.0;
 
-/// Longest fall of a grain from rest in one step without a warning, in mean diameters. With a smaller value, the upper
-/// end of the Δt slider would cause a warning.
+/// Longest fall of a grain from rest in one step that causes no warning, in mean diameters. With a smaller value, the
+/// upper end of the Δt slider would cause a warning.
 const LONGEST_FALL: f64 = 0.2;
 
 /// Returns a warning if a grain at rest falls by more than [`LONGEST_FALL`] in one step.
@@ -90,13 +92,14 @@ pub(super) fn too_long(
     })
 }
 
-/// Time step (s) from which on the hint suggests a smaller time step.
+/// Time step from which on the window suggests to try a shorter time step instead of a longer one, s.
 const LONG_STEP_SECS: f64 = 5e-3;
-/// Touch tolerance, in mean diameters, above which the hint on Δt is not valid (`docs/theory.md`).
+/// Touch tolerance (largest gap at which a contact pulls), in mean diameters, above which no hint on Δt is given,
+/// because Δt then changes cohesion less (`docs/theory.md`).
 const LARGE_TOLERANCE: f64 = 1e-4;
 
-/// Returns a hint that suggests an experiment and states its effect; `None` if the effect is not known for these
-/// settings.
+/// Returns a hint that asks the user to move the slider of Bond or Δt and states the effect; `None` if the effect is
+/// not known for these settings.
 pub(super) fn what_to_try(settings: &Settings) -> Option<&'static str> {
     let parameters = &settings.parameters;
     if parameters.bond == 0.0 {

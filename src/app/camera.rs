@@ -30,8 +30,8 @@ impl SceneCamera {
         self.framed = true;
     }
 
-    /// Returns the camera of a picture of `size` pixels. `view` is the lower left and upper right corner of the whole
-    /// scene, m.
+    /// Returns the camera (centre and scale) of a picture of `size` pixels. It shows the whole scene until the user
+    /// pans or zooms. `view` is the lower left and upper right corner of the whole scene, m.
     pub(crate) fn camera(
         &mut self,
         view: [DVec2; 2],
@@ -50,8 +50,9 @@ impl SceneCamera {
         Camera { centre: self.centre, metres_per_pixel }
     }
 
-    /// Returns the camera of an exported picture, whose size differs from the window's. The picture shows at least the
-    /// part of the scene that the window shows on `window_points`, points.
+    /// Returns the camera (centre and scale) of an exported picture of `size` pixels, whose shape can differ from the
+    /// window's. The picture shows at least the part of the scene that is visible in the window. `window_points` is the
+    /// size of this visible part on the screen, points.
     pub(crate) fn for_picture(
         &self,
         view: [DVec2; 2],
@@ -69,15 +70,15 @@ impl SceneCamera {
         Camera { centre: self.centre, metres_per_pixel }
     }
 
-    /// Moves the scene with the mouse, by `moved` points, y down.
+    /// Moves the scene by the motion `moved` of the mouse, points (y down).
     pub(crate) fn pan(&mut self, moved: egui::Vec2) {
         self.framed = false;
         let moved = DVec2::new(f64::from(moved.x), -f64::from(moved.y));
         self.centre -= moved * self.metres_per_point;
     }
 
-    /// Zooms by `factor`. The point of the scene that is `from_middle` points (y down) away from the centre keeps its
-    /// position on the screen.
+    /// Magnifies the view by `factor`. The point of the scene that is `from_middle` points (y down) away from the
+    /// centre of the view keeps its position on the screen.
     pub(crate) fn zoom(&mut self, factor: f64, from_middle: egui::Vec2) {
         let [nearest, farthest] = ZOOM_LIMITS.map(|limit| limit * self.framed_metres_per_point);
         let scale = (self.metres_per_point / factor).clamp(nearest, farthest);

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::render::Gpu;
 use crate::render::gpu::{FORMAT, OffscreenTarget};
 
-/// Draws user interfaces into render targets of one texture format.
+/// Renderer of user interfaces, for render targets of one texture format.
 pub(super) struct Screen {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
@@ -19,7 +19,7 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    /// Prepares drawing into targets with this texture format.
+    /// Returns a renderer for render targets with this texture format.
     pub(super) fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
@@ -32,8 +32,8 @@ impl Screen {
         Self { device: device.clone(), queue: queue.clone(), renderer }
     }
 
-    /// Uploads egui's textures and draws egui's shapes into a target of `size` pixels. `then` can record commands that
-    /// run after the drawing.
+    /// Uploads egui's textures and draws egui's shapes into a render target of `size` pixels. `then` can record GPU
+    /// commands that run after the drawing.
     pub(super) fn draw(
         &mut self,
         view: &wgpu::TextureView,
@@ -77,7 +77,7 @@ impl Screen {
 
 /// Pixels per point in a picture of plots. The value is large enough that text is readable in print.
 const PIXELS_PER_POINT: f32 = 2.0;
-/// Number of egui's passes after which the axes of plots have adapted to the width of their labels.
+/// Number of passes (layout and drawing of one frame) until egui's plots have adapted to the width of their labels.
 const PASSES: usize = 4;
 
 /// A graphics device that draws into memory.

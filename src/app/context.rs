@@ -1,5 +1,5 @@
-//! The context that panels share, and their requests to the window. The window performs the requests after all panels
-//! are drawn.
+//! The state that all panels of the window share, and the requests of the panels to the window. The window performs the
+//! requests after all panels are drawn.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -38,11 +38,11 @@ pub(crate) enum Request {
     SaveState,
     /// Save the session: all simulations with their history, and the arrangement of the window.
     SaveSession,
-    /// Copy a link that reproduces the displayed moment.
+    /// Copy a link to the clipboard that reproduces the run up to the displayed simulated time.
     CopyLink,
 }
 
-/// The state that panels share. All other state of a panel between two frames belongs to the panel itself.
+/// State that all panels of the window share. State that only one panel needs between two frames belongs to that panel.
 pub(crate) struct PanelContext<'a> {
     pub run: &'a mut WatchedRun,
     pub preferences: &'a mut Preferences,
@@ -68,7 +68,8 @@ impl PanelContext<'_> {
         *self.notice = Some(Notice::new(text, true));
     }
 
-    /// Writes a file into the folder of the preferences on another thread. `job` writes the file and returns its path.
+    /// Writes a file on another thread, into the folder that the preferences name. `job` writes the file and returns
+    /// its path.
     pub(crate) fn write(
         &mut self,
         context: &egui::Context,
@@ -83,7 +84,7 @@ impl PanelContext<'_> {
         self.controls.insert(name.to_owned(), rect);
     }
 
-    /// The earlier run that is drawn behind the present run, if the user wants to see it.
+    /// The earlier run that is drawn behind the present run; `None` without an earlier run or if the user hides it.
     pub(crate) fn ghost(&self) -> Option<&PastRun> {
         self.run.ghost().filter(|_| self.preferences.ghost)
     }

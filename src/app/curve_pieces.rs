@@ -3,12 +3,12 @@
 use crate::live::Curve;
 use crate::sim::Observables;
 
-/// Number of time intervals of a long curve. In each interval the curve is reduced to its extreme values.
+/// Number of time intervals into which a long curve is divided. A plot draws at most four values per interval.
 const BUCKETS: usize = 300;
 
-/// Returns the pieces of the curve up to the time `until_secs`. Values that are not finite, such as the logarithm of 0,
-/// leave a gap between two pieces, unless the gap is too narrow to be visible. In each time interval, a long curve
-/// keeps only its first, last, smallest and largest value.
+/// Returns the curve of `value` against time up to `until_secs`, in pieces of points (time, s, and value). Values that
+/// are not finite, such as the logarithm of 0, leave a gap between two pieces, unless the gap is too narrow to be
+/// visible. In each time interval, a long curve keeps only its first, last, smallest and largest value.
 pub(super) fn pieces(
     curve: &Curve,
     until_secs: f64,

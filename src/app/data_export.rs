@@ -49,7 +49,7 @@ impl Default for DataChoices {
 /// State of the panel that exports recordings.
 #[derive(Default)]
 pub(crate) struct DataPanel {
-    /// First and last simulated time of the recording, s; `None` for the whole record.
+    /// First and last simulated time of the recording, s; `None` for the whole run as computed so far.
     pub stretch: Option<[f64; 2]>,
     pub overwrite: bool,
     pub export: Option<Work<String>>,
@@ -64,13 +64,13 @@ pub(crate) struct DataOrder {
     pub overwrite: bool,
     /// File formats, and time between frames. If the time is `None`, each step becomes a frame.
     pub settings: DataSettings,
-    /// First and last simulated time of the recording, s; `None` for the whole record.
+    /// First and last simulated time of the recording, s; `None` for the whole run as computed so far.
     pub stretch: Option<[f64; 2]>,
 }
 
 impl DataOrder {
-    /// Writes the recording of a run and returns a message for the user. `run` is `None` if the user cancelled before
-    /// the run arrived.
+    /// Computes a run again, writes its recording, and returns a message for the user. `run` is `None` if the user
+    /// cancelled before the solver's thread had sent a copy of the run.
     pub(crate) fn write(&self, run: Option<TakenRun>, reporter: &Reporter) -> Result<String> {
         let nothing = || Ok("Stopped before the first frame".to_owned());
         self.settings.validate("data-every")?;
@@ -115,7 +115,7 @@ impl DataOrder {
         })
     }
 
-    /// Returns the first and last simulated time of the recording, s; infinite if the user chose the whole record.
+    /// Returns the first and last simulated time of the recording, s; −∞ and ∞ if the user chose the whole run.
     fn stretch_of(&self, record: &WorldRecord) -> Result<[f64; 2]> {
         let Some([from, to]) = self.stretch else { return Ok([f64::NEG_INFINITY, f64::INFINITY]) };
         let (first, last) = (record.start().time_secs(), record.end_secs());
@@ -134,7 +134,8 @@ impl DataOrder {
     }
 }
 
-/// Returns the facts to be stored in a recording that begins at this state: the scene, its settings, and later changes.
+/// Returns the description of a run that its recording contains: the scene, its settings, and their later changes. The
+/// recording begins at the present state of `simulation` and ends at `until_secs`.
 fn facts(run: &TakenRun, simulation: &Simulation, until_secs: f64) -> Result<RunFacts> {
     let record = &run.world.record;
     let mut scene = run.start.scene.clone();
@@ -160,7 +161,8 @@ fn facts(run: &TakenRun, simulation: &Simulation, until_secs: f64) -> Result<Run
     Ok(about)
 }
 
-/// Returns phrases for the recording that state which grains the user pulled with the mouse, and in which steps.
+/// Returns phrases for the description of a run that state which grains the user pulled with the mouse, and in which
+/// steps.
 fn pulls(mut pull: Option<Pull>, first_step: u64, changes: &[&ControlsChange]) -> Vec<String> {
     let mut told = Vec::new();
     let mut since = first_step;
@@ -179,7 +181,8 @@ fn pulls(mut pull: Option<Pull>, first_step: u64, changes: &[&ControlsChange]) -
     told
 }
 
-/// Returns phrases for the recording that state the edits that the user made with the mouse, and after which steps.
+/// Returns phrases for the description of a run that state which grains the user added or removed and which walls the
+/// user moved, and after which steps.
 fn edits(all: &[HandEdit]) -> Vec<String> {
     let told = |HandEdit { after_step, edit }: &HandEdit| {
         let told = match edit {

@@ -6,15 +6,15 @@ use std::path::{Path, PathBuf};
 use super::work::{Work, outcome_of_ended};
 use crate::error::Result;
 
-/// The choice of the user.
+/// The file or folder that the user chose in a dialog.
 pub(crate) enum Chosen {
-    /// A file to be opened.
+    /// A file that the program opens.
     File(PathBuf),
-    /// The folder of saved files.
+    /// The new folder for saved files.
     Folder(PathBuf),
 }
 
-/// The open dialog; at most one dialog is open.
+/// The dialog for a file or folder that is open; at most one dialog is open.
 #[derive(Default)]
 pub(crate) struct FileDialog {
     waiting: Option<Work<Option<Chosen>>>,
@@ -40,13 +40,14 @@ impl FileDialog {
         self.waiting = Some(Work::start(context, runs, move |_, _| choose(&folder, for_file)));
     }
 
-    /// Returns the choice of the user if a dialog has ended; `None` if the user cancelled it.
+    /// Returns the choice of the user if a dialog has ended since the last call; `None` also if the user cancelled it.
     pub(super) fn answer(&mut self) -> Option<Result<Chosen>> {
         outcome_of_ended(&mut self.waiting)?.transpose()
     }
 }
 
-/// The browser version has no such dialogs: the user drops files on the page, and saved files are downloads.
+/// Returns no choice, because the browser version has no dialogs for files: the user drops files on the page, and saved
+/// files are downloads.
 #[cfg(target_arch = "wasm32")]
 fn choose(_: &Path, _: bool) -> Result<Option<Chosen>> {
     Ok(None)

@@ -1,5 +1,5 @@
-//! The plot of an experiment's main quantity against simulated time. It has one value for each frame that the window
-//! has shown.
+//! The plot of an experiment's main quantity (such as the angle of the surface in a drum) against simulated time. The
+//! curve has one point for each frame that the window has shown.
 
 use std::collections::BTreeMap;
 
@@ -19,9 +19,9 @@ struct ExperimentQuantity {
     scene: &'static str,
     /// Title of the plot, with the unit.
     title: &'static str,
-    /// Function that returns the value at a snapshot, given the initial scene.
+    /// Function that returns the value of the quantity, given the scene in its initial state and a snapshot of the run.
     of: fn(&Scene, &Snapshot) -> f64,
-    /// True if the plot shows the change of the value per second.
+    /// True if the plot shows the change of the quantity per second instead of the quantity itself.
     is_rate: bool,
 }
 
@@ -80,8 +80,8 @@ fn shear_ratio(now: &Snapshot) -> f64 {
     xy.abs() / yy
 }
 
-/// Returns σxx, the mean of σxy and σyx, and σyy of all contacts, each multiplied by the area, J (Love and Weber,
-/// compression positive).
+/// Returns the contact stresses σxx, ½(σxy + σyx) and σyy, each multiplied by the area of the sample, J (formula of
+/// Love and Weber, compression positive).
 fn stress(now: &Snapshot) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for contact in &now.contacts {
@@ -95,7 +95,7 @@ fn stress(now: &Snapshot) -> [f64; 3] {
     sum
 }
 
-/// True if the scene has a main quantity.
+/// True if the scene of this frame is an experiment whose main quantity can be plotted.
 pub(super) fn has_quantity(frame: &LiveFrame) -> bool {
     frame.start.as_ref().is_some_and(|start| quantity_of(start).is_some())
 }
@@ -104,7 +104,7 @@ fn quantity_of(start: &LiveStart) -> Option<&'static ExperimentQuantity> {
     QUANTITIES.iter().find(|quantity| quantity.scene == start.scene.name)
 }
 
-/// Returns the times at which walls change their velocity, s.
+/// Returns the simulated times at which walls change their velocity, s.
 pub(super) fn events(scene: &Scene) -> Vec<f64> {
     let mut times: Vec<f64> = Vec::new();
     for motion in &scene.motions {
@@ -120,22 +120,23 @@ pub(super) fn events(scene: &Scene) -> Vec<f64> {
     times
 }
 
-/// Simulated time over which the change per second is averaged, s.
+/// Simulated time over which the change of a quantity per second is averaged, s.
 const RATE_SECS: f64 = 0.1;
 /// Largest number of points of a drawn curve.
 const MOST_POINTS: usize = 2_000;
 
-/// Values of the frames that were shown, for each simulation and by number of step.
+/// Values of an experiment's main quantity in the frames that the window has shown, by simulation and number of step.
 #[derive(Debug, Default)]
 pub(crate) struct ExperimentSeries {
-    /// Number of the loaded initial state, number of the last earlier run, and number of simulations. If one of these
-    /// numbers changes, all values are discarded.
+    /// Number of initial states loaded so far, number of the newest earlier run, and number of simulations. If one of
+    /// these numbers changes, the window shows another run, and all values are discarded.
     run: (u64, Option<u64>, usize),
     worlds: Vec<BTreeMap<u64, [f64; 2]>>,
 }
 
 impl ExperimentSeries {
-    /// Adds the values of a frame.
+    /// Adds the main quantity of each simulation in a frame. If the recorded run now ends at an earlier step, removes
+    /// the later values.
     pub(super) fn follow(&mut self, frame: &LiveFrame) {
         let quantity = frame.start.as_ref().and_then(|start| Some((start, quantity_of(start)?)));
         let Some((start, quantity)) = quantity else { return *self = Self::default() };
@@ -154,7 +155,7 @@ impl ExperimentSeries {
         }
     }
 
-    /// Returns the points of a simulation's curve in the plot.
+    /// Returns the points of a simulation's curve: simulated time, s, and the quantity or its change per second.
     fn points(&self, start: &LiveStart, world: usize) -> Vec<[f64; 2]> {
         let Some(values) = self.worlds.get(world) else { return Vec::new() };
         let values: Vec<[f64; 2]> = values.values().copied().collect();

@@ -27,7 +27,7 @@ pub(crate) struct Exports {
     printers: Arc<Mutex<Printers>>,
     pub data: DataPanel,
     pub film: Option<(FilmFormat, Work<String>)>,
-    /// A link to be copied. The flag is true if the user edited the run, which the link cannot express.
+    /// A link to be copied. The flag is true if the user edited the run with the mouse, which the link cannot express.
     link: Option<Work<(String, bool)>>,
 }
 
@@ -39,20 +39,21 @@ impl Drop for Exports {
     }
 }
 
-/// Message for a link that describes the whole run.
+/// Message after copying a link that describes the whole run.
 const COPIED: &str = "The link is copied: paste it into a window, or pass it to slump --open.";
-/// Message for a link of a run with edits by the user, which the link does not contain.
+/// Message after copying a link of a run with edits by the user, which the link does not contain.
 const PULLED: &str = "The link is copied. It lacks changes by hand (grains that were pulled by hand, added or \
                       removed, walls that were moved), so it makes another run. A session keeps these changes.";
 
 impl Exports {
-    /// True while a file or a recording is being written.
+    /// True while a file, a recording or a film is being written.
     pub(super) fn is_writing(&self) -> bool {
         !self.files.is_empty() || self.data.export.is_some() || self.film.is_some()
     }
 
-    /// Writes a file into a folder on another thread. `job` starts when earlier files are written and its `runs` have
-    /// arrived, and returns the path of the file.
+    /// Writes a file into a folder on another thread. `job` receives copies of runs and returns the path of the file.
+    /// It starts when the solver's thread has sent the copies through the channels `runs`. Files are written one at a
+    /// time.
     pub(super) fn write<R: Send + 'static>(
         &mut self,
         context: &egui::Context,
@@ -68,12 +69,13 @@ impl Exports {
         }));
     }
 
-    /// Copies a link that reproduces these runs.
+    /// Starts to make a link that reproduces these runs. [`Self::follow`] then copies the link to the clipboard.
     pub(super) fn copy_link(&mut self, context: &egui::Context, runs: Vec<Receiver<TakenRun>>) {
         self.link = Some(Work::start(context, runs, |runs, _| link_of(&runs)));
     }
 
-    /// Returns a notice of an export that has ended, if one has.
+    /// Returns a notice for the status bar if an export has ended since the last call. Copies a finished link to the
+    /// clipboard.
     pub(super) fn follow(&mut self, context: &egui::Context) -> Option<Notice> {
         let mut notice = None;
         if let Some(outcome) = self.files.front().and_then(Work::outcome) {
@@ -108,8 +110,8 @@ impl Exports {
     }
 }
 
-/// Renderers of exported pictures. Each is opened for the first picture and kept, because opening a device takes longer
-/// than drawing.
+/// Renderers of exported pictures. Each renderer is opened for the first picture and kept, because opening a graphics
+/// device takes longer than drawing.
 #[derive(Default)]
 pub(crate) struct Printers {
     renderer: Option<Renderer>,
@@ -117,7 +119,7 @@ pub(crate) struct Printers {
 }
 
 impl Printers {
-    /// Returns the renderer of scenes.
+    /// Returns the renderer that draws pictures of scenes.
     pub(super) fn renderer(&mut self) -> Result<&mut Renderer> {
         match &mut self.renderer {
             Some(renderer) => Ok(renderer),
@@ -134,14 +136,15 @@ impl Printers {
     }
 }
 
-/// Writes the observables of all simulations as a CSV table, and their description to a second file, because text lines
-/// in a CSV file would be read as data.
+/// Writes the observables (measured quantities of each step) of all simulations as a CSV table, and their description
+/// to a second file, because text lines in a CSV file would be read as data.
 pub(super) fn write_table(path: &Path, curves: &[Curve], texts: &Texts) -> Result<()> {
     write_file(&path.with_extension("csv.txt"), texts.lines().as_bytes())?;
     write_curves(path, curves)
 }
 
-/// Writes all rows of all curves to a table whose first column is the number of the simulation.
+/// Writes a CSV table with one row per recorded step of each simulation. The first column is the number of the
+/// simulation.
 fn write_curves(path: &Path, curves: &[Curve]) -> Result<()> {
     let has_more = curves.iter().flat_map(Curve::rows).any(Observables::has_further_columns);
     let cells = |row: Observables| if has_more { row.with_further_columns() } else { row };

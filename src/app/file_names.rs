@@ -6,14 +6,14 @@ use super::number_text::written;
 use crate::sim::Settings;
 use crate::world::Parameters;
 
-/// Ending of files with saved runs.
+/// File name ending of saved runs.
 pub(crate) const STATE_ENDING: &str = "slump";
 
-/// Ending of files with sessions.
+/// File name ending of sessions (runs with their history and the arrangement of the window).
 pub(crate) const SESSION_ENDING: &str = "session";
 
-/// Returns the first part of the names of files that show a moment of a scene. It contains Bond and Δt if there is one
-/// simulation, or the number of simulations.
+/// Returns the first part of the name of a file that shows a scene at one simulated time. It contains the scene's name,
+/// Bond and Δt of a single simulation or the number of simulations, and the time.
 pub(crate) fn stem(scene: &str, settings: &[Settings], time_secs: f64) -> String {
     let name: String = scene.chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
     let which = match settings {
@@ -26,7 +26,7 @@ pub(crate) fn stem(scene: &str, settings: &[Settings], time_secs: f64) -> String
     format!("slump-{name}-{which}-{time_secs:.4}s")
 }
 
-/// Returns the path of `stem.ending` in `folder`. If this file exists, a number is added to the name.
+/// Returns the path of the file `stem.ending` in `folder`. If this file exists already, a number is added to its name.
 pub(super) fn free_path(folder: &Path, stem: &str, ending: &str) -> PathBuf {
     let numbered = |number: u32| folder.join(format!("{stem}-{number}.{ending}"));
     let plain = folder.join(format!("{stem}.{ending}"));
@@ -50,7 +50,7 @@ pub(super) fn is_session(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == SESSION_ENDING)
 }
 
-/// True if the ending is that of a saved run or a session.
+/// True if the file name has the ending of a saved run or a session.
 pub(super) fn is_saved_run(path: &Path) -> bool {
     is_session(path) || path.extension().is_some_and(|ending| ending == STATE_ENDING)
 }

@@ -36,33 +36,34 @@ impl FilmFormat {
     }
 }
 
-/// Fraction of the progress bar for computing the states. The rest is for drawing and encoding.
+/// Fraction of the progress bar for computing the states of a film. The rest is for drawing and encoding its pictures.
 const PART_OF_MOMENTS: f64 = 0.3;
 /// Largest number of pictures in a film. A larger number is probably a mistake of the user.
 const MOST_PICTURES: f64 = 1e5;
 
-/// For each simulation and each picture, the index of the stored state and the settings at that moment.
+/// For each simulation and each picture of a film: the index of the stored state that the picture shows, and the
+/// settings of the simulation at that time.
 type Moments = Vec<Vec<(usize, Settings)>>;
 
 /// A request to export a video or an animation.
 pub(crate) struct FilmOrder {
     pub format: FilmFormat,
-    /// Style and arrangement of all pictures. Its states are replaced by the states of each picture.
+    /// Style and arrangement of all pictures. The states of its simulations are replaced for each picture.
     pub picture: ScenePicture,
     pub slumps: bool,
-    /// Pictures per second of the film, a rate that the format can express.
+    /// Pictures per second of the film. The file format must be able to express this rate.
     pub rate_hz: f64,
     /// Simulated seconds per second of the film.
     pub speed: f64,
-    /// First and last simulated time of the film, s; `None` for the whole record.
+    /// First and last simulated time of the film, s; `None` for the whole run as computed so far.
     pub stretch: Option<[f64; 2]>,
     pub folder: PathBuf,
     pub stem: String,
 }
 
 impl FilmOrder {
-    /// Makes the film from one run per simulation and returns a message for the user. If the user cancelled before all
-    /// runs arrived, no film is made.
+    /// Makes the film from copies of the runs, one per simulation, and returns a message for the user. If the user
+    /// cancelled before the solver's thread had sent all copies, no film is made.
     pub(crate) fn make(self, runs: &[TakenRun], reporter: &Reporter) -> Result<String> {
         let (format, count) = (self.format, self.picture.worlds.len());
         let made = if runs.len() == count { self.write(runs, reporter)? } else { None };
@@ -118,7 +119,7 @@ impl FilmOrder {
         Ok(Some((path, count)))
     }
 
-    /// Returns the simulated times of the pictures, s.
+    /// Returns the simulated times of the pictures, s, which are equally spaced.
     fn times(&self, runs: &[TakenRun]) -> Result<Vec<f64>> {
         let records = || runs.iter().map(|run| &run.world.record);
         let first =
@@ -139,7 +140,9 @@ impl FilmOrder {
         Ok((0..=count as u64).map(|number| from.max(first) + number as f64 * each).collect())
     }
 
-    /// Computes the states of the film and the speed of the fastest grain, m/s. Returns `None` if the user cancels.
+    /// Computes the runs again and stores the states that the film shows in `states`. Returns which of these states
+    /// each picture shows, and the speed of the fastest grain in all these states, m/s. Returns `None` if the user
+    /// cancels.
     fn moments(
         &self,
         runs: &[TakenRun],
@@ -180,7 +183,8 @@ impl FilmOrder {
     }
 }
 
-/// True if the present state is the nearest to the simulated time `time_secs`, or a later one.
+/// True if the present state is at most half a step before the simulated time `time_secs`, so that no later state is
+/// nearer to that time.
 fn is_nearest(simulation: &Simulation, time_secs: f64) -> bool {
     let half_a_step = 0.5 * simulation.settings().parameters.time_step_secs;
     simulation.time_secs() + half_a_step > time_secs

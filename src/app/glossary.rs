@@ -8,12 +8,12 @@ use egui::Response;
 use crate::sim::{Settings, Stepper};
 use crate::solver::METHODS;
 
-/// The page with the glossary, which is the last table of the page.
+/// Text of the page whose last table is the glossary.
 const PAGE: &str = include_str!("../../docs/theory.md");
-/// Terms of the glossary that are also common words or letters, and therefore get no hover text.
+/// Terms of the glossary that are also common words or letters. The window shows no definitions of these terms.
 const COMMON: [&str; 2] = ["d", "stop"];
 
-/// Shows the definitions of all terms in `text` when the user points at the response.
+/// Shows the definitions of all glossary terms in `text` when the user points at the widget of `response`.
 pub(super) fn explained(response: Response, text: &str) -> Response {
     if !response.hovered() {
         return response;
@@ -22,7 +22,7 @@ pub(super) fn explained(response: Response, text: &str) -> Response {
     if found.is_empty() { response } else { response.on_hover_text(found) }
 }
 
-/// Returns the definitions of all terms in a text, one per line. Each term is defined once.
+/// Returns the definitions of all technical terms that occur in a text, one per line. Each term is defined once.
 fn definitions_in(text: &str) -> String {
     let mut found: Vec<&str> = Vec::new();
     for (term, definition) in terms() {
@@ -33,7 +33,7 @@ fn definitions_in(text: &str) -> String {
     found.join("\n")
 }
 
-/// Returns all terms, each with a line that defines the term.
+/// Returns all technical terms that have a definition, each with the line that defines the term.
 fn terms() -> &'static [(String, String)] {
     static TERMS: OnceLock<Vec<(String, String)>> = OnceLock::new();
     TERMS.get_or_init(|| {

@@ -32,7 +32,7 @@ pub struct Lesson {
     pub scene: &'static str,
     /// Lower left and upper right corner of the view, in mean diameters; `None` shows the whole scene.
     pub view: Option<[DVec2; 2]>,
-    /// Returns the settings of the simulations side by side, made from the settings that the window uses for the scene.
+    /// Returns the settings of all simulations of the lesson, given the settings of the scene.
     pub worlds: fn(Settings) -> Vec<Settings>,
     /// Speed of playing: simulated time per wall-clock time.
     pub speed: f64,
@@ -48,7 +48,7 @@ pub struct Lesson {
     pub asks_for: fn(&WatchedRun, &Preferences) -> &'static [&'static str],
 }
 
-/// Defaults of a lesson on the pile of the paper. The run is slow enough to be watched.
+/// Default values for lessons on the pile of the paper. The run is played slowly enough to be watched.
 const PILE: Lesson = Lesson {
     title: "",
     watch: "",
@@ -67,7 +67,8 @@ const PILE: Lesson = Lesson {
     asks_for: |run, preferences| if waits_at_start(run) { first_step(preferences) } else { &[] },
 };
 
-/// Returns the controls that a lesson highlights before its run starts. The prediction comes first.
+/// Returns the controls that a lesson highlights before its run starts: the answers if the user must still predict the
+/// result, otherwise the button that starts the run.
 fn first_step(preferences: &Preferences) -> &'static [&'static str] {
     let LessonPlace { at, predictions, .. } = &preferences.lesson;
     let is_asked = lesson(*at).question.is_some() && !predictions.contains_key(at);
@@ -78,10 +79,12 @@ fn waits_at_start(run: &WatchedRun) -> bool {
     run.frame.at_start() && !run.frame.playing
 }
 
-/// Seed of the lessons' pile. In all lessons the slump of this pile is within the interquartile range of sixteen other
-/// piles. The slump of the built-in pile is not, because that pile was chosen to show the paper's pattern.
+/// Seed of the lessons' pile. In all lessons the slump of this pile is within the interquartile range of the slumps of
+/// sixteen piles with other seeds. The slump of the built-in pile is not, because that pile was chosen to show the
+/// paper's pattern.
 const SEED: u64 = 15;
-/// Grains at rest of the pile made from [`SEED`]. They are stored because their deposition takes seconds.
+/// CSV list of the grains at rest in the pile made from [`SEED`]. The list is stored because computing the deposition
+/// of this pile takes seconds.
 const GRAINS: &str = include_str!("../../assets/pile_138_seed15.csv");
 
 impl Lesson {
@@ -104,8 +107,8 @@ fn two_time_steps(base: Settings, bond: f64) -> Vec<Settings> {
     [1e-4, 5e-3].map(|secs| base.with_bond(bond).over(secs)).into()
 }
 
-/// Returns the settings for `count` sweeps of Gauss-Seidel per step under Coulomb friction, whether or not the step is
-/// then solved.
+/// Returns settings with the solver `nsgs`, which makes at most `count` Gauss-Seidel sweeps per step under Coulomb
+/// friction, even if the step is then unsolved.
 fn sweeps(base: Settings, count: u32) -> Settings {
     Settings { solver: SolverSettings::to_residual(Method::Nsgs, 1e-6, count), ..base }
 }
@@ -232,7 +235,7 @@ pub const LESSONS: [Lesson; 7] = [
         }),
         learnt: "Each method breaks somewhere. Test it on a case whose right answer you know.",
         scene: "mass-ratio",
-        // The light disc, of which one would see nothing beside the heavy one.
+        // The view shows the light disc, which would be too small to see next to the heavy disc.
         view: Some([DVec2::new(-1.3, -0.3), DVec2::new(1.3, 1.4)]),
         worlds: |base| {
             let solver = SolverSettings::to_residual(Method::Newton, 1e-6, 100);
@@ -260,9 +263,9 @@ pub const LESSONS: [Lesson; 7] = [
     },
 ];
 
-/// Bond number at which the piles of lesson 4 slump under both laws.
+/// Bond number of lesson 4, at which the piles slump under both contact laws (`moreau` and `range`).
 const LESSON_4_BOND: f64 = 8.0;
-/// Time step of the lesson on bonds at rest, s.
+/// Time step at the beginning of lesson 2 (a pile at rest), s. The user shortens the time step later.
 const LONG_STEP_SECS: f64 = 5e-3;
 
 impl Lesson {

@@ -3,9 +3,9 @@
 //!
 //! > slump://run?scene=pile&bond=20&from=120&bond=5&to=300
 //!
-//! The names are those of the command line. `from` is the number of a step; the settings behind it apply after that
-//! step. `to` is the number of steps of a simulation and ends the simulation; the next simulation follows. A setting
-//! that is left out keeps the value of the scene or its previous value.
+//! The names are those of the command line. `from` is the number of a step; the settings that follow it in the line
+//! apply after that step. `to` is the number of steps of a simulation and ends the description of this simulation; the
+//! next simulation follows. A setting that is left out keeps the value of the scene or its previous value.
 
 use std::sync::OnceLock;
 
@@ -16,19 +16,19 @@ use crate::live::WorldPlan;
 use crate::scene::SceneInfo;
 use crate::sim::Settings;
 
-/// Scheme of links that open in a window.
+/// Scheme (beginning of the address) of links that open in Slump's window.
 pub(crate) const LINK_START: &str = "slump://";
 const HEAD: &str = "slump://run?";
 /// First part of links that open in a browser: the address of the page.
 static PAGE: OnceLock<String> = OnceLock::new();
 
-/// Sets the address of the page with which links begin.
+/// Sets the address of the page in the browser, with which its links begin.
 #[cfg(target_arch = "wasm32")]
 pub(super) fn set_link_start(start: String) {
     let _ = PAGE.set(start);
 }
 
-/// True if the text can be a link, for a window or for the browser version.
+/// True if the text looks like the link of a run, for the window or for the browser version.
 pub(super) fn is_link(text: &str) -> bool {
     let text = text.trim_start();
     text.starts_with(LINK_START) || (text.starts_with("http") && text.contains("?scene="))
@@ -54,18 +54,18 @@ struct LinkedWorld {
     steps: u64,
 }
 
-/// Appends words of a command line to a link.
+/// Appends options of a command line, each a name and a value, to a link.
 fn append(query: &mut form_urlencoded::Serializer<'_, String>, words: &[String]) {
     for pair in words.chunks_exact(2) {
         query.append_pair(pair[0].trim_start_matches('-'), &pair[1]);
     }
 }
 
-/// Returns the link of these simulations. The flag is true if the user edited one of the simulations, because a link
-/// cannot express edits.
+/// Returns the link that reproduces these simulations. The flag is true if the user edited grains or walls of a
+/// simulation with the mouse, because a link cannot express such edits.
 ///
 /// # Errors
-/// If the run continued from a file, or if its scene no longer exists.
+/// If the run continued from a saved run, or if its scene is in a file or no longer exists.
 pub(super) fn link_of(runs: &[TakenRun]) -> Result<(String, bool)> {
     let source = runs.first().map(|run| run.start.config.source.clone()).unwrap_or_default();
     check_names_no_file(&source)?;
@@ -101,7 +101,7 @@ pub(super) fn link_of(runs: &[TakenRun]) -> Result<(String, bool)> {
 }
 
 impl RunLink {
-    /// Reads a link.
+    /// Reads the text of a link.
     pub(crate) fn read(text: &str) -> Result<Self> {
         let text = text.trim();
         let refuse = || Error::value("link", shortened(text), FORM);
@@ -148,12 +148,13 @@ impl RunLink {
         check_names_no_file(&link.source).map(|()| link)
     }
 
-    /// Returns the configuration from which the scene can be built.
+    /// Returns the configuration from which the scene of the link can be built.
     pub(crate) fn config(&self) -> Config {
         Config { source: self.source.clone(), ..Config::default() }
     }
 
-    /// Checks the link as far as this is possible without making a pile.
+    /// Checks that the scene of the link exists and that all settings are valid. Makes no new pile, which would take
+    /// long.
     pub(crate) fn check(&self) -> Result<()> {
         let base = self.config().without_settling()?.settings();
         let mut settings = self.plans(&base).into_iter().flat_map(|plan| {
@@ -163,7 +164,8 @@ impl RunLink {
         settings.try_for_each(|settings| settings.validate())
     }
 
-    /// Returns the plans of the simulations, which begin with the settings `base` of the scene.
+    /// Returns, for each simulation of the link, its first settings, their later changes, and the number of steps.
+    /// `base` are the settings of the scene.
     pub(crate) fn plans(&self, base: &Settings) -> Vec<WorldPlan> {
         let plan = |world: &LinkedWorld| {
             let mut settings = *base;

@@ -19,7 +19,7 @@ pub struct Notice {
 }
 
 impl Notice {
-    /// Returns a notice that is shown from now on.
+    /// Returns a notice that is shown from now on. `failure` is true for an error message.
     pub(super) fn new(text: impl Into<String>, failure: bool) -> Self {
         Self { text: text.into(), failure, since: Instant::now() }
     }

@@ -3,8 +3,8 @@
 
 use egui::DragValue;
 
-/// Units of time that a text field accepts, each with its power of ten in seconds. A number without a unit is in
-/// milliseconds.
+/// Units of time that a text field accepts, each with an exponent: the unit is ten to this power, in seconds. A number
+/// without a unit is in milliseconds.
 const UNITS: [(&str, i32); 5] = [("ms", -3), ("us", -6), ("µs", -6), ("μs", -6), ("s", 0)];
 
 /// Converts a text such as "2 ms", "200 us", "1e-3 s" or "2" to a time in seconds; `None` if the text is not a time.
@@ -14,7 +14,8 @@ pub(super) fn read_secs(text: &str) -> Option<f64> {
     shifted(number.trim(), power)
 }
 
-/// Converts a time (s) to milliseconds. The decimal digits stay the same, so that [`read_secs`] returns the same time.
+/// Converts a time (s) to milliseconds. The decimal digits stay the same, so that [`read_secs`] converts the result
+/// back to exactly the same time.
 pub(super) fn millis(secs: f64) -> f64 {
     shifted(&format!("{secs:e}"), 3).unwrap_or(1e3 * secs)
 }
@@ -26,12 +27,12 @@ pub(super) fn clock_text(secs: f64) -> String {
     if millis < 1e7 { format!("{millis:.1} ms") } else { format!("{millis:.3e} ms") }
 }
 
-/// Returns the text of a slump below a pile.
+/// Returns the text for a slump (relative drop of the mean height), as the window shows it below a pile.
 pub(super) fn slump_text(slump: f64) -> String {
     format!("slump Δy {slump:.3}")
 }
 
-/// Makes a field for a time in seconds that shows and reads milliseconds.
+/// Returns a text field for a time. The time is stored in seconds; the field shows and reads milliseconds.
 pub(super) fn time_field(secs: &mut f64) -> DragValue<'_> {
     DragValue::new(secs)
         .custom_formatter(|secs, _| written((1e9 * secs).round() / 1e6))
@@ -48,7 +49,7 @@ pub(super) fn written(value: f64) -> String {
     }
 }
 
-/// Returns the decimal number `text` times ten to the given power.
+/// Returns the decimal number in `text`, multiplied by ten to the power `power`.
 fn shifted(text: &str, power: i32) -> Option<f64> {
     let (digits, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
     let exponent = exponent.parse::<i32>().ok()?.checked_add(power)?;

@@ -20,27 +20,27 @@ use crate::scene::Scene;
 /// the run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Opening {
-    /// The scene of a configuration.
+    /// Opens the scene that a configuration describes.
     Scene(#[serde(with = "as_json")] Box<Config>),
-    /// A lesson by its index. Its worlds (simulations) start side by side.
+    /// Opens the lesson with this index. Its worlds (simulations) start side by side.
     Lesson(usize),
-    /// The text of a link. The simulations of the link are computed up to their last steps. Settings that the user
-    /// changed in the window are not used.
+    /// Opens the run that the text of a link describes. Its simulations are computed up to their last steps. Settings
+    /// that the user changed in the window are not used.
     Link(String),
-    /// A saved run, to be continued.
+    /// Opens a saved run, so that it can be continued.
     Run(Box<SavedState>),
-    /// A saved session: a run with its history and the arrangement of its window.
+    /// Opens a saved session: a run with its history and the arrangement of its window.
     Session(Box<LiveStart>),
-    /// The file of a saved run or of a session.
+    /// Opens the file of a saved run or of a session.
     File(PathBuf),
     /// Another request together with the content of the file that it names, because a web worker cannot read files.
     #[cfg(target_arch = "wasm32")]
     With {
-        /// Name of the file.
+        /// Name of the file that the user dropped on the page.
         path: PathBuf,
-        /// Content of the file.
+        /// Content of this file.
         bytes: Vec<u8>,
-        /// The request that names the file.
+        /// The request to open this file.
         opening: Box<Opening>,
     },
 }
@@ -86,8 +86,8 @@ impl StartSource for Opening {
     }
 }
 
-/// Returns the scene of a configuration. If a new pile must settle first, its grains are shown and the progress is
-/// reported.
+/// Returns the scene of a configuration. If the grains of a new pile must be deposited first, calls `tell` with the
+/// progress and a picture of the grains.
 fn settled(config: &Config, tell: Tell<'_>) -> Result<Scene> {
     let mut making = SettlingProgress::new();
     config.scene(|settling| tell(making.look(&settling)))

@@ -5,15 +5,15 @@ use serde::{Deserialize, Serialize};
 /// A page of the sidebar. At most one page is open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Page {
-    /// The scene, its grains, and edits of the grains by the user.
+    /// Page with the scene, its grains, and edits of the grains by the user.
     Pile,
-    /// The contact law and the solver.
+    /// Page with the contact law and the solver.
     Solver,
-    /// Worlds (simulations side by side) and earlier runs, with their results.
+    /// Page with worlds (simulations side by side) and earlier runs, with their results.
     Compare,
-    /// Colours and other drawing options.
+    /// Page with colours and other drawing options.
     Look,
-    /// Files that the user can save.
+    /// Page with the files that the user can save.
     Save,
 }
 

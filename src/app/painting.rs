@@ -19,7 +19,7 @@ pub(super) struct TargetFormat(pub wgpu::TextureFormat);
 #[derive(Default)]
 struct Painters(HashMap<usize, Painter>);
 
-/// One pipeline for each colour with which an area was filled. A theme has few colours.
+/// One GPU pipeline for each colour with which an area was filled. A theme has few colours, so there are few pipelines.
 #[derive(Default)]
 struct Fills(HashMap<Color32, wgpu::RenderPipeline>);
 

@@ -18,32 +18,32 @@ use crate::sim::{Beside, Observables, Quantity};
 
 /// Smallest width of a plot, points. In a narrower window a row has fewer plots.
 pub(super) const LEAST_WIDTH: f32 = 150.0;
-/// Smallest range of a slump axis. It is the same for most runs, so that they can be compared by eye.
+/// Smallest length of a slump axis. Most runs fit into it, so that their plots have equal axes and compare by eye.
 pub(super) const LEAST_SLUMP: f64 = 0.4;
-/// Name of the quantity that is also plotted for other initial states.
+/// Name of the quantity that is also plotted for runs from other initial states (other seeds).
 const OTHERS: &str = "slump";
-/// Factor of the colour strength of the lines of other initial states.
+/// Colour strength of the curves of runs from other initial states, relative to the curve of the visible run.
 const OTHERS_STRENGTH: f32 = 0.45;
 
-/// Line styles of the further values that a quantity's plot shows.
+/// Line styles of the second and third curve in the plot of a quantity.
 const BESIDE: [LineStyle; 2] =
     [LineStyle::Dashed { length: 6.0 }, LineStyle::Dotted { spacing: 4.0 }];
 
-/// All data of the plots.
+/// Data from which all plots are drawn.
 #[derive(Clone, Debug)]
 pub(crate) struct PlotData {
     pub worlds: Vec<WorldCurve>,
-    /// The simulations of the earlier run, drawn behind the present simulations.
+    /// Curves of the earlier run's simulations, drawn behind those of the present simulations.
     pub ghosts: Vec<WorldCurve>,
     pub quantities: Vec<&'static Quantity<Observables>>,
     pub chosen: ChosenPlot,
     /// The displayed simulated time, s.
     pub now_secs: f64,
-    /// Smallest end of the time axis, s.
+    /// Simulated time that the time axis reaches at least, s.
     pub until_secs: f64,
 }
 
-/// Draws plots for a picture. If there are several simulations, a key of their colours is above the plots.
+/// Draws plots for a saved picture. If there are several simulations, a key of their colours is above the plots.
 pub(super) fn draw_with_key(ui: &mut Ui, data: &PlotData) {
     if data.worlds.len() > 1 {
         ui.horizontal_wrapped(|ui| {
@@ -56,7 +56,7 @@ pub(super) fn draw_with_key(ui: &mut Ui, data: &PlotData) {
     draw(ui, data);
 }
 
-/// Draws the plots into the remaining space. Returns the time at which the user clicked, s.
+/// Draws the plots into the remaining space. Returns the simulated time at which the user clicked, s.
 pub(super) fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
     // If the plots left space, their panel would become smaller from frame to frame.
     ui.set_min_size(ui.available_size());
@@ -153,13 +153,13 @@ fn end_secs(data: &PlotData) -> f64 {
     ends.map(|row| row.time_secs).fold(data.until_secs, f64::max)
 }
 
-/// Returns a curve up to the displayed moment, so that the curves of other initial states do not reveal the future.
+/// Returns a curve up to the displayed time, so that runs from other initial states do not reveal the future.
 fn until_now(points: &[[f64; 2]], now_secs: f64) -> PlotPoints<'static> {
     points.iter().copied().take_while(|point| point[0] <= now_secs).collect()
 }
 
-/// Returns the lines of a simulation's other initial states up to the displayed moment: a thin line per run, and their
-/// mean as a dashed line.
+/// Returns the slump curves of runs with a simulation's settings from other initial states, up to the displayed time: a
+/// thin line per run, and their mean as a dashed line.
 fn others(world: &WorldCurve, now_secs: f64) -> Vec<Line<'static>> {
     let Some(band) = world.others.as_ref().filter(|band| band.count > 0) else {
         return Vec::new();
@@ -176,7 +176,7 @@ fn others(world: &WorldCurve, now_secs: f64) -> Vec<Line<'static>> {
     band.runs.iter().map(run).chain([mean.style(style).width(1.2)]).collect()
 }
 
-/// Returns the smallest range of a vertical axis.
+/// Returns the lowest and highest value that the vertical axis of a plot shows at least.
 fn least_span(data: &PlotData, quantity: &Quantity<Observables>, factor: f64) -> [f64; 2] {
     let value = |row: &Observables| (quantity.value)(row);
     let scaled = |value: f64| if quantity.logarithmic { value.log10() } else { value / factor };
@@ -186,7 +186,7 @@ fn least_span(data: &PlotData, quantity: &Quantity<Observables>, factor: f64) ->
     with_room(values.chain(always.iter().copied()), quantity.logarithmic)
 }
 
-/// Returns the further values of a quantity that occur in this curve.
+/// Returns the second and third curve in the plot of a quantity, if this run has values for them.
 fn beside(
     curve: &Curve,
     quantity: &Quantity<Observables>,
@@ -195,7 +195,7 @@ fn beside(
     quantity.beside.iter().copied().filter(has)
 }
 
-/// Returns the title of a plot, and the factor of its unit's prefix, by which the values are divided.
+/// Returns the title of a plot, and the factor of its unit's prefix (1e3 for k), by which the values are divided.
 fn title(data: &PlotData, quantity: &Quantity<Observables>) -> (String, f64) {
     let mut title = quantity.title.to_owned();
     let mut factor = 1.0;
@@ -228,7 +228,7 @@ fn hover_text(position: &HoverPosition<'_>, log: bool) -> Option<String> {
     Some(format!("{name}\n{}\n{value}", clock_text(at.x)))
 }
 
-/// Returns the value on the axis; on a logarithmic axis it is the decimal logarithm.
+/// Returns the coordinate of a value on its axis: the value itself, or its decimal logarithm on a logarithmic axis.
 fn scaled(value: f64, log: bool) -> f64 {
     if log { value.log10() } else { value }
 }
@@ -240,11 +240,11 @@ pub(crate) struct WorldCurve {
     pub name: String,
     pub colour: Color32,
     pub curve: Curve,
-    /// Slumps of other initial states with the same settings.
+    /// Slumps of runs with the settings of this simulation from other initial states.
     pub others: Option<Arc<Band>>,
 }
 
-/// Largest number of points of a curve.
+/// Largest number of points of a curve in the plot of one quantity against another.
 const MOST_POINTS: usize = 2_000;
 
 /// Plot of one quantity against another, which the user chooses.
@@ -255,7 +255,7 @@ pub struct ChosenPlot {
     pub on: bool,
     /// Names of the quantities along x and y, as in output tables.
     pub axes: [String; 2],
-    /// True for a logarithmic axis: x, then y.
+    /// True for a logarithmic axis; first x, then y.
     pub logarithmic: [bool; 2],
 }
 
@@ -296,7 +296,7 @@ impl ChosenPlot {
         Some(format!("{} against {}", y?.title(), x?.title()))
     }
 
-    /// Returns the coordinates of rows in the plot.
+    /// Returns the points of the plot for these rows (measured quantities of steps), if the points are finite.
     fn points<'a>(&self, rows: impl Iterator<Item = &'a Observables>) -> Vec<[f64; 2]> {
         let [Some(x), Some(y)] = self.axes.each_ref().map(|name| Observed::named(name)) else {
             return Vec::new();
@@ -309,7 +309,7 @@ impl ChosenPlot {
         rows.filter_map(place).collect()
     }
 
-    /// Draws the plot, with a dot at the displayed moment.
+    /// Draws the plot, with a dot at the displayed simulated time.
     pub(super) fn draw(&self, ui: &mut Ui, worlds: &[WorldCurve], now_secs: f64) {
         let title = RichText::new(self.title().unwrap_or_default()).small();
         ui.add(Label::new(title).truncate());
@@ -426,7 +426,7 @@ mod tests {
         assert!(others(&alone, 1.0).is_empty());
     }
 
-    /// Counts the numbers along x and along y of a plot.
+    /// Draws the plots, and counts the numbers along the x axis and along the y axis.
     fn painted_numbers(data: &PlotData) -> [usize; 2] {
         let context = egui::Context::default();
         let mut painted = Vec::new();

@@ -12,10 +12,10 @@ use crate::sim::Observables;
 pub struct Question {
     /// Text of the question.
     pub text: &'static str,
-    /// Its two answers.
+    /// The two answers from which the user chooses.
     pub answers: [&'static str; 2],
-    /// Returns the observables that decide the question; `None` while the run has not reached the time at which it is
-    /// decided.
+    /// Returns the observables (measured quantities of a step) that decide the question; `None` while the run has not
+    /// reached the simulated time at which it is decided.
     pub rows: fn(&LiveFrame) -> Option<Vec<Observables>>,
     /// Returns the index of the right answer and a sentence on the result, given the rows that [`Self::rows`] returned.
     pub result: fn(&[Observables]) -> Option<(usize, String)>,
@@ -30,16 +30,17 @@ pub struct Prediction {
     pub was_right: Option<bool>,
 }
 
-/// Largest difference of two slumps at which the piles count as slumping alike. The value is an eighth of the axis of
-/// the plot, which is hardly visible. With a smaller value nearly every pair of piles would count as different.
+/// Largest difference of two slumps at which the piles count as slumping alike. It is an eighth of the slump axis, a
+/// distance that is hardly visible. With a smaller value nearly every pair of piles would count as different.
 const ALIKE: f64 = 0.05;
-/// Overlap above which a disc counts as not carrying its load, in mean diameters. The value is the limit of `slump
-/// stability`.
+/// Overlap above which a disc counts as not carrying its load, in mean diameters. The command `slump stability` uses
+/// the same limit.
 const SQUEEZED: f64 = 0.01;
 /// Simulated time after a change of Δt for which the pile is watched, s.
 const WATCHED_SECS: f64 = 0.3;
 
-/// Returns the last observables of all simulations, if all simulations have reached the end of the scene.
+/// Returns the observables of the last step of each simulation; `None` until all simulations have reached the end of
+/// the scene.
 pub(super) fn last_rows(frame: &LiveFrame) -> Option<Vec<Observables>> {
     let duration_secs = frame.start.as_ref()?.scene.duration_secs;
     let last = frame.worlds.iter().map(|world| world.curve.last().copied());
@@ -47,8 +48,9 @@ pub(super) fn last_rows(frame: &LiveFrame) -> Option<Vec<Observables>> {
     last.map(|row| row.filter(ended)).collect()
 }
 
-/// Returns the last observables with the longest Δt and the last observables of the run, if the pile was watched for
-/// [`WATCHED_SECS`] with a shorter Δt. While a slider is dragged, a few steps have a Δt between the two.
+/// Returns the observables of the last step with the longest Δt and of the last step of the run; `None` until the pile
+/// was watched for [`WATCHED_SECS`] with a shorter Δt. While a slider is dragged, a few steps have a Δt between the
+/// two.
 pub(super) fn rows_around_change(frame: &LiveFrame) -> Option<Vec<Observables>> {
     let curve = &frame.worlds.first()?.curve;
     let last = *curve.last()?;
@@ -99,7 +101,8 @@ pub(super) fn unsolved_steps(rows: &[Observables]) -> Option<(usize, String)> {
     Some((usize::from(few.slump > solved.slump), text))
 }
 
-/// Evaluates the question of lesson 4: does Δt change the slump by the same amount if bonds have a length?
+/// Evaluates the question of lesson 4: does Δt change the slump under the law `range` (bonds with a length) as much as
+/// under the law `moreau`?
 pub(super) fn two_laws(rows: &[Observables]) -> Option<(usize, String)> {
     let [short, long, range_short, range_long] = rows else { return None };
     let [rigid, range] = [short.slump - long.slump, range_short.slump - range_long.slump];

@@ -25,7 +25,7 @@ use crate::render::Theme;
 pub struct Preferences {
     /// Light theme, dark theme, or the theme of the desktop.
     pub theme: egui::ThemePreference,
-    /// Style of the drawn scene, except that its colours of ground and text follow the theme of the window.
+    /// Drawing style of the scene. Only its colours of background and text follow the theme of the window instead.
     pub style: Style,
     /// The page of the sidebar that is open.
     pub page: Option<Page>,
@@ -35,10 +35,10 @@ pub struct Preferences {
     pub starts_again: bool,
     /// True if outlines of the earlier run are drawn behind the present run.
     pub ghost: bool,
-    /// True if idle cores compute the mean over other initial states.
+    /// True if idle cores compute the mean slump of runs from other initial states (other seeds).
     #[serde(rename = "other_piles")]
     pub ensemble: bool,
-    /// True if the plots are open.
+    /// True if the plots are visible.
     pub plots: bool,
     /// Names of the plotted quantities.
     pub quantities: Vec<String>,
@@ -62,7 +62,7 @@ pub struct Preferences {
     pub new_grain_diameters: f64,
     /// Folder of exported files.
     pub folder: PathBuf,
-    /// Choices for exported recordings of grains and contacts.
+    /// The user's choices for exported recordings of grains and contacts.
     pub data: DataChoices,
     /// Configuration of the scene that was open last.
     pub scene: Config,
@@ -153,7 +153,7 @@ impl Default for LessonPlace {
     }
 }
 
-/// Choices that a lesson replaces while it is open.
+/// The user's choices that a lesson replaces by its own while it is open.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Choices {
     pub quantities: Vec<String>,
@@ -166,7 +166,7 @@ pub(super) struct Choices {
 }
 
 impl Choices {
-    /// Applies these choices and returns the previous choices.
+    /// Writes these choices to the preferences and returns the choices that they replace.
     fn swap(self, preferences: &mut Preferences) -> Self {
         Self {
             quantities: std::mem::replace(&mut preferences.quantities, self.quantities),

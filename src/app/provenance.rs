@@ -10,22 +10,24 @@ pub(super) const CHANGED: &str = "the run had other settings before, or was chan
 
 impl WatchedRun {
     /// Returns the command line that computes the selected simulation from its initial state with the present settings,
-    /// with the same bits and without a window. The command does not include later changes of settings and edits by the
-    /// user. `None` if the scene no longer exists.
+    /// with the same bits and without a window. The command does not include changes of settings during the run or
+    /// edits by the user. `None` if the scene no longer exists.
     pub fn command_line(&self) -> Option<String> {
         let run = self.provenance(self.selected, self.config())?;
         let command = ["slump".to_owned(), "--headless".to_owned()];
         Some(joined(&[&command[..], &run.words].concat()))
     }
 
-    /// Returns the provenance of a simulation. `None` if its scene no longer exists.
+    /// Returns the provenance of a simulation: the name of its scene, its settings, and the options of the command line
+    /// that reproduces it. `None` if its scene no longer exists.
     fn provenance(&self, world: usize, config: Config) -> Option<Provenance> {
         let settings = self.wanted.get(world)?.settings;
         let scene = self.frame.start.as_ref()?.scene.name.clone();
         Some(Provenance { scene, settings, words: config.words(&settings).ok()? })
     }
 
-    /// Returns the texts for a file that shows all simulations, either at one moment or at all their steps.
+    /// Returns the texts, such as the command line, that a file contains about the simulations that it shows. The file
+    /// shows all simulations, either at one simulated time or at all their steps.
     pub(crate) fn texts(&self, is_of_a_moment: bool) -> Texts {
         if !self.compares() {
             return self.texts_of_world(0, is_of_a_moment);

@@ -14,7 +14,7 @@ use crate::sim::{Settings, Snapshot};
 /// A simulation in a picture.
 pub(crate) struct PicturedWorld {
     pub snapshot: Arc<Snapshot>,
-    /// The settings at the moment of the snapshot.
+    /// The settings of the simulation at the time of the snapshot (the drawn state).
     pub settings: Settings,
     /// Text in the lower right corner of the simulation.
     pub note: String,
@@ -26,7 +26,7 @@ pub(crate) struct ScenePicture {
     /// Number of simulations in a row.
     pub columns: usize,
     pub style: Style,
-    /// Camera of each simulation.
+    /// Camera (centre and scale), which is the same for all simulations.
     pub camera: Camera,
     pub size: [u32; 2],
     pub texts: Texts,

@@ -1,4 +1,4 @@
-//! Preparation of a scene or a saved run as the initial state of a live run.
+//! Preparation of a scene or a saved run as the initial state of a run in the window.
 
 use glam::DVec2;
 
@@ -46,11 +46,12 @@ fn start_with(
     }
 }
 
-/// Smallest number of grains in a heap. For example, two discs that touch are not a heap.
+/// Smallest number of grains that count as a heap. For example, two discs that touch are not a heap.
 const LEAST_OF_HEAP: usize = 10;
 
-/// True if the grains lie on fixed, level ground and can spread. In other scenes the slump Δy_G, which uses heights
-/// above y = 0, has no meaning, and also if the grains hang from a fixed disc.
+/// True if the scene is a heap, so that the slump Δy_G (relative drop of the mean height above y = 0) has a meaning: at
+/// least ten grains lie on level ground that does not move, and can spread. For example, grains that hang from a fixed
+/// disc are not a heap.
 fn slumps(scene: &Scene) -> bool {
     let is_down =
         matches!(&scene.gravity, Gravity::Uniform { acceleration: g } if g.x == 0.0 && g.y < 0.0);
@@ -67,8 +68,8 @@ fn slumps(scene: &Scene) -> bool {
         && scene.boundaries.iter().all(is_level)
 }
 
-/// Returns the walls around a pile before time begins. The pile is at rest without them, but they show that it will
-/// spread when they are removed.
+/// Returns the walls that are drawn around the built-in pile before its first step. The pile is at rest without these
+/// walls, but they show that it will spread when they are removed. Other scenes have no such walls.
 fn walls(scene: &Scene) -> Vec<Boundary> {
     if scene.name != Config::DEFAULT_SCENE || !scene.boundaries.is_empty() {
         return Vec::new();

@@ -1,8 +1,8 @@
 //! Files of sessions (all simulations with their history and the arrangement of the window) and of saved runs.
 //!
-//! A session stores runs as the live history does: the initial state, some later states (keyframes), all changes of
-//! settings, and the displayed state. It therefore opens without computing. States between the keyframes are computed
-//! again, with the same bits, when the user moves to them on the timeline.
+//! A session stores runs as the program stores them in memory: the initial state, some later states (keyframes), all
+//! changes of settings, and the displayed state. It therefore opens without computing. States between the keyframes are
+//! computed again, with the same bits, when the user moves to them on the timeline.
 
 use std::path::{Path, PathBuf};
 
@@ -26,7 +26,7 @@ const SEAL: Seal = Seal {
     form: "a session that the window saved",
 };
 
-/// Arrangement of the window.
+/// Arrangement of the window: the preferences, the layout of panels, the selected simulation, and the visible area.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Arrangement {
     pub stored: StoredWindow,
@@ -35,7 +35,7 @@ pub(crate) struct Arrangement {
     pub camera: SceneCamera,
 }
 
-/// Reads a session: the runs and the arrangement of the window.
+/// Reads a session from a file: the runs and the arrangement of the window.
 pub(super) fn open_session(path: &Path) -> Result<LiveStart> {
     let start: LiveStart = SEAL.open(path)?;
     let is_sound = start.history.as_ref().is_some_and(|history| history.is_sound());
@@ -70,7 +70,8 @@ pub(super) fn write_session(
     Ok(path)
 }
 
-/// Writes the state that a run had when it was copied from the solver's thread. The run itself may continue meanwhile.
+/// Saves a copied run to a file: the state that the run had when it was copied from the solver's thread. The run itself
+/// may continue meanwhile.
 pub(super) fn write_state(folder: &Path, run: TakenRun) -> Result<PathBuf> {
     let TakenRun { start, world } = run;
     if world.failure.is_some() {
@@ -83,7 +84,7 @@ pub(super) fn write_state(folder: &Path, run: TakenRun) -> Result<PathBuf> {
     Ok(path)
 }
 
-/// Returns the error for saving a run whose state is no longer finite.
+/// Returns the error for saving a run whose state contains infinite values or NaN.
 fn not_finite() -> Error {
     Error::value("state", "no longer finite", "an earlier one: drag the timeline back")
 }

@@ -14,8 +14,8 @@ use crate::number::millis_text;
 use crate::setting::{About, Control, Kind, Value};
 use crate::sim::Settings;
 
-/// Shows the control of a setting, if the setting has a control, and changes the setting. A double click on the field
-/// sets the value that `start` has. Returns the rectangle of the slider or box.
+/// Shows the control of a setting, if the setting has a control, and stores the user's choice in `settings`. A double
+/// click on the field restores the value in `start`. Returns the rectangle of the slider or box.
 pub(super) fn show(
     ui: &mut Ui,
     about: &About,
@@ -72,7 +72,7 @@ fn as_number(value: Value) -> Option<f64> {
     }
 }
 
-/// Converts the number of a slider or field to a value of this kind. Counts are rounded.
+/// Converts the number of a slider or field to a setting's value of this kind. Counts are rounded.
 fn of_number(kind: Kind, number: f64) -> Option<Value> {
     match kind {
         Kind::Number => Some(Value::Number(number)),
@@ -87,7 +87,7 @@ pub(super) fn called(about: &About) -> &'static str {
     if symbol.is_empty() { about.name } else { symbol }
 }
 
-/// Returns the reason why a typed number is refused; `None` if it is accepted.
+/// Returns the reason why the user must not set this number; `None` if the number is allowed.
 fn refusal(about: &About, control: &Control, settings: &Settings, number: f64) -> Option<String> {
     let is_time = is_time(control);
     let refused = |allowed| {
@@ -118,11 +118,12 @@ fn refusal(about: &About, control: &Control, settings: &Settings, number: f64) -
 
 /// Number of significant digits of a value from a slider; the mouse is not more precise.
 const SLIDER_DIGITS: usize = 3;
-/// Width of the field, points.
+/// Width of the text field for a number, points.
 const FIELD_WIDTH: f32 = 76.0;
 
-/// Shows a number as a labelled field above a slider. Returns the new value, if there is one, and the rectangle of the
-/// slider. A double click on the field sets `default`. `refuse` returns the reason why a typed value is refused.
+/// Shows a number as a labelled field above a slider. Returns the new value, if the user changed it, and the rectangle
+/// of the slider. A double click on the field sets `default`. `refuse` returns the reason why a typed value is not
+/// allowed.
 fn number(
     ui: &mut Ui,
     control: &Control,
@@ -185,7 +186,7 @@ fn number(
     (edited.filter(|edited| *edited != value), response.rect)
 }
 
-/// Shows the text field of a number.
+/// Shows the text field in which the user types a number. A refused text has the colour of warnings.
 fn field(ui: &mut Ui, id: egui::Id, label: &str, text: &mut String, is_refused: bool) -> Response {
     let mut edit = TextEdit::singleline(text)
         .id(id)
@@ -205,7 +206,7 @@ fn field(ui: &mut Ui, id: egui::Id, label: &str, text: &mut String, is_refused: 
     response
 }
 
-/// Returns the typed number, or the reason why it is refused.
+/// Returns the number that the user typed, or the reason why it is not allowed.
 fn typed(
     control: &Control,
     text: &str,
@@ -222,8 +223,8 @@ fn typed(
     refusal.map_or(Ok(number), Err)
 }
 
-/// Shows a refusal as a layer over the controls below the slider. A separate line would move these controls under the
-/// mouse.
+/// Shows the reason why a typed number is not allowed, as a layer over the controls below the slider. A separate line
+/// would move these controls under the mouse.
 fn show_refusal(ui: &Ui, id: egui::Id, slider: Rect, refusal: String) {
     let colour = theme::warning(ui.visuals().dark_mode);
     egui::Area::new(id)
@@ -238,7 +239,7 @@ fn show_refusal(ui: &Ui, id: egui::Id, slider: Rect, refusal: String) {
         });
 }
 
-/// True if a setting is a time: it is declared in seconds, and the window shows it in milliseconds.
+/// True if a setting is a time. Times are declared in seconds, and the window shows them in milliseconds.
 fn is_time(control: &Control) -> bool {
     control.unit == "s"
 }

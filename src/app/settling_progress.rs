@@ -10,11 +10,11 @@ use crate::live::{LoadingProgress, Preview};
 use crate::scene::Settling;
 use crate::sim::{GrainView, Snapshot};
 
-/// Orders of magnitude by which the speed of the fastest grain decreases until a pile is at rest.
+/// Orders of magnitude by which the speed of the fastest grain is assumed to decrease until a pile is at rest.
 const ORDERS_OF_SETTLING: f64 = 3.5;
 /// Least time between two displayed pictures of the pile. Users would not notice more frequent pictures.
 const INTERVAL: Duration = Duration::from_millis(30);
-/// Finished fraction from which on the remaining time is estimated.
+/// Finished fraction of a deposition from which on the remaining computing time is estimated.
 const PART_THAT_TELLS: f64 = 0.05;
 
 /// Progress of one deposition.
@@ -31,7 +31,7 @@ impl SettlingProgress {
         Self { begun: Instant::now(), looked: None, preview: None, part: 0.0 }
     }
 
-    /// Returns the present progress, with a picture of the grains.
+    /// Returns the present progress of the deposition, with a text and a picture of the grains.
     pub(super) fn look(&mut self, settling: &Settling<'_>) -> LoadingProgress {
         if self.looked.is_none_or(|at| at.elapsed() >= INTERVAL) {
             self.looked = Some(Instant::now());
@@ -53,7 +53,7 @@ impl SettlingProgress {
         LoadingProgress { part: self.part as f32, text, preview: self.preview.clone() }
     }
 
-    /// Returns a text with the estimated remaining time; empty if it is too early for an estimate.
+    /// Returns a text with the estimated remaining computing time; empty if it is too early for an estimate.
     fn left(&self, elapsed_secs: f64) -> String {
         if self.part < PART_THAT_TELLS {
             return String::new();
@@ -67,8 +67,8 @@ impl SettlingProgress {
     }
 }
 
-/// Returns the finished fraction of a deposition, 0 to 1. Grains fall for at most a quarter of the time limit; after
-/// that, the fraction depends on the speed of the fastest grain.
+/// Estimates the finished fraction of a deposition, 0 to 1. The estimate uses the time for which grains have fallen, at
+/// most a quarter of the time limit, and the speed of the fastest grain.
 pub(super) fn settled_part(settling: &Settling) -> f64 {
     let rained = match settling.rains {
         true => (4.0 * settling.time_secs / settling.limit_secs).min(1.0),
@@ -78,8 +78,8 @@ pub(super) fn settled_part(settling: &Settling) -> f64 {
     0.5 * rained * (1.0 + slowed.clamp(0.0, 1.0))
 }
 
-/// Returns the corners of the area with all grains, the box and the base, m. The area becomes smaller as the grains
-/// fall.
+/// Returns the lower left and upper right corner of the area with all grains and the base at y = 0, m. The area becomes
+/// smaller as the grains fall.
 fn view_of(snapshot: &Snapshot) -> [DVec2; 2] {
     let diameter = snapshot.surroundings.mean_diameter;
     let ends = |side: DVec2| {

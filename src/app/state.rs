@@ -36,9 +36,9 @@ pub struct AppState {
     pub camera: SceneCamera,
     /// True while a lesson is open.
     pub touring: bool,
-    /// Runs of other initial states with the present settings.
+    /// Runs with the present settings from other initial states (other seeds).
     pub ensemble: Ensemble,
-    /// The measured quantity of an experiment against time, for its plot.
+    /// Values of an experiment's main quantity at the displayed times, for its plot.
     pub(crate) experiment: ExperimentSeries,
     /// Positions of controls, points, for tests that control the window from outside.
     pub controls: BTreeMap<String, Rect>,
@@ -89,7 +89,7 @@ impl AppState {
         state
     }
 
-    /// Returns the context that the panels share, and the panels.
+    /// Splits the state into the context that all panels share and the panels themselves.
     pub(super) fn split(&mut self) -> (PanelContext<'_>, &mut Panels) {
         let context = PanelContext {
             run: &mut self.run,
@@ -122,13 +122,13 @@ impl AppState {
         }
     }
 
-    /// True while a file or a recording is being written.
+    /// True while a file, a recording or a film is being written.
     pub fn is_writing(&self) -> bool {
         self.exports.is_writing()
     }
 
-    /// Fetches the newest frame from the solver's thread. The controls show its settings, unless the user is changing a
-    /// setting.
+    /// Fetches the newest frame from the solver's thread. The controls show the settings in this frame, unless the user
+    /// is changing a setting.
     pub(super) fn refresh(&mut self, context: &Context) {
         self.run.frame = self.run.live.latest().clone();
         self.follow_loads();
@@ -200,12 +200,12 @@ impl AppState {
         self.open(Opening::Scene(Box::new(config)));
     }
 
-    /// Opens a saved run, to be continued.
+    /// Opens a saved run, so that it can be continued.
     pub fn load_run(&mut self, state: SavedState) {
         self.open(Opening::Run(Box::new(state)));
     }
 
-    /// Opens the file of a saved run or of a session, to be continued.
+    /// Opens the file of a saved run or of a session, so that it can be continued.
     pub fn load_saved(&mut self, path: &Path) {
         self.exports.data.saved_run = path.display().to_string();
         self.open(Opening::File(path.to_owned()));
@@ -220,7 +220,8 @@ impl AppState {
         }
     }
 
-    /// Sends the request to the solver's thread. Ends the lessons, unless the request opens a lesson.
+    /// Sends a request to open a scene, a lesson, a link or a file to the solver's thread. Ends the lessons, unless the
+    /// request opens a lesson.
     pub(crate) fn open(&mut self, opening: Opening) {
         if !matches!(opening, Opening::Lesson(_)) {
             self.leave_lessons();
@@ -248,7 +249,7 @@ impl AppState {
         }
     }
 
-    /// Saves the displayed state of the selected simulation.
+    /// Saves the displayed state of the selected simulation to a file.
     fn save_state(&mut self, context: &Context) {
         let run = self.run.take(self.run.selected);
         self.exports.write(context, &self.preferences.folder, vec![run], |folder, _, runs| {
@@ -256,7 +257,7 @@ impl AppState {
         });
     }
 
-    /// Saves all simulations with their history, and the arrangement of the window.
+    /// Saves all simulations with their history, and the arrangement of the window, to a file.
     pub(super) fn save_session(&mut self, context: &Context) {
         if self.run.frame.worlds.is_empty() {
             return;
@@ -278,7 +279,7 @@ impl AppState {
         });
     }
 
-    /// Copies a link that reproduces the displayed state of all simulations.
+    /// Copies a link to the clipboard that reproduces the displayed state of all simulations.
     pub fn copy_link(&mut self, context: &Context) {
         self.exports.copy_link(context, self.run.take_all());
     }

@@ -19,7 +19,7 @@ pub(crate) fn bold() -> FontFamily {
     FontFamily::Name(BOLD.into())
 }
 
-/// Converts a colour of a picture to egui's type.
+/// Converts a colour of Slump's pictures to egui's type.
 pub(crate) fn color32(colour: Colour) -> Color32 {
     let [red, green, blue, alpha] = colour.to_rgba8().0;
     Color32::from_rgba_unmultiplied(red, green, blue, alpha)
@@ -45,8 +45,8 @@ pub(crate) fn good(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(0x5c, 0xc9, 0x8a) } else { Color32::from_rgb(0x0a, 0x7d, 0x46) }
 }
 
-/// Returns the colour of a compared simulation. Colour-blind people can distinguish the six colours; the first four differ
-/// from the colours of pushing and pulling forces.
+/// Returns the colour of a simulation in a comparison. Colour-blind people can distinguish the colours. The first
+/// colours are not the colours of pushing and pulling forces.
 pub(crate) fn world_colour(index: usize, dark: bool) -> Color32 {
     const COLOURS: [u32; 6] = [0x009e73, 0xaa4499, 0xe69f00, 0x56b4e9, 0x0072b2, 0xd55e00];
     const ON_DARK: [u32; 6] = [0x2fc49a, 0xe09cc4, 0xf0bf4c, 0x56b4e9, 0x9a8cff, 0xe8772e];
@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn words_can_be_read_on_every_ground() {
-        /// Smallest contrast of level AA for text of any size.
+        /// Smallest contrast ratio that level AA of the guidelines (WCAG) allows for text of any size.
         const LEAST: f64 = 4.5;
         let context = egui::Context::default();
         install(&context);

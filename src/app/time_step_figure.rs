@@ -1,5 +1,5 @@
-//! The plot of mean slump against Δt, as in Fig. 5a of the paper, with one point for each run that the user has
-//! started.
+//! The plot of mean slump against the time step Δt, as in Fig. 5a of the paper. For each run that the user has started
+//! it has one point: the mean over runs with the same settings from other initial states.
 
 use egui::{Color32, Label, RichText, Ui};
 use egui_plot::{HoverPosition, Line, Points};
@@ -19,19 +19,19 @@ const TITLE: &str = "slump against Δt";
 /// Hover text of the title, which explains a point of the plot.
 const HINT: &str = "One point per released pile: the mean slump of its other piles at the end of the scene, with \
                     its 95 % interval.";
-/// Smallest range of the time step axis, ms.
+/// First and last time step that the Δt axis shows at least, ms.
 const LEAST_MILLIS: [f64; 2] = [0.1, 10.0];
-/// Half of the width of an error bar's caps, decades.
+/// Half of the width of the horizontal caps of an error bar, in decades of the logarithmic Δt axis.
 const CAP: f64 = 0.03;
 
-/// A point of the plot: the mean slump of other initial states at the end of the scene.
+/// A point of the plot: the mean slump of runs from other initial states at the end of the scene.
 #[derive(Clone, Debug, PartialEq)]
 struct FigurePoint {
     time_step_secs: f64,
     mean: f64,
-    /// Half-width of the 95 % confidence interval of the mean.
+    /// Half-width of the 95 % confidence interval of the mean slump.
     half: f64,
-    /// Number of initial states.
+    /// Number of initial states over which the mean is taken.
     count: usize,
 }
 
@@ -42,7 +42,7 @@ impl FigurePoint {
     }
 }
 
-/// Points whose settings differ only in Δt.
+/// A curve of the plot: points whose settings differ only in Δt.
 #[derive(Clone, Debug)]
 struct FigureSeries {
     name: String,
@@ -56,9 +56,9 @@ struct FigureSeries {
 pub(super) struct TimeStepFigure(Vec<FigureSeries>);
 
 impl TimeStepFigure {
-    /// Makes the figure of the piles that were released, each with its settings and its ensemble. Returns `None` if no pile
-    /// has an interval yet. If several simulations are visible (`worlds`), a series that contains one of them has its
-    /// colour; otherwise a series keeps its colour when the settings of the visible simulation change.
+    /// Makes the plot from the results of all started runs (`released`). `None` if no result has a confidence interval
+    /// yet. If several simulations (`worlds`) are compared, a curve that contains exactly one of them has the colour of
+    /// that simulation. If there is only one simulation, its settings do not change the colours of the curves.
     pub(super) fn new<'a>(
         released: impl Iterator<Item = &'a Released>,
         worlds: &[Settings],
@@ -103,7 +103,7 @@ impl TimeStepFigure {
         (!series.is_empty()).then_some(Self(series))
     }
 
-    /// Draws the plot into the remaining space. `head` adds to its title line.
+    /// Draws the plot into the remaining space. `head` adds controls to the title line of the plot.
     pub(super) fn draw(&self, ui: &mut Ui, head: impl FnOnce(&mut Ui)) {
         ui.horizontal(|ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -157,12 +157,12 @@ impl TimeStepFigure {
     }
 }
 
-/// Returns these settings with the default Δt. All points of a series have the same settings apart from Δt.
+/// Returns the settings with the default Δt, which are equal for all points of a curve.
 pub(super) fn without_time_step(settings: &Settings) -> Settings {
     settings.over(Settings::default().parameters.time_step_secs)
 }
 
-/// Returns the text at a point: its name, which contains all values.
+/// Returns the text that is shown when the mouse is at a point: the name of the point, which contains all its values.
 fn hover_text(position: &HoverPosition<'_>) -> Option<String> {
     match position {
         HoverPosition::NearDataPoint { plot_name, .. } => Some((*plot_name).to_owned()),

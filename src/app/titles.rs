@@ -9,9 +9,9 @@ use crate::number::millis_text;
 use crate::setting::Value;
 use crate::sim::Settings;
 
-/// Settings that other settings determine; a title omits them.
+/// Names of settings that usually change together with other settings. A title omits them unless nothing else differs.
 const FOLLOWING: [&str; 2] = ["stop", "tolerance"];
-/// Settings that the solver determines; a title that names the solver omits them.
+/// Names of settings that change together with the solver; a title that names the solver omits them.
 const FOLLOWING_METHOD: [&str; 2] = ["friction-model", "model-solves"];
 
 /// Returns the title of a simulation: all settings in which any two simulations differ, with the values of this
@@ -58,7 +58,7 @@ pub(super) fn caption(worlds: &[Controls], index: usize, time_secs: f64) -> Stri
     format!("{number}{text}, t = {}", clock_text(time_secs))
 }
 
-/// Returns the settings in which a run differs from another run.
+/// Returns the settings in which `one` differs from `other`, with the values in `one`, as a text such as "Bond 20".
 pub(super) fn title_against(one: &Settings, other: &Settings) -> String {
     title_among(&[one, other].map(|&settings| Controls { settings, pull: None }), 0)
 }
@@ -71,7 +71,7 @@ pub(super) fn change_text(before: &Settings, after: &Settings) -> String {
     format!("{from} → {}", to.strip_prefix(symbol).filter(|_| is_one).unwrap_or(&to))
 }
 
-/// Returns the names and values of some settings.
+/// Returns the names and values of the settings `names` as one text.
 pub(super) fn settings_text(settings: &Settings, names: &[&str]) -> String {
     let all: Vec<String> = names.iter().filter_map(|name| said(settings, name)).collect();
     all.join(", ")

@@ -30,7 +30,7 @@ pub(super) fn told(
         "worlds": state.run.frame.worlds.len(),
         // The next values belong to the selected world (simulation).
         "grains": world.map_or(0, |world| world.snapshot.grains.len()),
-        // Number of finished runs of other initial states with the settings of the selected world, and number of
+        // Number of finished runs from other initial states with the settings of the selected world, and number of
         // threads that compute such runs.
         "other_piles": state.ensemble.summary(state.run.selected).map_or(0, |it| it.band.count),
         "other_threads": state.ensemble.threads(),

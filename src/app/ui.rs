@@ -33,7 +33,7 @@ fn take_dropped_files(context: &Context, state: &mut AppState) {
     state.open_file(file.path());
 }
 
-/// Handles the keys of this frame.
+/// Performs the actions of the keys that the user pressed in this frame.
 fn act_on_keys(context: &Context, state: &mut AppState) {
     if context.input(|input| input.key_pressed(Key::Escape)) {
         state.panels.help = false;

@@ -1,5 +1,5 @@
-//! The run that the window shows: the live run, its newest frame, the settings that the controls show, and the selected
-//! simulation.
+//! The run that the window shows: the handle of the solver's thread, its newest frame, the settings that the controls
+//! show, and the selected simulation.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
@@ -60,7 +60,7 @@ impl WatchedRun {
         }
     }
 
-    /// Sets the settings of the controls to those of the newest frame, unless the solver's thread has not yet handled a
+    /// Copies the settings in the newest frame to the controls, unless the solver's thread has not yet handled a
     /// change.
     pub(super) fn follow_frame(&mut self) {
         let in_step = self.frame.acknowledged == self.live.sent() && !self.frame.seeking;
@@ -128,13 +128,13 @@ impl WatchedRun {
         self.frame.start.as_ref().map_or(1.0, |start| start.scene.duration_secs)
     }
 
-    /// True if the visible moment is at the end of the scene or later.
+    /// True if the displayed simulated time is the end of the scene, or later.
     pub(crate) fn has_ended(&self) -> bool {
         let last = self.world().map(|world| world.snapshot.observables).unwrap_or_default();
         self.frame.time_secs() + 0.5 * last.time_step_secs >= self.duration_secs()
     }
 
-    /// Returns the settings in which a simulation differs from the other visible ones, as text.
+    /// Title of a simulation: the settings in which it differs from the other simulations.
     pub(crate) fn title(&self, world: usize) -> String {
         title_among(&self.wanted, world)
     }
@@ -150,7 +150,7 @@ impl WatchedRun {
         world.map_or_else(String::new, |world| slump_text(world.snapshot.observables.slump))
     }
 
-    /// First part of the names of saved files.
+    /// First part of the names of saved files, which contains the scene, the settings and the displayed simulated time.
     pub(crate) fn file_stem(&self) -> String {
         let name = self.frame.start.as_ref().map_or("scene", |start| start.scene.name.as_str());
         let worlds = self.frame.worlds.iter();
@@ -158,9 +158,9 @@ impl WatchedRun {
         stem(name, &settings, self.frame.time_secs())
     }
 
-    /// Returns the last earlier run for comparison with the present run (the "ghost"), if the settings of at most one
-    /// simulation differ. The ghost of a run with other simulations is not shown, because its numbers could not be
-    /// compared.
+    /// Returns the last earlier run for comparison with the present run (the "ghost"), if it has the same number of
+    /// simulations and at most one of them has other settings. Other earlier runs are not shown, because their numbers
+    /// could not be compared.
     pub(crate) fn ghost(&self) -> Option<&PastRun> {
         let (last, worlds) = (self.undo_target()?, &self.frame.worlds);
         let others = last.worlds.iter().zip(worlds.iter());

@@ -36,12 +36,12 @@ pub(crate) struct Work<T> {
     doer: Doer<T>,
 }
 
-/// The place where the task runs.
+/// Thread on which a task runs.
 enum Doer<T> {
     /// A separate thread.
     #[cfg(not(target_arch = "wasm32"))]
     Thread { outcome: Receiver<Result<T>>, thread: Option<JoinHandle<()>> },
-    /// The caller of [`Work::outcome`], because the browser version cannot start threads.
+    /// The thread that calls [`Work::outcome`], because the browser version cannot start threads.
     #[cfg(target_arch = "wasm32")]
     Asker(RefCell<Box<dyn FnMut() -> Option<Result<T>>>>),
 }
@@ -62,8 +62,8 @@ pub(crate) struct Reporter {
 }
 
 impl<T: Send + 'static> Work<T> {
-    /// Starts a task that needs runs from the solver's thread. The task begins when all runs have arrived through the
-    /// channels `runs`. If the user cancels earlier, the task receives only the runs that have arrived.
+    /// Starts a task that needs copies of runs from the solver's thread. The task begins when all copies have arrived
+    /// through the channels `runs`. If the user cancels earlier, the task receives only the copies that have arrived.
     pub(crate) fn start<R: Send + 'static>(
         context: &egui::Context,
         runs: Vec<Receiver<R>>,
@@ -107,7 +107,7 @@ impl<T: Send + 'static> Doer<T> {
     }
 }
 
-/// A task that begins when all runs have arrived.
+/// A task that begins when the solver's thread has sent all copies of runs that the task needs.
 struct Job<R, Act> {
     coming: Vec<Receiver<R>>,
     came: Vec<R>,
@@ -115,8 +115,8 @@ struct Job<R, Act> {
 }
 
 impl<R, Act> Job<R, Act> {
-    /// Waits up to `patience` for the next run. When all runs have arrived, performs the task and returns its result.
-    /// Returns `None` before that.
+    /// Waits up to `patience` for the next copy of a run. When all copies have arrived, performs the task and returns
+    /// its result. Returns `None` before that.
     fn advance<T>(&mut self, reporter: &Reporter, patience: Duration) -> Option<Result<T>>
     where
         Act: FnOnce(Vec<R>, &Reporter) -> Result<T>,
@@ -218,7 +218,7 @@ impl Reporter {
     }
 }
 
-/// Returns the error for a run that was closed before it was written.
+/// Returns the error for a run that the user closed before it was written to its file.
 pub(super) fn closed() -> Error {
     Error::value("run", "closed", "open until it is written")
 }

@@ -57,8 +57,8 @@ pub enum Command {
     /// Go back to the initial state with the present settings, and pause. The previous run is kept in
     /// [`LiveFrame::past`](super::LiveFrame::past).
     Reset,
-    /// Return to the earlier or undone run of this number, at the simulated time at which the user left that run, and
-    /// pause. The present run is kept.
+    /// Return to the earlier run of this number, or to the undone run (from which the user went back) of this number,
+    /// at the simulated time at which the user left that run, and pause. The present run is kept.
     Return(u64),
     /// Give this name to the run of this number, or to the present run if the number is `None`.
     Name(Option<u64>, String),

@@ -91,7 +91,7 @@ impl Curve {
         }
     }
 
-    /// Removes the rows of all steps after `step`.
+    /// Removes the rows of all steps after step number `step`.
     pub(crate) fn truncate(&mut self, step: u64) {
         if self.last().is_some_and(|row| row.step > step) {
             self.set(self.rows().filter(|row| row.step <= step).copied().collect());

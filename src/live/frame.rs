@@ -26,7 +26,8 @@ pub struct LiveFrame {
     pub worlds: Vec<WorldFrame>,
     /// The user's name for the present run; may be empty.
     pub name: String,
-    /// Summaries of the earlier runs, the newest last, followed by the undone runs, starting with the next one to redo.
+    /// Summaries of the earlier runs, the newest last, followed by the undone runs (from which the user went back),
+    /// starting with the next one to redo.
     pub past: Arc<[PastRun]>,
     /// Snapshots of the newest earlier run at the displayed simulated time, or its last stored snapshots before that
     /// time. The window draws them as outlines for comparison. The list is empty if no snapshot is stored.

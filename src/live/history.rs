@@ -405,8 +405,8 @@ impl RunHistory {
         }
     }
 
-    /// Summaries for display: the earlier runs, the newest last, then the undone runs, starting with the next one to
-    /// redo.
+    /// Summaries for display: the earlier runs, the newest last, then the undone runs (from which the user went back),
+    /// starting with the next one to redo.
     pub(super) fn told(&self) -> Arc<[PastRun]> {
         Arc::clone(&self.told)
     }

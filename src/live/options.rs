@@ -16,7 +16,7 @@ pub struct LiveOptions {
 }
 
 impl Default for LiveOptions {
-    /// No callbacks, 60 frames per second, 96 MiB of keyframes.
+    /// Returns options with callbacks that do nothing, 60 frames per second, and 96 MiB of keyframes.
     fn default() -> Self {
         Self {
             wake: Box::new(|| {}),

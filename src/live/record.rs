@@ -55,8 +55,9 @@ pub struct HandEdit {
 /// Initial number of steps between keyframes (copies of the state); it doubles when the memory for keyframes is full.
 const FIRST_SPACING: u64 = 32;
 
-/// The record of one simulation: keyframes (copies of the state) and the changes between them. Clones share the
-/// keyframes, so a clone is cheap. States between keyframes are computed from the nearest earlier keyframe.
+/// The record of one simulation: keyframes (copies of the state), and the changes of the settings and edits between
+/// them. Clones share the keyframes, so a clone is cheap. States between keyframes are computed from the nearest
+/// earlier keyframe.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WorldRecord {

@@ -96,7 +96,7 @@ enum Waiting {
 /// being loaded is to be abandoned.
 pub type Ask = Box<dyn FnMut(Vec<u8>, bool)>;
 
-/// The end of a remote run in the window's process.
+/// Endpoint of a remote run in the window's process: sends commands to the solver and receives its frames.
 pub(super) struct RemoteRun {
     ask: Ask,
     inbox: Receiver<Vec<u8>>,
@@ -199,7 +199,7 @@ impl FramePoster {
     }
 }
 
-/// The end of a remote run in the solver's process: an engine that never sleeps. `S` is the type of its sources of
+/// Endpoint of a remote run in the solver's process: an engine that never sleeps. `S` is the type of its sources of
 /// initial states.
 pub struct RemoteEngine<S> {
     engine: Engine,

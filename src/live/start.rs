@@ -82,8 +82,8 @@ impl StartSource for LiveStart {
     }
 }
 
-/// Serialises a configuration as JSON text in every format. A configuration finds its options by name, and binary
-/// formats do not store names.
+/// Serialises a configuration as JSON text within any other format. A configuration finds its options by name, and
+/// binary formats do not store names.
 pub(crate) mod as_json {
     use serde::de::Error as _;
     use serde::ser::Error as _;

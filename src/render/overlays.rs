@@ -182,7 +182,8 @@ struct Spot {
     /// Position of the arrow in the scene, m (`place`), and in pixels from the middle of the picture (`at`).
     place: DVec2,
     at: DVec2,
-    /// On a wall, the unit vector out of the body, and true if neither side of the wall is solid; `None` on a disc.
+    /// On a wall, its unit normal (out of the solid, if one side is solid), and true if neither side is solid; `None`
+    /// on a disc.
     normal: Option<(DVec2, bool)>,
 }
 

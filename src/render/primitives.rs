@@ -38,7 +38,7 @@ impl Picture {
         }
     }
 
-    /// Adds links on top of the picture. An empty list adds no batch.
+    /// Adds straight lines (links) on top of the picture. An empty list adds no batch.
     pub(crate) fn push_links(&mut self, links: Vec<LinkInstance>) {
         if !links.is_empty() {
             self.batches.push(Batch::Links(links));
@@ -115,8 +115,8 @@ impl Shade for DiscInstance {
     }
 }
 
-/// Smallest half width with which links are drawn, pixels. A link with a smaller half width is drawn with this half
-/// width in a fainter colour.
+/// Smallest half width with which lines (links) are drawn, pixels. A line with a smaller half width is drawn with this
+/// half width in a fainter colour.
 const LEAST_HALF_WIDTH_PX: f32 = 0.5;
 
 /// A link: a straight line with round ends. Lengths are in pixels; positions are relative to the middle of the picture,

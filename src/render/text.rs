@@ -33,7 +33,7 @@ pub(crate) struct TextStyle {
     pub size_px: f32,
     pub weight: Weight,
     pub colour: Colour,
-    /// Alignment of the lines of a block relative to each other.
+    /// Alignment of the lines of a text block relative to each other.
     pub lines: Align,
 }
 
@@ -154,12 +154,12 @@ fn runs(line: &str) -> Vec<(&str, Script)> {
 /// alignment of the lines of a block relative to each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Align {
-    /// The point at which the block is drawn is at its left or top edge.
+    /// The block is drawn with its left or top edge at the point.
     #[default]
     Start,
-    /// The point at which the block is drawn is in its middle.
+    /// The block is drawn with its middle at the point.
     Centre,
-    /// The point at which the block is drawn is at its right or bottom edge.
+    /// The block is drawn with its right or bottom edge at the point.
     End,
 }
 
@@ -266,7 +266,7 @@ impl TextBlock {
         self.coverage.iter().sum::<f32>() / self.coverage.len().max(1) as f32
     }
 
-    /// Returns the block turned by 90° anticlockwise, so that it reads upwards, like the label of a vertical axis.
+    /// Returns the text block turned by 90° anticlockwise, so that it reads upwards, like the label of a vertical axis.
     pub(crate) fn turned(&self) -> Self {
         let (width, height) = (self.height, self.width);
         let mut coverage = Vec::with_capacity(self.coverage.len());
@@ -279,8 +279,9 @@ impl TextBlock {
         Self { width, height, coverage, colour: self.colour }
     }
 
-    /// Draws the block at the point (`x`, `y`), in pixels from the upper left corner of the image. `across` and `down`
-    /// are the horizontal and vertical alignment of the block at this point. Parts outside the image are left out.
+    /// Draws the text block at the point (`x`, `y`), in pixels from the upper left corner of the image. `across` and
+    /// `down` are the horizontal and vertical alignment of the block at this point. Parts outside the image are left
+    /// out.
     pub(crate) fn draw(&self, image: &mut RgbaImage, x: i64, y: i64, across: Align, down: Align) {
         let left = x - i64::from(across.share(self.width));
         let top = y - i64::from(down.share(self.height));

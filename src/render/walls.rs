@@ -42,7 +42,7 @@ struct WallLines<'a> {
     links: Vec<LinkInstance>,
 }
 
-/// Returns the links of all `boundaries` that are visible in a picture of `size` pixels.
+/// Returns the lines (links) that show all `boundaries` visible in a picture of `size` pixels.
 pub(super) fn boundary_links(
     boundaries: &[Boundary],
     camera: &Camera,
@@ -84,8 +84,8 @@ impl WallLines<'_> {
         }
     }
 
-    /// Draws a surface from `from` to `to`, pixels, with the solid on its right. The distance of each hatching stroke
-    /// from the point `anchor` is a whole multiple of the spacing.
+    /// Draws a surface from `from` to `to`, pixels, with the solid on its right. Along the surface, the distance of
+    /// each hatching stroke from the point `anchor` is a whole multiple of the spacing.
     fn solid_edge(&mut self, anchor: DVec2, from: DVec2, to: DVec2) {
         let Some([start, end]) = clip(from, to, self.reach) else { return };
         self.link(start, end, LINE_HALF_WIDTH_EM);

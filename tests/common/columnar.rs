@@ -2,7 +2,7 @@
 
 #![allow(dead_code, unused_imports, reason = "every test binary uses its own part of this")]
 
-/// A structure (list of numbered fields) in the compact protocol of Thrift, the encoding of Parquet's metadata.
+/// A structure (list of numbered fields) in Thrift's compact protocol, the encoding of Parquet's metadata.
 #[derive(Default)]
 struct Fields {
     bytes: Vec<u8>,
@@ -65,29 +65,29 @@ impl Fields {
 }
 
 /// Numbers that [`Columnar::bytes`] writes into a Parquet file of three columns (x, y, radius). The default numbers
-/// make a correct file.
+/// make a correct file; with other numbers the metadata are wrong.
 #[derive(Clone, Debug)]
 pub struct Columnar {
-    /// Number of rows that the file claims to have.
+    /// Number of rows of the file according to its metadata.
     pub rows: i64,
-    /// Number of rows that its only row group claims to have.
+    /// Number of rows of the file's only row group according to the metadata.
     pub group_rows: i64,
-    /// Number of values that the data page of each column claims to have.
+    /// Number of values in the data page of each column according to the metadata.
     pub values: i64,
-    /// Number of columns that the schema claims to have.
+    /// Number of columns according to the schema.
     pub children: i64,
     /// Number of nested groups in the schema around the three columns.
     pub depth: usize,
     /// Compression code: 0 is none, 1 is Snappy.
     pub codec: i64,
-    /// Encoding of the values: 0 is plain, 8 is an index into a dictionary (which is missing by default). Pages in the
-    /// encodings 6 and 7 (delta encodings) contain their own number of values.
+    /// Code for the encoding of the values: 0 is plain, 8 is an index into a dictionary (which is missing by default).
+    /// Pages in the encodings 6 and 7 (delta encodings) contain their own number of values.
     pub encoding: i64,
-    /// Claimed length of an uncompressed page, bytes.
+    /// Length of an uncompressed page according to the metadata, bytes.
     pub unpacked: i64,
-    /// Claimed length of a page in the file, bytes. `None` writes the true length.
+    /// Length of a page in the file according to the metadata, bytes. `None` stands for the true length.
     pub packed: Option<i64>,
-    /// Number of values of a dictionary page before the data page. `None` writes no dictionary page.
+    /// Number of values in the dictionary page before the data page. With `None` the file has no dictionary page.
     pub dictionary: Option<i64>,
     /// Content of each page, bytes.
     pub page: Vec<u8>,

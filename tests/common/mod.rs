@@ -28,7 +28,8 @@ pub const SMOOTH: Physics = Physics { axes: 2, friction: false, rotation: false,
 /// Motion in the plane with friction and without rotation.
 pub const UNTURNING: Physics = Physics { axes: 2, friction: true, rotation: false, cohesion: true };
 
-/// Returns parameters with these four values and the default friction cone, which is the shifted cone.
+/// Returns parameters with this Bond number, time step (s), restitution and friction coefficient, and the default
+/// friction cone, which is the shifted cone.
 pub fn parameters(bond: f64, time_step_secs: f64, restitution: f64, friction: f64) -> Parameters {
     Parameters { bond, time_step_secs, restitution, friction, ..Parameters::default() }
 }
@@ -63,7 +64,8 @@ pub fn weightless(grain: Grain) -> Grain {
     Grain { feels_gravity: false, ..grain }
 }
 
-/// Returns settings that solve each step by Gauss–Seidel to a residual of 1e-12, which is close to rounding errors.
+/// Returns solver settings that solve each step by Gauss–Seidel to a residual of 1e-12, which is close to rounding
+/// errors.
 pub fn tight() -> SolverSettings {
     to_residual(1e-12)
 }
@@ -132,8 +134,8 @@ pub fn every_way() -> Vec<(Stepper, Method)> {
     Stepper::ALL.iter().flat_map(of).collect()
 }
 
-/// Returns the combinations of [`every_way`] without the stepper `avbd`. In these combinations only impulses move the
-/// grains, so momentum and energy are in balance.
+/// Returns the combinations of [`every_way`] without the stepper `avbd`. In these combinations grains are moved only by
+/// impulses, so momentum and energy are in balance.
 pub fn every_way_that_balances() -> Vec<(Stepper, Method)> {
     every_way().into_iter().filter(|way| way.0 != Stepper::Avbd).collect()
 }
@@ -142,8 +144,8 @@ pub fn start(scene: &Scene) -> Simulation {
     scene.simulation().expect("a proper scene")
 }
 
-/// Returns the bit patterns of all positions, angles and velocities. Bit patterns differ for 0 and −0 and are equal for
-/// equal NaN; `==` treats both cases the other way round.
+/// Returns the bit patterns of the positions, angles and velocities of all grains. Bit patterns differ for 0 and −0 and
+/// are equal for equal NaN; `==` treats both cases the other way round.
 pub fn bits(simulation: &Simulation) -> Vec<[u64; 6]> {
     let grains = &simulation.world().grains;
     let of = |k: usize| {
@@ -154,8 +156,8 @@ pub fn bits(simulation: &Simulation) -> Vec<[u64; 6]> {
     (0..grains.len()).map(of).collect()
 }
 
-/// Returns the estimated velocity error of the first contact problem of the next step, m/s. The error refers to the
-/// friction model that is solved, and its measure is the same as in the stop test of the solver.
+/// Solves the first contact problem of the next step and returns its estimated velocity error, m/s. The error refers to
+/// the friction model that is solved, and its measure is the same as in the stop test of the solver.
 pub fn error_against_model(simulation: &Simulation) -> f64 {
     struct OfModel(SolverSettings);
 
@@ -197,7 +199,7 @@ pub fn random(seed: u64) -> Pcg64 {
 }
 
 /// Returns a scene with `count` discs pressed together on a lattice over a rough base, so that about half of all
-/// neighbours overlap. Velocities, and angular velocities times the radius, are about `speed` (m/s).
+/// neighbours overlap. Velocities, and angular velocities times the radius, are of the size `speed` (m/s).
 pub fn pressed_pile(count: usize, speed: f64, seed: u64, parameters: Parameters) -> Scene {
     let mut random = random(seed);
     let diameter = 5e-3;
@@ -224,10 +226,10 @@ pub fn pressed_pile(count: usize, speed: f64, seed: u64, parameters: Parameters)
     Scene { fixed_discs: rough_base(columns as f64 + 2.0, diameter), ..under_g(parameters, grains) }
 }
 
-/// Returns a scene with logs at rest and three discs to the side: a spinning disc that falls on the floor, a disc that
-/// overlaps the floor, and a disc with a stretched bond to the floor that does not break. The three discs touch no
-/// other grain. With friction, contacts between several grains can have several solutions, and rounding would choose
-/// between them.
+/// Returns a scene with logs at rest and, apart from them, three discs: a spinning disc that falls on the floor, a disc
+/// that overlaps the floor, and a disc with a stretched bond to the floor that does not break. The three discs touch no
+/// other grain, because with friction contacts between several grains can have several solutions, and rounding would
+/// choose between them.
 pub fn at_rest_and_falling() -> Scene {
     let mut scene = logs(1.0);
     let aside = |x: f64, y: f64| Grain::at_rest(scene.mean_diameter * DVec2::new(x, y), 0.005);
@@ -285,7 +287,7 @@ pub fn after(scene: &Scene, steps: usize) -> Simulation {
     run
 }
 
-/// Checks that Slump refuses a scene. Returns the error message.
+/// Checks that Slump refuses to simulate a scene. Returns the error message.
 #[track_caller]
 pub fn refused(scene: &Scene) -> String {
     let said = scene.simulation().map(|_| ()).expect_err("a scene with a fault").to_string();
@@ -293,7 +295,8 @@ pub fn refused(scene: &Scene) -> String {
     said
 }
 
-/// Returns a copy of the scene for each combination of stepper and method, together with the name of the combination.
+/// Returns a copy of the scene for each of these combinations of stepper and method, together with the name of the
+/// combination.
 pub fn in_each_way(
     scene: &Scene,
     ways: Vec<(Stepper, Method)>,
@@ -306,7 +309,7 @@ pub fn in_each_way(
 }
 
 /// Takes one step. Returns the observables of the step, the change of kinetic energy that the works do not explain (J),
-/// and the sum of the magnitudes of all works and of both kinetic energies (J).
+/// and the sum of the magnitudes of all works and of the kinetic energies before and after the step (J).
 pub fn balance(run: &mut Simulation) -> (Observables, f64, f64) {
     let before = run.observables().kinetic_energy;
     let after = *run.step().expect("a finite state");
@@ -336,7 +339,7 @@ pub trait Look {
         &self.grains().velocities
     }
 
-    /// Returns the highest speed of a grain, m/s.
+    /// Returns the speed of the fastest grain, m/s.
     fn fastest(&self) -> f64 {
         self.velocities().iter().map(|velocity| velocity.length()).fold(0.0, f64::max)
     }
@@ -352,10 +355,10 @@ pub fn farthest(one: &[DVec2], other: &[DVec2]) -> f64 {
     one.iter().zip(other).map(|(one, other)| one.distance(*other)).fold(0.0, f64::max)
 }
 
-/// Steppers that do not solve one contact problem for the whole step and that move the grains by impulses only.
+/// Steppers that do not solve one contact problem for the whole step, but move the grains by impulses only.
 pub const SCHEMES: [Stepper; 2] = [Stepper::TgsSoft, Stepper::Dem];
 
-/// [`SCHEMES`] and the stepper `avbd`, which moves grains slightly further than the impulses would.
+/// The steppers [`SCHEMES`] and `avbd`, which moves grains slightly further than the impulses would.
 pub const ALL_SCHEMES: [Stepper; 3] = [Stepper::TgsSoft, Stepper::Avbd, Stepper::Dem];
 
 pub fn by(stepper: Stepper, substeps: u32, mut scene: Scene) -> Scene {
@@ -363,8 +366,8 @@ pub fn by(stepper: Stepper, substeps: u32, mut scene: Scene) -> Scene {
     Scene { stepper, ..scene }
 }
 
-/// Returns a scene of two unequal discs shortly before they collide. Unless the motion is along the x axis only, the
-/// line between the centres is tilted against both axes.
+/// Returns a scene of two unequal discs shortly before they collide. In two dimensions, the line between the centres is
+/// tilted against both axes.
 pub fn meeting(physics: Physics, restitution: f64, dt: f64) -> Scene {
     let direction = if physics.axes == 1 { DVec2::X } else { DVec2::new(0.6, 0.8) };
     let grains = [(0.0, 0.15, 0.7), (0.25 + 1e-9, 0.1, -0.3)].map(|(place, radius, speed)| Grain {
@@ -390,7 +393,7 @@ pub fn effective_mass(simulation: &Simulation) -> f64 {
     1.0 / (1.0 / masses[0] + 1.0 / masses[1])
 }
 
-/// Panics unless the message `said` is equal to `expected`. If `expected` ends with an ellipsis, the message only has
+/// Panics unless the error message `said` is equal to `expected`. If `expected` ends with an ellipsis, `said` only has
 /// to begin with the text before the ellipsis.
 #[track_caller]
 pub fn assert_said(said: &str, expected: &str) {
@@ -400,10 +403,10 @@ pub fn assert_said(said: &str, expected: &str) {
     }
 }
 
-/// An expected error message, and a function that makes a good scene wrong so that this message is due.
+/// An expected error message, and a function that changes a valid scene so that Slump must refuse it with this message.
 pub type Refusal<'a> = (&'a str, &'a dyn Fn(&mut Scene));
 
-/// Applies each change to a copy of a good scene and checks the error message of the changed scene.
+/// Applies each of these changes to a copy of a valid scene and checks the error message for the changed scene.
 #[track_caller]
 pub fn refuses(good: &Scene, cases: &[Refusal]) {
     for (expected, spoil) in cases {
@@ -438,7 +441,7 @@ pub fn border(mut low: f64, mut high: f64, halvings: u32, holds: impl Fn(f64) ->
     low
 }
 
-/// Returns all pairs of an item of the first and an item of the second collection.
+/// Returns all pairs of an item of the first collection and an item of the second collection.
 pub fn pairs<A: Clone, B: Clone>(
     some: impl IntoIterator<Item = A>,
     others: impl IntoIterator<Item = B>,
@@ -448,7 +451,7 @@ pub fn pairs<A: Clone, B: Clone>(
     some.into_iter().flat_map(with_others).collect()
 }
 
-/// Returns all triples of an item of the first, second and third collection.
+/// Returns all triples of an item of each of three collections.
 pub fn triples<A: Clone, B: Clone, C: Clone>(
     some: impl IntoIterator<Item = A>,
     others: impl IntoIterator<Item = B>,

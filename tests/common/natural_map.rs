@@ -1,12 +1,12 @@
-//! An independent check of a solved step. It computes the natural map from positions, velocities and impulses by the
-//! equations of the documentation, and shares no arithmetic with the solver.
+//! An independent check of a solved step. It computes the natural map (the error of the contact laws) from positions,
+//! velocities and impulses by the equations of the documentation, and shares no arithmetic with the solver.
 
 use glam::DVec2;
 use slump::sim::Simulation;
 use slump::world::{FrictionCone, Grains, Motion, MotionCourse, Parameters};
 
-/// Contact quantities that the contact law needs, computed only from positions and velocities of the bodies. Masses are
-/// in kg, the cohesion impulse in N·s.
+/// Quantities of one contact that the contact law needs, computed only from positions and velocities of the bodies.
+/// Masses are in kg, the cohesion impulse in N·s.
 pub struct Judged {
     pub normal_mass: f64,
     pub tangential_mass: f64,
@@ -17,22 +17,22 @@ pub struct Judged {
     pub after: [f64; 2],
     /// Relative velocity (v_n, v_t) at the end of the step if no contact impulse acted, m/s.
     pub free: [f64; 2],
-    /// Term that the contact law adds to the normal velocity v_n at the end of the step, m/s: ρ times the initial v_n
-    /// or, for an open gap within the touch tolerance, the speed that closes the gap in one step.
+    /// Velocity that the contact law adds to the normal velocity v_n at the end of the step, m/s: the restitution ρ
+    /// times the initial v_n or, for an open gap within the touch tolerance, the speed that closes the gap in one step.
     pub rebound: f64,
 }
 
-/// Largest gap at which grains already push each other, in mean diameters; it allows for rounding of positions. Half
-/// the touch tolerance is used instead if it is smaller.
+/// Largest gap at which grains already push each other, in mean diameters; it allows for rounding of positions. If half
+/// the touch tolerance is smaller, that gap is used instead.
 const ROUNDING: f64 = 1e-4;
 
-/// Velocities and angular velocities of the grains.
+/// Velocities (m/s) and angular velocities (rad/s) of the grains.
 type Velocities = (Vec<DVec2>, Vec<f64>);
 
 const NONE: (DVec2, f64) = (DVec2::ZERO, 0.0);
 
-/// Returns the velocity of a fixed body and the speed of its surface along itself, m/s. Supports only half-spaces and
-/// straight motions.
+/// Returns the velocity of a body that is not a grain, and the speed of its surface relative to the body, m/s. Supports
+/// only half-spaces and straight motions.
 fn wall_velocity(simulation: &Simulation, other: u32) -> (DVec2, f64) {
     let world = simulation.world();
     let body = other as usize - world.grains.len();
@@ -102,8 +102,9 @@ pub fn judge(simulation: &Simulation, before: &Grains) -> Vec<Judged> {
     .collect()
 }
 
-/// Returns the norms of the natural map and of its scale, whose quotient is the residual, and the largest distance of
-/// an impulse outside its friction cone, all in N·s.
+/// Returns three numbers, all in N·s: the norm of the natural map, the norm by which it is divided to give the
+/// residual, and the largest distance of an impulse outside its friction cone. `before` contains the grains before the
+/// step.
 pub fn natural_map(simulation: &Simulation, before: &Grains) -> (f64, f64, f64) {
     let Parameters { friction, cone, .. } = *simulation.parameters();
     let (mut error, mut scale, mut outside) = (0.0, 0.0, 0f64);

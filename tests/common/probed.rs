@@ -10,7 +10,7 @@ pub struct Probed {
     pub size: [u64; 2],
     pub rate_hz: String,
     pub pictures: usize,
-    /// Numbers of the key frames; the first frame has number 1.
+    /// Numbers of the key frames of the video; the first frame has number 1.
     pub key_pictures: Vec<usize>,
     pub comment: String,
 }

@@ -9,12 +9,12 @@ pub use std::time::{Duration, Instant};
 pub use serde_json::Value;
 pub use tempfile::TempDir;
 
-/// Time limit for waiting. It is longer than any wait in a test, even on a busy machine.
+/// Time limit for waiting for the program. It is longer than any wait in a test, even on a busy machine.
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Returns a command that starts Slump: the program named by the environment variable `SLUMP_PROGRAM` or, by default,
-/// the program that was built with the tests. With the variable, a program with fewer features is tested without
-/// rebuilding the tests. `line` has the first arguments, separated by blanks.
+/// Returns a command that starts Slump. `line` has its first arguments, separated by blanks. If the environment
+/// variable `SLUMP_PROGRAM` names a program, this program is started, so that a program with fewer features can be
+/// tested without rebuilding the tests. By default, the program that was built with the tests is started.
 pub fn slump(line: &str) -> Command {
     let built = || assert_cmd::cargo::cargo_bin!("slump").to_path_buf();
     let mut command =
@@ -25,8 +25,9 @@ pub fn slump(line: &str) -> Command {
     command
 }
 
-/// Gives a child process the signal handling of a terminal, even if the tests were started with ignored signals (by
-/// `nohup` or as a background job of a script). Programs inherit ignored signals, and Slump does not change them.
+/// Gives a child process the signal handling of a process that is started in a terminal, even if the tests were started
+/// with ignored signals (by `nohup` or as a background job of a script). Programs inherit ignored signals, and Slump
+/// does not change them.
 #[cfg(unix)]
 fn heed_signals(command: &mut Command) {
     let default = || {
@@ -98,7 +99,7 @@ pub fn succeed(command: &mut Command) -> String {
     said
 }
 
-/// Runs a program and checks that its exit code is 2. Returns its stderr.
+/// Runs a program and checks that its exit code is 2. Returns the text that it wrote to stderr.
 #[track_caller]
 pub fn failure(command: &mut Command) -> String {
     let output = run(command);
@@ -123,7 +124,7 @@ pub fn wait_for(what: &str, mut is_there: impl FnMut() -> bool) {
     }
 }
 
-/// Sends a signal to a process. A negative number means a process group.
+/// Sends a signal to a process. `signal` is its name, such as "TERM"; a negative `process` means a process group.
 pub fn send(signal: &str, process: i64) {
     let number = match signal {
         "HUP" => libc::SIGHUP,

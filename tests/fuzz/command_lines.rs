@@ -1,4 +1,4 @@
-//! Tries whole command lines: starts the program, and checks its messages and files.
+//! Fuzzing of whole command lines: starts the program with random arguments, and checks its messages and files.
 //!
 //! An input is a text with one argument per line. After an empty line it contains a scene file. In the arguments,
 //! `FILE` stands for the path of this file, and `OUT` for an output folder.
@@ -14,13 +14,14 @@ use super::parsers::{NUMBERS, WORDS, is_legible, one_of};
 use super::scenes::scene_text;
 use crate::program::*;
 
-/// Time limit for a command, shorter than the time limit for an input.
+/// Time limit for a command. It is shorter than the time limit for a whole input.
 const SLOWEST: Duration = Duration::from_secs(180);
 
-/// Values that must be refused. They are tried instead of random values for options that can make a run long.
+/// Values that Slump must refuse. For options whose large values make a run long, these values are tried in place of
+/// random values.
 const REFUSED: &str = "-1 nan inf -inf 1e300 -1e-300 much 0x10";
 
-/// Options with meaningful values.
+/// Options of the program, each with meaningful values.
 const OPTIONS: [&str; 23] = [
     "--stepper moreau range tgs-soft avbd dem",
     "--bond 0 1 20 1000",
@@ -46,7 +47,7 @@ const OPTIONS: [&str; 23] = [
     "--theme light dark",
     "--start 6 6.5 8",
 ];
-/// Options that accept large values, with which a run takes a long time.
+/// Options, each with meaningful values, that also allow very large values, with which a run takes a long time.
 const LONG: [&str; 6] = [
     "--substeps 0 1 7",
     "--stiffness 0 10 1e4",
@@ -58,7 +59,8 @@ const LONG: [&str; 6] = [
 const SCENES: &str =
     "pile cradle collision mass-ratio squeeze moving-walls thin-wall bounce newtons-cradle";
 
-/// Returns a good value or, in rare cases, a random or a wrong value.
+/// Returns one of the meaningful values in `good` or, in rare cases, a random or a wrong value. `long` is true if large
+/// values make a run long.
 fn value(u: &mut Unstructured<'_>, good: &str, long: bool) -> Result<String> {
     let line = match (u.ratio(19, 20)?, long) {
         (true, _) => good,
@@ -68,7 +70,7 @@ fn value(u: &mut Unstructured<'_>, good: &str, long: bool) -> Result<String> {
     Ok(one_of(u, line)?.replace('\0', "0"))
 }
 
-/// Adds arguments for the scene and the duration. Returns true if the scene is in a file.
+/// Adds arguments that choose the scene, the time step and the duration. Returns true if the scene is in a file.
 fn origin(u: &mut Unstructured<'_>, arguments: &mut Vec<String>) -> Result<bool> {
     let from_file = u.ratio(1, 3)?;
     if from_file {
@@ -124,7 +126,8 @@ fn command_line(u: &mut Unstructured<'_>) -> Result<String> {
     Ok(format!("{}\n\n{file}", arguments.join("\n")))
 }
 
-/// Checks the properties that hold for all command lines. Returns true if the program accepted the command.
+/// Runs the program with an input and checks the properties that all runs must have. Returns true if the command
+/// succeeded.
 fn check(input: &str) -> bool {
     let (arguments, file) = input.split_once("\n\n").expect("arguments, and a file or none");
     let folder = folder();
@@ -166,7 +169,7 @@ fn check(input: &str) -> bool {
     code == 0
 }
 
-/// Checks the outputs of commands that draw nothing: they can be read back, or do not exist.
+/// Checks the outputs of commands that draw no pictures: an output can be read back, or does not exist.
 fn check_other(arguments: &[String], code: i32, stdout: &[u8], out: &Path) {
     if arguments.first().is_some_and(|word| word == "scene") && code == 0 {
         let path = out.join("scene.toml");
@@ -186,7 +189,8 @@ fn command_lines_and_what_they_leave() {
     target.fuzz(&target.corpus(), command_line, |text, _| check(text));
 }
 
-/// Checks the folder of a run that ended by itself with the exit code `code` and wrote `stderr`.
+/// Checks that table, manifest and pictures in the folder of a run agree. The run was not killed; it ended with the
+/// exit code `code` and wrote `stderr`.
 pub fn check_books(folder: &Path, code: i32, stderr: &str) {
     let rows = rows_of(&folder.join("observables.csv"));
     let manifest = manifest(folder);
@@ -211,7 +215,7 @@ pub fn check_books(folder: &Path, code: i32, stderr: &str) {
     pictures(folder, &manifest, &rows);
 }
 
-/// Checks that the manifest has an alarm for each problem in the table, and that stderr reports each alarm.
+/// Checks that the manifest has a warning for each problem in the table, and that stderr contains each warning.
 fn alarms(run: &Value, rows: &[Observables], stderr: &str) {
     let alarms = run["alarms"].as_array().expect("a list");
     let has = |kind: &str| alarms.iter().any(|alarm| alarm["kind"] == kind);

@@ -1,5 +1,5 @@
-//! Tries carefully made hostile files: Parquet files with a wrong structure, saved runs with changed content and a
-//! correct checksum, and links.
+//! Fuzzing with hostile files: Parquet files with a wrong structure, saved runs with changed content and a correct
+//! checksum, and links.
 
 use slump::config::SavedState;
 use slump::data::read_grains;
@@ -11,7 +11,7 @@ use super::parsers::{NUMBERS, changed, check, is_legible, one_of};
 use crate::columnar::Columnar;
 use crate::program::*;
 
-/// Whole numbers that occur in headers, and impossible ones.
+/// Whole numbers that can occur in the metadata of a Parquet file, and impossible ones.
 const COUNTS: [i64; 12] = [0, 1, 2, 3, 5, 8, 16, 1 << 20, 1 << 28, i32::MAX as i64, i64::MAX, -1];
 
 #[test]
@@ -52,7 +52,8 @@ fn columnar_files_by_structure() {
     );
 }
 
-/// Returns a saved run with this content and a correct checksum.
+/// Returns a saved run with this content and a correct checksum. `whole` is a valid saved run from which the first line
+/// is taken.
 fn sealed(whole: &[u8], content: &[u8]) -> Vec<u8> {
     let end = whole.iter().position(|&byte| byte == b'\n').expect("a first line");
     let line = std::str::from_utf8(&whole[..end]).expect("UTF-8");

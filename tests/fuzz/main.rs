@@ -1,11 +1,11 @@
 //! Fuzzing with random hostile input: nearly correct texts for every parser, absurd scenes with every stepper, method
 //! and remedy, and whole command lines. Nothing may panic, hang or fail silently.
 //!
-//! Each run tries the same inputs. A target is one kind of input, and it defines the number of its inputs.
-//! `SLUMP_FUZZ_TIMES` multiplies this number; `SLUMP_FUZZ_SECS` tries inputs for so many seconds per target instead.
-//! Another `SLUMP_FUZZ_SEED` gives other inputs. `ARBTEST_SEED` gives only the input with the seed that a failure
-//! message names. A failing input stays in a file that the failure message names. Move this file to the folder of its
-//! target in `corpus/` and keep it there: these files are tried first.
+//! Each run of these tests tries the same inputs. A target is one kind of input, and it defines the number of its
+//! inputs. `SLUMP_FUZZ_TIMES` multiplies this number; `SLUMP_FUZZ_SECS` sets instead for how many seconds each target
+//! tries inputs. Another `SLUMP_FUZZ_SEED` gives other inputs. `ARBTEST_SEED` gives only the input with the seed that a
+//! failure message names. A failing input stays in a file that the failure message names. Move this file to the folder
+//! of its target in `corpus/` and keep it there: these files are tried first.
 
 #[path = "../common/columnar.rs"]
 mod columnar;
@@ -23,21 +23,21 @@ use arbitrary::Unstructured;
 use program::*;
 use trial::Trial;
 
-/// Number of random bytes from which an input is made. No input needs more.
+/// Number of random bytes from which an input is made. No kind of input needs more.
 const DRAWN_FROM: u64 = 1 << 16;
 
 #[derive(Clone, Copy)]
 struct Target {
     name: &'static str,
     ending: &'static str,
-    /// Number of inputs in an ordinary test run, which takes about a second.
+    /// Number of random inputs in an ordinary run of the tests, which takes about a second per target.
     inputs: u64,
 }
 
 impl Target {
-    /// Tries the inputs in `kept` and then inputs that `draw` makes of random bytes, as often as requested, and prints
-    /// their number. `check` gets each input as a text and as a file, and returns true if the program accepted the
-    /// input.
+    /// Tries the inputs in `kept` and then random inputs, which `draw` makes of random bytes, and prints the number of
+    /// inputs. `check` gets each input as a text and as the path of a file with this text, and returns true if the
+    /// program accepted the input.
     fn fuzz(
         self,
         kept: &[String],
@@ -69,7 +69,7 @@ impl Target {
         println!("{}: {inputs} inputs, {} of them kept, {taken} taken", self.name, kept.len());
     }
 
-    /// Returns all stored inputs: those that have failed at some time, and known hostile inputs.
+    /// Returns all stored inputs of this target: inputs that have failed in the past, and known hostile inputs.
     fn corpus(self) -> Vec<String> {
         let ours = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/corpus");
         let folder = ours.join(self.name);
@@ -82,7 +82,8 @@ fn asked_for(variable: &str) -> Option<u64> {
     std::env::var(variable).ok().map(number)
 }
 
-/// Returns the seed of an input of a run: random bits in the upper half, and the number of bytes in the lower half.
+/// Returns the seed of input `number` of a run of the tests: random bits in the upper half, and the number of random
+/// bytes in the lower half.
 fn seed(run: u64, number: u64) -> u64 {
     let hash = blake3::hash(&[run.to_le_bytes(), number.to_le_bytes()].concat());
     let random = hash.as_bytes().iter().take(4).fold(0, |seed, &byte| seed << 8 | u64::from(byte));

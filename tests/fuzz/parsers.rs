@@ -1,4 +1,4 @@
-//! Tries every parser of users' files, and the first use of each file.
+//! Fuzzing of every parser of users' files, and of the first use of each file.
 
 use arbitrary::Unstructured;
 use slump::config::{Config, SceneSource, scene_to_toml};
@@ -17,7 +17,7 @@ const LONGEST: usize = 3_200;
 /// Longest allowed word in an error message, characters.
 const LONGEST_WORD: usize = 150;
 
-/// Returns true if a line can be shown on any terminal: no character moves the cursor or changes the direction of
+/// Returns true if a line can be displayed on any terminal: no character moves the cursor or changes the direction of
 /// writing, and words that are not paths are not too long.
 pub fn is_legible(line: &str) -> bool {
     let moves = |c: char| c.is_control() || ('\u{2028}'..='\u{202e}').contains(&c);
@@ -25,7 +25,7 @@ pub fn is_legible(line: &str) -> bool {
     !line.contains(moves) && !line.split(' ').any(goes_on)
 }
 
-/// Checks that an error message is one sentence that can be shown on any terminal and says which values are allowed.
+/// Checks that an error message can be displayed on any terminal, is not too long, and says which values are allowed.
 pub fn check(refusal: &Error) {
     let said = refusal.to_string();
     assert!(is_legible(&said), "illegible: {said:?}");
@@ -33,7 +33,7 @@ pub fn check(refusal: &Error) {
     assert!(said.contains("must "), "{said:?} does not say what is allowed");
 }
 
-/// Tries the given texts, all texts that have failed at some time, and slightly changed texts.
+/// Tries the given texts, all texts that have ever failed, and slightly changed versions of the given texts.
 fn fuzz_texts<T>(target: Target, texts: Vec<String>, parse: impl Fn(&str, &Path) -> Result<T>) {
     let kept = [texts.clone(), target.corpus()].concat();
     let check = |text: &str, path: &Path| parse(text, path).inspect_err(check).is_ok();
@@ -87,7 +87,7 @@ fn studies() {
     fuzz_texts(target, texts, |text, path| Study::parse(text, path, true));
 }
 
-/// Reads a contact problem and solves it by a few sweeps, with a method that depends only on the length of the text.
+/// Reads a contact problem and solves it by a few sweeps. The length of the text decides the solver method.
 fn solve_briefly(text: &str, _: &Path) -> Result<()> {
     let problem = ProblemFile::parse(text)?;
     let settings = SolverSettings {
@@ -134,19 +134,19 @@ fn texts_of_siconos() {
     fuzz_texts(target, vec![one, two], solve_briefly);
 }
 
-/// Numbers that cause errors in careless code.
+/// Numbers that often cause errors in programs.
 pub const NUMBERS: &str = "0 -0 1 -1 2 1e-300 -1e-300 1e300 1e308 1e309 nan inf -inf 1e17 1e9 4294967296 \
     18446744073709551616 -9223372036854775809 0.1 1e-17 1000000 NaN 0x10 1e18";
-/// Words that occur in files, and words that do not.
+/// Words that occur in files of Slump, and words that do not.
 pub const WORDS: &str = "true false null \"\" \"nsgs\" \"range\" \"moreau\" \"dem\" [] {} [[]] \"piston\" \
     \"segment\" \"half-space\" \u{1b}[31m \u{0} \u{202e} ö , =";
 
-/// Returns one of the words in a line.
+/// Returns a randomly chosen word of a line.
 pub fn one_of<'a>(u: &mut Unstructured<'_>, line: &'a str) -> arbitrary::Result<&'a str> {
     Ok(*u.choose(&line.split(' ').collect::<Vec<_>>())?)
 }
 
-/// Returns one of the texts with a few changes, usually one.
+/// Returns one of the texts with one or, more rarely, several random changes.
 pub fn changed(u: &mut Unstructured<'_>, texts: &[String]) -> arbitrary::Result<String> {
     let mut text = u.choose(texts)?.clone();
     for _ in 0..*u.choose(&[1, 1, 1, 1, 2, 3, 6])? {
@@ -216,7 +216,7 @@ fn with_bit_flipped(u: &mut Unstructured<'_>, line: String) -> arbitrary::Result
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// Returns the start and end of each word or number in a line.
+/// Returns the positions at which each word or number in a line starts and ends.
 fn tokens(line: &str) -> Vec<(usize, usize)> {
     let is_part = |c: char| c.is_alphanumeric() || "._-+\"".contains(c);
     let mut ends = Vec::new();
@@ -234,7 +234,7 @@ fn tokens(line: &str) -> Vec<(usize, usize)> {
     ends
 }
 
-/// Returns the line with one of its words or numbers replaced.
+/// Returns the line with one of its words or numbers, chosen at random, replaced by `token`.
 fn with_token(u: &mut Unstructured<'_>, line: &str, token: &str) -> arbitrary::Result<String> {
     let tokens = tokens(line);
     if tokens.is_empty() {

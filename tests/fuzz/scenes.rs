@@ -1,4 +1,5 @@
-//! Runs absurd scenes with every stepper, method and remedy, for fifty steps.
+//! Fuzzing of the simulation: runs absurd scenes with every stepper, solver method and remedy (optional correction),
+//! for fifty steps.
 
 use arbitrary::{Result, Unstructured};
 use glam::DVec2;
@@ -152,7 +153,7 @@ fn scene(u: &mut Unstructured<'_>, size: f64) -> Result<Scene> {
     Ok(scene)
 }
 
-/// Returns a motion of the first boundary by a force.
+/// Returns a motion of the first boundary that a random force drives.
 fn driven(u: &mut Unstructured<'_>, size: f64) -> Result<Motion> {
     let drive = Drive {
         direction: point(u, size)?,
@@ -166,7 +167,7 @@ fn driven(u: &mut Unstructured<'_>, size: f64) -> Result<Motion> {
     Ok(Motion { boundaries: vec![0], drive: Some(drive), ..Motion::default() })
 }
 
-/// Returns a motion of all fixed bodies that can move, on any kind of course.
+/// Returns a random prescribed motion for all bodies that are not grains and may move.
 fn motion(u: &mut Unstructured<'_>, size: f64, scene: &Scene) -> Result<Motion> {
     let is_free = |index: &usize| !matches!(scene.boundaries[*index], Boundary::Piston { .. });
     let (pivot, travel) = (point(u, size)?, *u.choose(&[None, None, Some(0.0), Some(0.3)])?);
@@ -195,7 +196,7 @@ fn motion(u: &mut Unstructured<'_>, size: f64, scene: &Scene) -> Result<Motion> 
     })
 }
 
-/// Returns the scene in one dimension, on the x axis.
+/// Returns a version of the scene in which all bodies move along the x axis only.
 fn on_line(mut scene: Scene) -> Scene {
     scene.physics = Physics { axes: 1, friction: false, rotation: false, ..scene.physics };
     for grain in &mut scene.grains {
@@ -214,7 +215,7 @@ fn on_line(mut scene: Scene) -> Scene {
     scene
 }
 
-/// Returns a box around the whole scene.
+/// Returns a closed box around the whole scene as a boundary. `size` is the size of the scene, m.
 fn closed_box(size: f64) -> Boundary {
     let half = 1.5 * size;
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]];
@@ -252,9 +253,9 @@ fn random_scenes_with_everything() {
 }
 
 const STEPS: u32 = 50;
-/// Depth beyond a wall at which Slump may not have counted a grain as lost yet, in radii of the grain.
+/// Depth beyond a wall up to which a grain need not count as lost yet, in radii of the grain.
 const UNSEEN_IN_RADII: f64 = 0.3;
-/// Distance at which a grain must count as lost, in sides of the box around the initial scene.
+/// Distance from the initial scene beyond which a grain must count as lost, in sides of the box around that scene.
 const FAR_IN_SIDES: f64 = 4.0;
 
 pub fn run(scene: &Scene, mut simulation: Simulation) {
@@ -291,8 +292,8 @@ fn has(simulation: &Simulation, kind: AlarmKind) -> bool {
     simulation.alarms().iter().any(|alarm| alarm.kind == kind)
 }
 
-/// Checks that positions and velocities are finite, and that all measured numbers are finite unless there is an alarm.
-/// The residual of an unsolved step may have any value.
+/// Checks that positions and velocities are finite, and that all measured numbers are finite unless Slump has raised a
+/// warning. The residual of an unsolved step may have any value.
 fn finite(simulation: &Simulation, stepper: Stepper, step: &Observables) {
     let grains = &simulation.world().grains;
     assert!(grains.positions.iter().chain(&grains.velocities).all(|v| v.is_finite()));
@@ -315,8 +316,8 @@ fn finite(simulation: &Simulation, stepper: Stepper, step: &Observables) {
     assert!(all.into_iter().all(f64::is_finite) || !simulation.alarms().is_empty(), "{step:?}");
 }
 
-/// Checks that a step that is reported as solved has a residual within its tolerance, for the friction model that was
-/// solved.
+/// Checks that a step that is reported as solved has a residual within its tolerance. The residual refers to the
+/// friction model that was solved.
 fn solved(scene: &Scene, step: &Observables) {
     assert!(!(step.converged && step.stalled), "{step:?}");
     let to_residual = scene.solver.stop == StopTest::Residual && scene.stepper.uses_method();
@@ -327,7 +328,8 @@ fn solved(scene: &Scene, step: &Observables) {
     }
 }
 
-/// Returns true if a grain is at a position that no grain can reach. Always false if fixed bodies move.
+/// Returns true if a grain is at a position that it can only reach through a wall or by leaving the scene. Always false
+/// if walls or other bodies have prescribed motions.
 fn is_gone(scene: &Scene, simulation: &Simulation, grain: usize) -> bool {
     if !scene.motions.is_empty() {
         return false;
@@ -347,7 +349,8 @@ fn is_gone(scene: &Scene, simulation: &Simulation, grain: usize) -> bool {
     scene.boundaries.iter().any(beyond) || is_far(scene, to)
 }
 
-/// Returns true if the scene is bounded and a position is far from the initial scene.
+/// Returns true if a position is far from the initial scene. Always false if the scene has an infinite wall, or if it
+/// consists only of grains.
 fn is_far(scene: &Scene, place: DVec2) -> bool {
     let mut fixed: Vec<DVec2> = scene.fixed_discs.iter().map(|disc| disc.position).collect();
     for boundary in &scene.boundaries {
@@ -375,7 +378,8 @@ fn is_far(scene: &Scene, place: DVec2) -> bool {
     !((min - room).cmple(place).all() && (max + room).cmpge(place).all())
 }
 
-/// Returns true if a position is inside a closed line: a ray from it crosses the line an odd number of times.
+/// Returns true if a position is inside a closed line, because a ray from the position crosses the line an odd number
+/// of times.
 fn is_within(line: &[DVec2], place: DVec2) -> bool {
     let cuts = line.windows(2).filter(|ends| {
         let [a, b] = [ends[0] - place, ends[1] - place];

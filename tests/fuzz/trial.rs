@@ -1,4 +1,5 @@
-//! Tries inputs one after the other. Each input is in a file while it is tried.
+//! Tries inputs one after the other. While an input is tried, a file contains it, so that it remains if the process
+//! ends.
 
 use std::io::Write;
 use std::sync::{Arc, Mutex};
@@ -6,7 +7,7 @@ use std::sync::{Arc, Mutex};
 use super::Target;
 use crate::program::*;
 
-/// Time after which an input counts as a hang. It is longer than any input takes, even on a busy machine. Fifty long
+/// Time after which an input counts as a hang. It is longer than any input takes, even on a busy machine: fifty long
 /// steps of small grains with as many substeps as are stable take ten seconds on an idle machine.
 const SLOWEST: Duration = Duration::from_secs(200);
 
@@ -28,7 +29,7 @@ impl Trial {
         Self { path, begun, inputs: 0, taken: 0 }
     }
 
-    /// Tries an input.
+    /// Tries an input: writes it to the file and calls `check` with the text and the path.
     pub fn of(&mut self, text: &str, check: &mut impl FnMut(&str, &Path) -> bool) {
         write(&self.path, text);
         *self.begun.lock().expect("a time") = Some(Instant::now());

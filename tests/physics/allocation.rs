@@ -1,5 +1,5 @@
-//! Checks that steps of a pile at rest allocate no memory. Each thread counts its own allocations; a pile this small
-//! uses a single thread.
+//! Checks that steps of a pile at rest allocate no memory. Each thread counts its own allocations; steps of a pile this
+//! small use a single thread.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

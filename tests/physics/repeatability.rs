@@ -1,5 +1,5 @@
-//! Tests that equal runs are bitwise equal, and that a run does not depend on how its scene is written: position,
-//! mirror image, numbering.
+//! Tests that equal runs are bitwise equal, and that a run does not depend on how its scene is written: on its
+//! position, mirroring, and the numbering of the grains.
 
 use crate::common::*;
 
@@ -99,7 +99,7 @@ fn runs_repeat_bitwise_and_clones_go_on_as_the_original() {
     }
 }
 
-/// Returns a scene of an overlapping pile. Its steps get enough sweeps for the result to have the symmetry of the
+/// Returns a scene of an overlapping pile. Each step may take enough sweeps for the result to have the symmetry of the
 /// scene.
 fn pressed(bond: f64) -> Scene {
     let mut scene = pressed_pile(40, 0.05, 11, parameters(bond, 1e-3, 0.3, 0.4));
@@ -174,9 +174,9 @@ fn renumbered_grains_move_alike_where_the_solution_is_unique() {
     }
 }
 
-/// Three discs lie on a floor and two on top of them; all overlap. If friction bounds came from sweeps in the order of
-/// the numbering, swapping the two upper discs in the list would change the angular velocity of the last disc by 0.08
-/// rad/s.
+/// Checks that the default solver gives the same step for two numberings of five discs: three on a floor and two on top
+/// of them, all overlapping. If friction bounds came from sweeps in the order of the numbering, swapping the two upper
+/// discs in the list would change the angular velocity of the last disc by 0.08 rad/s.
 #[test]
 fn by_default_a_step_does_not_depend_on_the_numbering_of_its_discs() {
     let discs = [
@@ -212,8 +212,8 @@ fn by_default_a_step_does_not_depend_on_the_numbering_of_its_discs() {
     assert!(bounded > 0.01, "bounds of friction that sweeps make: {bounded:e} rad/s apart");
 }
 
-/// Returns a scene of a hanging chain of 12 discs. From zero impulses a step needs dozens of sweeps, from the right
-/// impulses a single sweep.
+/// Returns a scene of a hanging chain of 12 discs. If a solve starts from zero impulses, it needs dozens of sweeps; if
+/// it starts from the right impulses, it needs one.
 fn chain() -> Scene {
     let radius = 0.05;
     let place = |k: usize| -DVec2::Y * (k as f64 * (2.0 * radius - 1e-9));
@@ -227,7 +227,7 @@ fn chain() -> Scene {
     }
 }
 
-/// Takes one step to a residual of 1e-8. Returns the number of sweeps.
+/// Takes one step, solved to a residual of 1e-8. Returns the number of sweeps.
 fn sweeps_of_next_step(run: &mut Simulation, warm_start: bool) -> u32 {
     let settings = SolverSettings { warm_start, ..to_residual(1e-8) };
     run.set_solver(settings).expect("proper settings");

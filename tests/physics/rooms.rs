@@ -1,4 +1,5 @@
-//! Checks the registries of steppers and settings: each setting that a stepper is listed to read changes its steps.
+//! Checks the lists of steppers and settings: if the lists say that a stepper uses a setting, the setting must change
+//! its steps.
 
 use std::path::Path;
 
@@ -7,11 +8,12 @@ use crate::program::*;
 use slump::config::read_scene;
 use slump::setting::{About, Kind, Value};
 
-/// Number of compared steps: enough for grains to meet and for the second step to start warm.
+/// Number of compared steps: enough for grains to collide, and for later steps to start from the impulses of earlier
+/// steps.
 const STEPS: usize = 6;
 
-/// Returns piles whose grains collide and bounce: with cohesion, without cohesion, with too few sweeps to solve a step,
-/// and with bounded friction.
+/// Returns four piles whose grains collide and bounce: with cohesion, without cohesion, with too few sweeps to solve a
+/// step, and with bounded friction.
 fn piles() -> [Scene; 4] {
     let pile = |bond| pressed_pile(12, 0.5, 7, parameters(bond, 1e-3, 0.3, 0.5));
     let mut unsolved = pile(0.0);
@@ -31,7 +33,8 @@ fn values(about: &About) -> Vec<Value> {
     }
 }
 
-/// Returns positions, velocities and observables after [`STEPS`] steps as text, or `None` if the settings are refused.
+/// Returns positions, velocities and observables after [`STEPS`] steps as text, or `None` if the settings are invalid
+/// or a step fails.
 fn course(pile: &Scene, settings: Settings) -> Option<String> {
     let mut scene = pile.clone();
     scene.set_settings(settings);
@@ -43,7 +46,7 @@ fn course(pile: &Scene, settings: Settings) -> Option<String> {
     Some(format!("{:?}{:?}{:?}", grains.positions, grains.velocities, run.observables()))
 }
 
-/// Returns true if some other value of a setting changes the run, or if no other value is accepted.
+/// Returns true if some other value of a setting changes the run, or if every other value is invalid.
 fn matters(about: &About, stepper: Stepper) -> bool {
     let mut taken = 0;
     for pile in piles() {

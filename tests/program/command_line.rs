@@ -2,7 +2,7 @@
 
 use crate::program::*;
 
-/// Runs the program and checks that it refuses the arguments. Returns the error message.
+/// Runs the program and checks that it refuses these arguments. Returns the error message.
 fn refusal(arguments: &[&str]) -> String {
     sentence(slump("").args(arguments))
 }
@@ -90,8 +90,9 @@ fn only_settings_that_change_nothing_are_told_of_as_such() {
     }
 }
 
-/// The built-in pile has a step whose contact problem has two solutions, which differ most at grain 82. The pile
-/// reaches this step if the earlier steps are solved with bounded friction.
+/// Checks that `slump problem solve --starts` reports two solutions of a contact problem that has two, which differ
+/// most at grain 82. The problem is a step of the built-in pile, which is reached if the earlier steps are solved with
+/// bounded friction.
 #[test]
 fn a_step_with_two_solutions_is_told_to_have_them() {
     let folder = folder();

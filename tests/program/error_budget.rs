@@ -8,13 +8,13 @@ fn budget(out: &Path, more: &[&str]) -> Command {
     command
 }
 
-/// Runs the command. Returns the report of the error budget.
+/// Runs `slump budget` with additional arguments. Returns the report of the error budget.
 fn answer(out: &Path, more: &[&str]) -> String {
     succeed(&mut budget(out, more));
     read(out.join("report.md"))
 }
 
-/// Returns the cells of the table, without the column `cost`, which depends on the machine.
+/// Returns the cells of the table `budget.csv`, without the column `cost`, which depends on the machine.
 fn table(out: &Path) -> Vec<Vec<String>> {
     let text = read(out.join("budget.csv"));
     let mut rows = csv::Reader::from_reader(text.as_bytes());
@@ -27,7 +27,8 @@ fn table(out: &Path) -> Vec<Vec<String>> {
     rows.records().map(row).collect()
 }
 
-/// Returns the numbers in a column of the table, from the rows of one cause of error.
+/// Returns the numbers in one column of the table `budget.csv`, from the rows about one cause of error, such as "time
+/// step".
 fn cell(rows: &[Vec<String>], cause: &str, column: usize) -> Vec<f64> {
     let of_cause = rows.iter().filter(|row| row[2] == cause);
     of_cause.filter_map(|row| row[column].parse().ok()).collect()
@@ -95,8 +96,8 @@ fn parts_of_a_budget_join_to_what_one_machine_comes_to_and_cost_it_nothing() {
     assert!(2 * runs(&joined) < all, "{} runs of {all} were its own", runs(&joined));
 }
 
-/// A scene of a disc that falls freely from rest. With semi-implicit steps its position is y = −g t (t + Δt)/2 (g:
-/// gravity), so the lost height at the time t is known exactly, and the error of the height is proportional to Δt.
+/// A scene file of a disc that falls freely from rest. With semi-implicit steps its change of height at the time t is
+/// −g t (t + Δt)/2 (g: gravity), so the height is known exactly, and its error is proportional to Δt.
 const FALL: &str = "
 name = 'fall'
 mean_diameter = 1.0

@@ -4,7 +4,8 @@
 
 use crate::program::*;
 
-/// Runs the program and checks that it refuses within the time limit. Returns the error message.
+/// Runs the program with these arguments and checks that it ends with an error message within a time limit. Returns the
+/// message.
 fn refusal(words: &[&str]) -> String {
     let program = slump("").get_program().to_owned();
     sentence(Command::new("timeout").arg("30").arg(program).args(words))

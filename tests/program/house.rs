@@ -34,7 +34,8 @@ fn files_below(folders: &[PathBuf]) -> BTreeMap<String, String> {
     found
 }
 
-/// Returns the names that follow a keyword (such as `mod` or `fn`) at the beginning of an item.
+/// Returns the names of the items of one kind in a source text. `keyword` is the keyword of this kind, such as `mod` or
+/// `fn`.
 fn named<'a>(text: &'a str, keyword: &str) -> impl Iterator<Item = &'a str> {
     let keyword = format!("{keyword} ");
     text.lines().filter_map(move |line| {
@@ -166,8 +167,8 @@ fn documents_name_files_that_are_there() {
     assert!(gone.is_empty(), "{gone:#?}");
 }
 
-/// Phrases that readers do not understand at once. Each phrase has a plain replacement: again, depends on, reports,
-/// also, continues, if, is not solved.
+/// Phrases that readers do not understand at once and that comments and documents must not contain. Each has a plain
+/// replacement: again, depends on, reports, also, continues, if, is not solved.
 const PRIVATE_PHRASES: [&str; 11] = [
     " anew",
     "hangs on",
@@ -211,8 +212,8 @@ fn comments_and_documents_use_plain_words() {
     assert!(found.is_empty(), "plain words instead of: {found:#?}");
 }
 
-/// For 0.0 and -0.0, `f64::max` and `f64::min` may return either of the two; [`slump_core::number::Parts`] always
-/// returns the same.
+/// Checks that the physics does not call `max(0.0)` or `min(0.0)`. For 0.0 and -0.0, `f64::max` and `f64::min` may
+/// return either of the two; [`slump_core::number::Parts`] always returns the same.
 #[test]
 fn no_sign_of_a_zero_depends_on_the_compiler() {
     let sources = sources();
@@ -229,8 +230,8 @@ fn no_sign_of_a_zero_depends_on_the_compiler() {
     );
 }
 
-/// Tests that need another program or a graphics driver have this in their names. So `cargo test -- --ignored
-/// with_driver with_ffmpeg` selects them.
+/// Checks that the name of a test, or of its module, says that the test needs ffmpeg or a graphics driver. Then `cargo
+/// test -- --ignored with_driver with_ffmpeg` selects these tests.
 #[test]
 fn tests_that_need_a_program_have_it_in_their_name() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

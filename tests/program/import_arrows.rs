@@ -13,12 +13,12 @@ use syn::{Item, UseTree, Visibility};
 
 type Module = Vec<String>;
 
-/// Paths in a file that lead to items of its own crate.
+/// Paths in a source file that lead to items of the file's own crate.
 struct Imports<'a> {
     modules: &'a BTreeMap<Module, String>,
     own_names: &'a [&'a str],
     module: Module,
-    /// Absolute paths of the named items, without the name of the crate.
+    /// Absolute paths of the items that the file names, without the name of the crate.
     paths: Vec<Module>,
     /// For each public `use`: the exported name (`*` for all names), and the absolute path of the item.
     exports: Vec<(String, Module)>,
@@ -26,7 +26,7 @@ struct Imports<'a> {
 }
 
 impl Imports<'_> {
-    /// Returns the absolute path of a path in the crate, or `None` if the path leads to another crate.
+    /// Returns the absolute form of a path that is written in the file, or `None` if the path leads to another crate.
     fn absolute(&self, path: &[String]) -> Option<Module> {
         let (first, mut rest) = path.split_first()?;
         let mut base = self.module.clone();
@@ -190,7 +190,8 @@ pub fn arrows(
     arrows
 }
 
-/// Returns all cycles: for each, the folder and the arrows between its files and subfolders that form the cycle.
+/// Returns a description of each cycle of arrows: the folder, and the arrows between its files and subfolders that form
+/// the cycle.
 pub fn circles(arrows: &BTreeSet<(String, String)>) -> Vec<String> {
     let files = arrows.iter().flat_map(|(from, to)| [from, to]);
     let folders: BTreeSet<&str> = files

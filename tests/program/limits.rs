@@ -9,17 +9,18 @@ use slump::study::Study;
 use crate::common::*;
 use crate::program::*;
 
-/// Time limit of a refusal, s: far more than a refusal takes, and far less than the computation would take.
+/// Time limit for the error message, s: far more than the program needs to refuse an input, and far less than the
+/// computation would take.
 const AT_ONCE: &str = "30";
 
-/// Runs the program and checks that it refuses within [`AT_ONCE`]. Returns the error message.
+/// Runs the program and checks that it ends with an error message within [`AT_ONCE`] seconds. Returns the message.
 #[track_caller]
 fn refusal(arguments: &[&str]) -> String {
     let program = slump("").get_program().to_owned();
     sentence(Command::new("timeout").arg(AT_ONCE).arg(program).args(arguments))
 }
 
-/// Runs a pile with these initial discs (CSV rows) and checks that it is refused. Returns the error message.
+/// Runs a pile whose initial discs are given as CSV rows and checks that Slump refuses it. Returns the error message.
 #[track_caller]
 fn refusal_of_discs(lines: &str) -> String {
     let folder = folder();
@@ -196,7 +197,8 @@ fn every_message_of_the_command_line_says_what_is_allowed() {
     assert!(refusal(&["--seed", "\u{1b}[31mred\u{7}"]).contains("\\u{1b}[31mred\\u{7}"));
 }
 
-/// Runs the program with a file of this content as the last argument, and checks the error message.
+/// Runs the program with a file of this name and content as the last argument. Checks that the error message is short
+/// and says which values are allowed.
 fn check(arguments: &[&str], name: &str, text: impl AsRef<[u8]>) {
     let folder = folder();
     let path = folder.path().join(name);
@@ -301,7 +303,7 @@ fn more_runs_than_anyone_can_wait_for_are_refused_before_they_take_room() {
     assert!(said.contains("vary is 4000000 runs with vary.duration, but must be"), "{said}");
 }
 
-/// Returns the scene file of a pile that is made by the deposition `rain`.
+/// Returns the text of a scene file whose pile is made by the deposition `rain`.
 fn rained(rain: &NewPile, duration_secs: f64) -> String {
     let mut scene = built_in("pile").expect("a scene");
     scene.grains.clear();

@@ -1,4 +1,4 @@
-//! Tests of missing resources of the machine: threads, and space in files. Each failure is reported in one sentence,
+//! Tests of a lack of resources of the machine: threads, and space in files. Each failure is reported in one sentence,
 //! and files that are already written remain.
 #![cfg(unix)]
 
@@ -8,7 +8,7 @@ const STUDY: &str =
     "name = 'two'\n[base]\nscene = 'cradle'\nduration = 0.1\n[vary]\ndt = [1e-3, 2e-3]\n";
 
 const DRAWN: &str = "--headless --scene cradle --duration 0.1 --renderer cpu --size 16x16";
-/// Stack size of a thread in bytes that no machine can provide, so that no thread can start.
+/// Stack size of a thread, bytes, that is larger than any machine can provide, so that no thread can start.
 const NO_ROOM: &str = "70368744177664";
 
 #[test]
@@ -43,7 +43,7 @@ fn more_threads_than_any_machine_has_are_refused() {
     assert!(said.contains("RAYON_NUM_THREADS is 100000, but must be"), "{said}");
 }
 
-/// Returns a command that runs the program under a limit of the shell (`ulimit`).
+/// Returns a command that runs the program under a limit of the shell, such as "-f 8" (the arguments of `ulimit`).
 fn limited(limit: &str, line: &str, out: &Path) -> Command {
     let mut command = Command::new("sh");
     command.args(["-c", &format!("ulimit {limit}; exec \"$@\""), "sh"]);

@@ -1,4 +1,4 @@
-//! Tests of destinations of results: links, pipes, devices, closed streams, and names that are not UTF-8.
+//! Tests of unusual destinations of results: links, pipes, devices, closed streams, and names that are not UTF-8.
 #![cfg(unix)]
 
 use std::ffi::{OsStr, OsString};
@@ -9,7 +9,7 @@ use crate::program::*;
 
 const PROBLEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/problems/bond_0.json");
 
-/// Solves a contact problem and writes the solution to `out`.
+/// Runs the program, which solves a contact problem and writes the solution to `out`.
 fn solve_to(out: &Path) -> Output {
     run(slump("problem solve --overwrite").arg(PROBLEM).arg("--out").arg(out))
 }
@@ -93,7 +93,8 @@ fn permissions_follow_the_umask_or_what_was_there() {
     assert!(is_solution(&bytes(&private)));
 }
 
-/// Runs the program. Fails if it takes longer than a time that is far shorter than the computation.
+/// Runs the program with these arguments. Fails if it takes longer than 10 s, which is far shorter than the computation
+/// would take.
 fn at_once(arguments: &[&str], out: &Path) -> Output {
     let mut command = assert_cmd::Command::from_std(slump(""));
     command.args(arguments).arg(out).timeout(Duration::from_secs(10)).output().expect("it starts")

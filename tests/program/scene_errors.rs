@@ -12,7 +12,8 @@ fn good() -> Scene {
     under_g(parameters(20.0, 1e-3, 0.1, 0.5), grains)
 }
 
-/// Makes a good scene wrong by `spoil` and compares the error message.
+/// Applies the change `spoil` to a valid scene and checks that Slump refuses the changed scene with the expected
+/// message.
 #[track_caller]
 fn check(spoil: impl FnOnce(&mut Scene), expected: &str) {
     let mut scene = good();
@@ -170,7 +171,7 @@ fn a_bad_line_of_discs_is_named() {
     bad("", "one that names x, y and radius");
 }
 
-/// Writes a text to a new file and reads it as a scene.
+/// Writes a text to a new file and reads the file as a scene.
 fn read_text(text: &str) -> Result<Scene, String> {
     let folder = folder();
     let path = folder.path().join("test.toml");

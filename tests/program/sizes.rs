@@ -6,13 +6,15 @@ use slump::scene::{Deposition, NewPile, Sizes, settle, start_of};
 use crate::program::*;
 
 const DIAMETER: f64 = 5e-3;
-/// Largest allowed deviation of a sample moment from the exact moment, in standard errors. With a correct program, one
-/// of the 30 comparisons fails in one of 5,000 random test runs.
+/// Largest allowed deviation of the moment of a sample of diameters from the exact moment, in standard errors. With a
+/// correct program and random seeds, one of the 30 comparisons would fail in one of 5,000 test runs.
 const ERRORS: f64 = 4.5;
 const COUNT: usize = 20_000;
-/// Hash of the pile made by rain, from the version before the option `sizes` existed.
+/// Hash of a pile made by the deposition `rain` in a version before the option `sizes` existed; the default sizes must
+/// still give this pile.
 const RAIN: u64 = 0x539b_adf8_4444_897f;
-/// Hash of the pile made by drop and roll, from the version before the option `sizes` existed.
+/// Hash of a pile made by the deposition drop and roll in a version before the option `sizes` existed; the default
+/// sizes must still give this pile.
 const ROLL: u64 = 0x6c11_af30_2490_f32f;
 
 fn sizes(text: &str) -> Sizes {
@@ -34,14 +36,14 @@ fn diameters(pile: &NewPile) -> Vec<f64> {
     start_of(pile).iter().map(|grain| 2.0 * grain.radius / DIAMETER).collect()
 }
 
-/// Returns the integral of a function, by the midpoint rule with 20,000 intervals.
+/// Returns the integral of the function `value` between two bounds, by the midpoint rule with 20,000 intervals.
 fn integral(from: f64, to: f64, value: impl Fn(f64) -> f64) -> f64 {
     let step = (to - from) / 20_000.0;
     (0..20_000).map(|k| step * value(from + (f64::from(k) + 0.5) * step)).sum()
 }
 
-/// Returns the moments 1 to 4 of a diameter, each divided by the same power of the mean. The diameter is a function of
-/// a random number, which has the given density between two bounds.
+/// Returns the moments 1 to 4 of a distribution of diameters, each divided by the same power of the mean. A diameter is
+/// a function of a random number that has the given density between two bounds.
 fn moments(
     bounds: [f64; 2],
     density: impl Fn(f64) -> f64,

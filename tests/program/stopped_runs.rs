@@ -5,7 +5,8 @@ use std::io::{BufRead, BufReader};
 
 use crate::program::*;
 
-/// Arguments of a run of several minutes with a picture every 40 steps. The option for the output folder is missing.
+/// Arguments of a run that takes several minutes and draws a picture every 40 steps. The option for the output folder
+/// is missing.
 const LONG: &str =
     "--headless --scene cradle --dt 1e-3 --duration 3000 --size 64x18 --renderer cpu --solver nsgs";
 
@@ -15,7 +16,7 @@ fn start(out: &Path, more: &[&str]) -> Child {
     command.spawn().expect("the program starts")
 }
 
-/// Starts a run with the arguments [`LONG`] and waits for its fourth picture.
+/// Starts a run with the arguments [`LONG`] and waits until its fourth picture exists.
 fn start_and_wait(out: &Path, more: &[&str]) -> Child {
     let child = start(out, more);
     wait_for("the fourth picture", || out.join("frame_00003.png").exists());
@@ -135,8 +136,8 @@ fn an_ignored_signal_stays_ignored() {
     assert_eq!(ended(&mut child), Some(143));
 }
 
-/// Starts a program whose files are limited to `blocks` blocks of 512 bytes. As on a full disk, the part of a file that
-/// fits is written.
+/// Runs the program with the arguments [`LONG`] while its files are limited to `blocks` blocks of 512 bytes. As on a
+/// full disk, the part of a file that fits is written. Returns the error output.
 fn on_a_small_disk(blocks: u32, option: &str, out: &Path) -> String {
     let mut small = Command::new("sh");
     let script = format!("ulimit -f {blocks}; exec \"$@\"");
@@ -261,8 +262,8 @@ fn a_scale_that_is_none_or_of_nothing_is_refused() {
     assert!(!folder.path().join("out").exists());
 }
 
-/// Writes a contact problem: a chain of frictionless contacts, each of which pushes the next contact. Each sweep
-/// transmits a push by one contact, so a long chain needs millions of sweeps.
+/// Writes a contact problem to a file: a chain of frictionless contacts, each of which pushes the next. Each sweep
+/// passes a push on by one contact, so a long chain needs millions of sweeps.
 fn chain(contacts: usize, path: &Path) {
     let (mut row, mut col, mut val) = (Vec::new(), Vec::new(), Vec::new());
     let mut add = |at: [usize; 2], value: f64| {

@@ -1,4 +1,5 @@
-//! Tests of videos that the command line writes: their contents, making the same video again, and error messages.
+//! Tests of videos that the command line writes: their contents, commands that make the same video again, and error
+//! messages.
 
 use crate::program::*;
 

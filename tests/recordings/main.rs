@@ -1,5 +1,5 @@
-//! Tests of recordings and of files with contact problems: their contents, the parts that survive an interruption, and
-//! reading them.
+//! Tests of recordings and of files with contact problems: their contents, the data that remain after an interruption,
+//! and reading them.
 
 #[path = "../common/columnar.rs"]
 mod columnar;

@@ -1,4 +1,4 @@
-//! Tests of alarms in the window, and of the button that applies their advice.
+//! Tests of warnings in the window, and of the button that applies their advice.
 
 use crate::robot::*;
 

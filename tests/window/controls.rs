@@ -45,7 +45,7 @@ fn springs_are_set_in_the_panel_which_tells_what_follows() {
     }
 }
 
-/// Sliders react only to dragging, so the help must not mention double clicks.
+/// Checks that the help does not mention double clicks on sliders, because sliders react only to dragging.
 #[test]
 fn help_promises_no_double_click_on_a_slider() {
     let mut robot = Robot::open(pile());
@@ -141,7 +141,7 @@ fn what_makes_no_sense_is_refused_visibly() {
     assert!(!robot.shows("is not a number"));
 }
 
-/// Returns the command line of the run that is shown, and the scene that the next start of the program would open.
+/// Returns the command line of the displayed run, and the scene that the next start of the program would open.
 fn identity(robot: &Robot) -> (Option<String>, Config) {
     (robot.state().run.command_line(), robot.state().preferences.scene.clone())
 }

@@ -1,6 +1,6 @@
-//! Tests of the dialogs that choose a file or a folder. On a desktop without a portal the program `zenity` shows these
-//! dialogs, and a script replaces `zenity` here. Each test runs in its own process, because the script is found through
-//! the variable `PATH`.
+//! Tests of the dialogs in which the user chooses a file or a folder. On a desktop without a portal the program
+//! `zenity` shows these dialogs, and a script replaces `zenity` in the tests. Each test runs in its own process,
+//! because the script is found through the environment variable `PATH`.
 
 #![cfg(target_os = "linux")]
 
@@ -9,7 +9,8 @@ use std::process::Command;
 
 use crate::robot::{Robot, folder, pile, write};
 
-/// Runs a test of this test program in a process that finds a script instead of `zenity`.
+/// Runs another test of this test program in a child process in which a script replaces `zenity`. Without a script, the
+/// child process finds no such program. `answer` is the path that the script returns.
 fn with_zenity(test: &str, script: Option<&str>, answer: &Path) {
     use std::os::unix::fs::PermissionsExt;
     let programs = folder();

@@ -1,4 +1,4 @@
-//! Tests of data that the window exports from its recorded run.
+//! Tests of data that the window exports from a recorded run.
 
 use std::collections::BTreeMap;
 
@@ -61,7 +61,7 @@ fn frames_are_at_the_times_that_data_has_them_at() {
     assert_same(&exported, &written);
 }
 
-/// Returns the positions (bit patterns) of all grains after each step of a table.
+/// Returns for each step number in a table the positions (bit patterns) of all grains after that step.
 fn places(grains: &Columns) -> BTreeMap<u64, Vec<[u64; 2]>> {
     let mut places = BTreeMap::<u64, Vec<_>>::new();
     for (row, step) in grains["step"].iter().enumerate() {
@@ -78,8 +78,8 @@ fn place_of(simulation: &Simulation) -> Vec<[u64; 2]> {
     places.map(|place| place.to_array().map(f64::to_bits)).collect()
 }
 
-/// Runs 80 steps with changed settings and a pulled grain. Returns the times of all steps, and the positions after each
-/// step in a simulation without a window that is treated in the same way.
+/// Runs 80 steps with changes of settings and a pulled grain, in the window and in a second simulation without a
+/// window. Returns the times of all steps (s), and the positions of the second simulation after each step.
 fn changed_run(robot: &mut Robot) -> (Vec<f64>, BTreeMap<u64, Vec<[u64; 2]>>) {
     let scene = pile().scene(|_| true).expect("a scene");
     let mut simulation = scene.simulation().expect("a sound scene");
@@ -106,7 +106,7 @@ fn changed_run(robot: &mut Robot) -> (Vec<f64>, BTreeMap<u64, Vec<[u64; 2]>>) {
     (times, moments)
 }
 
-/// Selects the time interval that is exported.
+/// Selects the interval of simulated times (s) that the window exports.
 fn choose(robot: &mut Robot, stretch: [f64; 2]) {
     for (label, secs) in ["From here", "To here"].into_iter().zip(stretch) {
         robot.seek(secs);

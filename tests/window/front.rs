@@ -1,18 +1,18 @@
-//! Tests of the first view of the window: the visible controls, the central gesture (dragging the time step), and the
-//! statement on trust.
+//! Tests of the first view of the window: the visible controls, the most important gesture (dragging the time step),
+//! and the statement on how far the result can be trusted.
 
 use crate::robot::*;
 use egui::Role;
 use slump::app::lessons::LESSONS;
 
-/// Opens a window in which a changed slider restarts the run, as in a new installation.
+/// Opens a window in which changing a slider restarts the run, as in a new installation.
 fn open(config: Config) -> Robot {
     let mut robot = Robot::open(config);
     robot.state_mut().preferences.starts_again = true;
     robot
 }
 
-/// Drags the handle of the time step to the right end.
+/// Drags the handle of the slider of the time step to its right end.
 fn drag_time_step(robot: &mut Robot) {
     let (from, to) = (robot.place("Δt", 0.66, 0.5), robot.place("Δt", 1.0, 0.5));
     robot.drag(from, to);
@@ -93,8 +93,8 @@ fn a_number_that_is_typed_starts_the_pile_again_as_well() {
     assert!(robot.state().run.frame.playing && robot.state().run.frame.past.len() == 1);
 }
 
-/// Restarts every scene with a new time step. Some scenes have walls driven by a force, grains that do not move, or one
-/// dimension.
+/// Checks that a new time step restarts every scene. Some scenes have walls driven by a force, grains that do not move,
+/// or one dimension.
 #[test]
 fn every_scene_starts_again_with_the_new_value() {
     let mut robot = open(pile());
@@ -140,7 +140,8 @@ fn switched_off_the_run_goes_on_and_the_hint_says_what_is_true_then() {
     assert!(robot.shows("A new value acts from the next step on"));
 }
 
-/// Returns all controls that can be clicked, dragged or typed into. A slider and its number field count as one control.
+/// Returns role and label of all controls that can be clicked, dragged or typed into. A slider and its number field
+/// count as one control.
 fn controls(robot: &Robot) -> Vec<(Role, String)> {
     let is_control = |role: Role| {
         matches!(
@@ -323,8 +324,8 @@ fn numbers_beyond_all_reason_are_refused() {
     assert!(robot.shows("ρ is 2, but must be between 0 and 1"));
 }
 
-/// Opens a window with extreme numbers (such as Bond 1e308), which can come from a scene file or from the stored
-/// preferences of the last window. The numbers must not widen the panel.
+/// Checks that extreme numbers (such as Bond 1e308) do not widen the panel. They can come from a scene file or from the
+/// stored preferences of the last window.
 #[test]
 fn numbers_beyond_all_reason_widen_nothing_though_a_window_opens_with_them() {
     let places = |config: Config| {

@@ -175,7 +175,7 @@ fn a_wall_follows_the_mouse_while_time_passes_and_stays_when_let_go() {
     assert!((there.y - ends[0].y).abs() < 1e-3, "and went straight: {there}");
 }
 
-/// Returns the screen position of a point (m) in a view that shows the whole scene.
+/// Returns the screen position of a point of the scene (m), in a view that shows the whole scene.
 fn at(robot: &Robot, point: DVec2) -> Pos2 {
     let rect = robot.state().controls["scene"];
     let style = slump::render::Style { legend: false, ..robot.state().preferences.style.clone() };

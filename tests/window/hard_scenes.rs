@@ -1,10 +1,11 @@
-//! Tests of scenes that are made to break methods: the window shows the right answer and a verdict.
+//! Tests of scenes that are made to break solvers: the window shows the right answer and a verdict on each simulation.
 
 use crate::robot::*;
 use slump::solver::SolverSettings;
 use slump::study::stability::Challenge;
 
-/// Solves the scene by ten sweeps per step, and by Newton's method.
+/// Checks the verdicts on two simulations of the scene `mass-ratio`: ten sweeps per step fail, and the default solver
+/// succeeds.
 #[test]
 fn a_scene_that_is_made_to_break_methods_shows_its_right_answer_and_a_verdict() {
     let mut robot = Robot::open(Config::of_scene("mass-ratio"));

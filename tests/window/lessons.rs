@@ -1,16 +1,16 @@
-//! Tests that the statements of the lessons are true for the pile that is shown and for sixteen other piles.
+//! Tests that the statements of the lessons are true for the displayed pile and for sixteen other piles.
 
 use crate::robot::*;
 use slump::app::lessons::{LESSONS, Lesson};
 
-/// Returns the lesson with this title, and its number.
+/// Returns the lesson with this title, and its index in the list of lessons.
 fn lesson(title: &str) -> (usize, &'static Lesson) {
     let found = LESSONS.iter().enumerate().find(|(_, lesson)| lesson.title == title);
     found.expect("a lesson")
 }
 
-/// Runs all simulations that a lesson compares, without a window. Returns their final states. `grains` replaces the
-/// grains of the lesson's pile.
+/// Runs all simulations that a lesson compares, without a window, and returns them in their final states. `grains`
+/// replaces the grains of the lesson's pile.
 fn run_lesson(lesson: &Lesson, grains: Option<&[slump::world::Grain]>) -> Vec<Simulation> {
     let (config, mut scene) = lesson.scene().expect("a scene");
     if let Some(grains) = grains {
@@ -42,7 +42,7 @@ fn right_answer(lesson: &Lesson, rows: &[Observables]) -> &'static str {
     question.answers[right]
 }
 
-/// Returns the answer that the last page of a lesson gives.
+/// Returns the answer that the last page of a lesson gives to the lesson's question.
 fn lesson_answer(title: &str) -> &'static str {
     match title {
         "Two time steps" => "not alike",
@@ -55,17 +55,17 @@ fn lesson_answer(title: &str) -> &'static str {
     }
 }
 
-/// A statement of a lesson about two of the simulations that it compares.
+/// A statement of a lesson about the slumps of two simulations that it compares.
 struct Claim {
     lesson: &'static str,
-    /// Indices of the two simulations: the first slumps more than the second.
+    /// Indices of the two simulations. The difference is the slump of the first minus the slump of the second.
     worlds: [usize; 2],
-    /// The 95 % interval of the mean difference of slumps, over many piles, must be within these bounds.
+    /// Bounds that must contain the 95 % interval of the mean difference of the slumps over many piles.
     between: [f64; 2],
 }
 
-/// Statements of the lessons. Each difference was measured over sixteen piles, with the seeds 1 to 18 except 8 and 15
-/// (docs/window.md).
+/// The statements that the tests check. The bounds follow from differences that were measured over sixteen piles, with
+/// the seeds 1 to 18 except 8 and 15 (docs/window.md).
 const CLAIMS: [Claim; 6] = [
     Claim { lesson: "Two time steps", worlds: [0, 1], between: [0.1, 0.3] },
     Claim { lesson: "The solver's part", worlds: [0, 2], between: [0.1, 0.4] },
@@ -96,7 +96,7 @@ fn the_pile_that_is_shown_does_what_the_lesson_says() {
     }
 }
 
-/// Least number of the sixteen piles that must give the answer of the lesson.
+/// Smallest number of the sixteen piles for which the answer of the lesson must be right.
 const MOST: usize = 14;
 
 // The test takes about five minutes on two cores.
@@ -324,13 +324,13 @@ fn the_last_page_has_the_predictions_and_a_link() {
     assert_eq!((robot.state().preferences.lesson.at, asked(&robot)), (0, &["answers"][..]));
 }
 
-/// Returns the names of the controls that the user must use next in the lesson.
+/// Returns the names of the controls that the present lesson asks the user to use next.
 fn asked(robot: &Robot) -> &'static [&'static str] {
     let state = robot.state();
     (LESSONS[state.preferences.lesson.at].asks_for)(&state.run, &state.preferences)
 }
 
-/// Returns true if the window shows the whole control.
+/// Returns true if the whole control is visible in a window of the size [`SMALL`].
 fn is_in_view(robot: &Robot, name: &str) -> bool {
     let window = egui::Rect::from_min_size(egui::Pos2::ZERO, SMALL);
     robot.state().controls.get(name).is_some_and(|rect| window.contains_rect(*rect))
@@ -339,7 +339,7 @@ fn is_in_view(robot: &Robot, name: &str) -> bool {
 /// Size of the smallest window in which all controls that a lesson needs must be visible, in points.
 const SMALL: egui::Vec2 = egui::vec2(1024.0, 700.0);
 
-/// Settings in the first view, and the labels of their sliders.
+/// Names of the settings that have a slider in the first view of the window, with the labels of these sliders.
 const SLIDERS: [(&str, &str); 4] = [
     ("bond", "Bond, cohesion slider"),
     ("dt", "Δt, time step slider"),

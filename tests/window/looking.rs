@@ -1,4 +1,4 @@
-//! Tests of plots, comparisons and other views in the window, and of controls that must stay in place.
+//! Tests of plots, comparisons and other views in the window, and of controls whose positions must not change.
 
 use egui_kittest::kittest::Queryable;
 
@@ -173,7 +173,7 @@ fn grains_and_contacts_are_a_table_that_is_filtered_and_pins() {
     assert_eq!(pinned, Some(GrainRef { world: 0, grain: grain as usize }));
 }
 
-/// Returns true if the panel shows this residual.
+/// Returns true if the window shows this residual as a text.
 fn tells(robot: &Robot, residual: f64) -> bool {
     robot.shows(&format!("{residual:.1e}"))
 }
@@ -289,7 +289,7 @@ fn what_hardly_moves_rests_and_is_told_in_units_that_one_knows() {
     assert!(robot.shows("0.000 m/s, 0.000 m/s"), "grain {grain}");
 }
 
-/// Opens all pages in turn and checks that no text contains an internal name such as `rho`.
+/// Opens all pages of the panel in turn and checks that no text contains an internal name such as `rho`.
 fn words_are_as_one_reads_them(robot: &mut Robot) {
     for page in Page::ALL {
         robot.state_mut().preferences.page = Some(page);

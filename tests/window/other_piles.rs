@@ -1,13 +1,13 @@
-//! Tests of new piles while they are computed, and of the mean over other piles with the same settings (an ensemble),
-//! which the window computes on idle cores.
+//! Tests of new piles while they are computed, and of the ensemble: other piles with the same settings, which the
+//! window computes on idle cores and whose mean it shows.
 
 use crate::robot::*;
 
-/// Time limit for the other piles, whose threads have low priority.
+/// Time limit for computing the other piles of the ensemble, whose threads have low priority.
 const PATIENCE: Duration = Duration::from_secs(600);
-/// Label of the switch for the other piles.
+/// Label of the switch with which the user lets the window compute other piles.
 const OTHERS: &str = "Other piles, on idle cores";
-/// Number of grains of a small pile, which comes to rest at once.
+/// Number of grains of a small pile, which comes to rest very soon.
 const GRAINS: usize = 12;
 const WIDTH: f64 = 5.0;
 
@@ -28,8 +28,8 @@ fn open(cache: &Path) -> Robot {
     robot
 }
 
-/// Waits until all other piles of a compared simulation have ended. Returns the mean of their slump at a time, half of
-/// its confidence interval, and the number of piles.
+/// Waits until the eight other piles for one of the compared simulations are complete. Returns the mean of their slumps
+/// at this simulated time, s, half of its 95 % interval, and the number of piles.
 fn mean(robot: &mut Robot, world: usize, time_secs: f64) -> (f64, f64, usize) {
     let begun = Instant::now();
     loop {
@@ -45,8 +45,8 @@ fn mean(robot: &mut Robot, world: usize, time_secs: f64) -> (f64, f64, usize) {
     }
 }
 
-/// Runs piles with the same seeds without a window. Returns the mean of their final slump, and half the width of its 95
-/// % interval.
+/// Runs piles with the same seeds as the window's other piles, without a window. Returns the mean of their final
+/// slumps, and half the width of its 95 % interval.
 fn headless(settings: &Settings) -> (f64, f64) {
     let slump = |seed: u64| {
         let pile =
@@ -99,8 +99,8 @@ fn the_mean_is_that_of_the_same_seeds_without_a_window() {
     assert_near(mean(&mut robot, 0, 0.1), headless(&other));
 }
 
-/// Saves the points of the paper's Fig. 5a. Returns for each point Δt, the mean slump, half of its interval and the
-/// number of piles.
+/// Lets the window save the points of the paper's Fig. 5a. Returns for each point the time step Δt (s) and, in
+/// parentheses, the mean slump, half of its interval and the number of piles.
 fn saved_points(robot: &mut Robot) -> Vec<(f64, (f64, f64, usize))> {
     robot.click("CSV");
     let table = read(robot.saved());

@@ -1,4 +1,4 @@
-//! Tests that the recorded run reproduces all computed states bitwise.
+//! Tests that the record of a run reproduces all computed states bitwise.
 
 use crate::robot::*;
 use slump::live::LiveStart;
@@ -64,7 +64,7 @@ fn a_step_in_the_past_deletes_nothing() {
     assert_eq!((robot.steps(), robot.world().curve.len()), (51, 52));
 }
 
-/// Returns the text in the field of the time step.
+/// Returns the text in the number field of the time step.
 fn typed(robot: &Robot) -> String {
     let field = robot.harness.get_by_role_and_label(egui::Role::TextInput, "Δt, time step");
     field.accesskit_node().value().expect("a text")

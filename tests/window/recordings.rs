@@ -9,7 +9,7 @@ use crate::tables::parquet;
 
 pub const TABLES: [&str; 5] = ["grains", "contacts", "steps", "measures", "histograms"];
 
-/// Opens a window with the panel that exports each step into a folder.
+/// Opens a window with the panel that exports data. Every step is exported into this folder, in these formats.
 pub fn open(config: Config, folder: &Path, formats: &[FormatName]) -> Robot {
     let mut robot = Robot::open(config);
     let data = DataChoices { folder: folder.to_owned(), each_step: true, ..DataChoices::default() };
@@ -23,7 +23,7 @@ pub fn export(robot: &mut Robot) -> String {
     robot.written()
 }
 
-/// Runs the program without a window. Returns its stderr.
+/// Runs the program without a window and records into this folder. Returns the text that it wrote to stderr.
 pub fn headless(arguments: &[&str], folder: &Path) -> String {
     let mut command = slump("--headless");
     said(&run(command.args(arguments).arg("--data").arg(folder)))
@@ -46,7 +46,7 @@ pub fn files(folder: &Path) -> BTreeSet<PathBuf> {
     found
 }
 
-/// Returns the lines of a text file without the lines about its origin.
+/// Returns the lines of a text file without those that say with which command or by which program it was written.
 pub fn said_in(path: &Path) -> Vec<String> {
     let text = read(path);
     let is_origin = |said: &str| {
@@ -57,13 +57,13 @@ pub fn said_in(path: &Path) -> Vec<String> {
     said.filter(|said| !is_origin(said)).map(str::to_owned).collect()
 }
 
-/// Returns the facts in the manifest of a recording, including those about the scene.
+/// Returns the facts about the run in the manifest of a recording, such as the settings of the scene.
 pub fn facts(folder: &Path) -> BTreeMap<String, String> {
     let manifest = json(folder.join("data.json"));
     serde_json::from_value(manifest["about"].clone()).expect("words by words")
 }
 
-/// Returns the arrays of a `.vtp` file by name, without the facts about its origin.
+/// Returns the arrays of a `.vtp` file by name, without the array of facts about the run.
 fn arrays(path: &Path) -> BTreeMap<String, Vec<u8>> {
     let bytes = bytes(path);
     let start = bytes.windows(2).position(|two| two == b" _").expect("the arrays") + 2;

@@ -1,4 +1,5 @@
-//! Tests that a remote simulation, which exchanges only bytes with the window, equals a simulation in a thread.
+//! Tests that a remote run, whose solver exchanges only bytes with the window, equals a run in a thread of the window's
+//! process.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -11,11 +12,11 @@ use slump::live::{
 };
 use slump::sim::Settings;
 
-/// Window and remote simulation, and the messages between them.
+/// A window and the solver of its remote run, with the messages between them.
 struct Remote<S = LiveStart> {
     live: Live,
     engine: RemoteEngine<S>,
-    /// Messages of the window, each with true if it cancels the loading of a scene.
+    /// Messages of the window. The second item is true if the message cancels the loading of a scene.
     requests: Receiver<(Vec<u8>, bool)>,
     replies: Receiver<Vec<u8>>,
     to_window: Sender<Vec<u8>>,
@@ -43,7 +44,7 @@ impl<S: StartSource + DeserializeOwned> Remote<S> {
         Self { live, engine, requests, replies, to_window, bytes: 0, interruptions: 0 }
     }
 
-    /// Processes messages on both sides until a frame fulfils a condition. Returns the frame.
+    /// Passes messages between window and solver until a frame of the window fulfils a condition. Returns this frame.
     fn until(&mut self, wanted: impl Fn(&LiveFrame) -> bool) -> LiveFrame {
         let begun = std::time::Instant::now();
         loop {
@@ -89,7 +90,7 @@ fn start() -> LiveStart {
     }
 }
 
-/// Returns a sequence of commands as a window sends them.
+/// Returns a typical sequence of commands of a window.
 fn commands(settings: Settings) -> Vec<Command> {
     let mut commands = vec![Command::Load(Box::new(start())), Command::Compare(vec![settings; 2])];
     commands.extend((0..30).map(|_| Command::Step));
@@ -197,7 +198,7 @@ fn what_cannot_be_made_remotely_is_refused_in_a_sentence() {
     assert_eq!(&*refusal, "start is here alone, but must be one that can be sent");
 }
 
-/// True if the window has sent a command that makes the present loading pointless.
+/// True if the window has sent a command for which the loading of a scene must stop.
 static IS_POINTLESS: AtomicBool = AtomicBool::new(false);
 
 /// Source of a pile: a deposition that continues until it is cancelled, or a pile that exists already.

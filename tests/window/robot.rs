@@ -1,4 +1,5 @@
-//! A simulated user of the window. It waits for the solver's thread before it looks at the result.
+//! A simulated user of the window. Before it looks at a result, it waits until the solver's thread has carried out all
+//! commands.
 
 pub use egui_kittest::kittest::{NodeT, Queryable};
 pub use glam::DVec2;
@@ -24,12 +25,12 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// Opens a window of 1000 × 700 points with a scene.
+    /// Opens a window of 1000 × 700 points with a scene, and waits until the scene is shown.
     pub fn open(config: Config) -> Self {
         Self::build(config, Preferences::default(), |window| window)
     }
 
-    /// Opens a window with a saved session or run.
+    /// Opens a window and loads a saved session or run.
     pub fn open_saved(path: &Path) -> Self {
         let mut robot = Self::open(Config::of_scene("cradle"));
         robot.state_mut().load_saved(path);
@@ -37,7 +38,7 @@ impl Robot {
         robot
     }
 
-    /// Opens a window with the panel for saving data. Its files are written into a folder.
+    /// Opens a window with the panel for saving data. The window writes its files into this folder.
     pub fn open_in(folder: &Path, config: Config) -> Self {
         let mut robot = Self::open(config);
         robot.state_mut().preferences.folder = folder.to_owned();
@@ -45,7 +46,7 @@ impl Robot {
         robot
     }
 
-    /// Opens a window like [`Self::open`] that can also draw pictures of itself, with these preferences.
+    /// Opens a window like [`Self::open`], with these preferences. This window can also draw pictures of itself.
     pub fn open_with_gpu(config: Config, preferences: Preferences) -> Self {
         Self::build(config, preferences, HarnessBuilder::wgpu)
     }
@@ -62,7 +63,7 @@ impl Robot {
         robot
     }
 
-    /// Opens a window that has not finished loading its first scene.
+    /// Opens a window, without waiting until its first scene is loaded.
     pub fn begin(
         config: Config,
         preferences: Preferences,
@@ -110,7 +111,7 @@ impl Robot {
         self.harness.query_all_by_label_contains(words).count() > 0
     }
 
-    /// Returns all texts of the last frame: position, visible area, and true if dots replace a part of the text.
+    /// Returns all texts that the window painted in the last frame.
     pub fn painted_texts(&self) -> Vec<PaintedText> {
         let mut all = Vec::new();
         for clipped in &self.harness.output().shapes {
@@ -119,7 +120,7 @@ impl Robot {
         all
     }
 
-    /// Returns the texts that are not completely visible.
+    /// Returns the texts of the last frame that are not completely visible.
     pub fn cut_texts(&self) -> Vec<String> {
         let is_cut =
             |text: &PaintedText| text.elided || !text.within.contains_rect(text.rect.shrink(1.0));
@@ -180,7 +181,7 @@ impl Robot {
         self.settle();
     }
 
-    /// Waits until a file is written. Returns the notice about the file.
+    /// Waits until the window has written a file. Returns the window's notice about the file.
     pub fn written(&mut self) -> String {
         self.until("the file", |state| !state.is_writing());
         self.notice()
@@ -198,7 +199,7 @@ impl Robot {
         }
     }
 
-    /// Draws frames until all commands have been carried out.
+    /// Draws frames until the solver's thread has carried out all commands.
     pub fn settle(&mut self) {
         self.until("the solver's thread", |state| {
             let frame = &state.run.frame;
@@ -261,13 +262,14 @@ impl Robot {
         self.settle();
     }
 
-    /// Returns a position within a control, from fractions of its width and height.
+    /// Returns a position within a control. `across` and `down` are fractions of its width and height.
     pub fn place(&self, control: &str, across: f32, down: f32) -> Pos2 {
         let rect = self.state().controls[control];
         rect.min + rect.size() * egui::vec2(across, down)
     }
 
-    /// Presses the mouse button at one position and moves the mouse to another position.
+    /// Presses the mouse button at the position `from` and moves the mouse to the position `to`, with the button still
+    /// pressed.
     pub fn drag(&mut self, from: Pos2, to: Pos2) {
         self.harness.hover_at(from);
         self.button(from, true);
@@ -288,9 +290,9 @@ impl Robot {
 pub struct PaintedText {
     pub text: String,
     pub rect: egui::Rect,
-    /// Visible area. The part of the text outside this area is cut.
+    /// Area in which the text is visible. Parts of the text outside this area are cut off.
     pub within: egui::Rect,
-    /// True if dots replace a part of the text.
+    /// True if dots replace a part of a text that is too long.
     pub elided: bool,
 }
 
@@ -322,7 +324,7 @@ impl egui::DroppedFile for File {
     }
 }
 
-/// Returns the bit patterns of positions and velocities of all grains.
+/// Returns the bit patterns of the positions, angles and velocities of all grains.
 pub fn bits(world: &WorldFrame) -> Vec<[u64; 6]> {
     let bits = |grain: &GrainView| {
         let (at, velocity) = (grain.position, grain.velocity);

@@ -2,13 +2,13 @@
 
 use crate::robot::*;
 
-/// Returns step, recorded time and present state of each compared simulation of a window.
+/// Returns the step number, the recorded time and the displayed state of each compared simulation of a window.
 fn shown(robot: &Robot) -> Vec<(u64, f64, Vec<[u64; 6]>)> {
     robot.of_worlds(|world| (world.snapshot.observables.step, world.recorded_secs, bits(world)))
 }
 
-/// Opens a window with two compared simulations, a change of settings during the run, a position before the end of the
-/// run, and an earlier run.
+/// Opens a window with two compared simulations and an earlier run. The settings were changed during the run, and the
+/// displayed time is before the end of the run.
 fn two_worlds() -> Robot {
     let mut robot = Robot::open(pile());
     let base = robot.settings();
@@ -194,7 +194,7 @@ fn saved(robot: &mut Robot) -> PathBuf {
     robot.saved()
 }
 
-/// Runs the program without a window. Returns its stderr.
+/// Runs the program without a window. Returns the text that it wrote to stderr.
 fn headless(arguments: &[&str], out: &Path) -> String {
     said(&run(slump("--headless").args(arguments).arg("--save").arg(out)))
 }

@@ -10,7 +10,7 @@ pub enum Error {
     Value {
         /// Name of the field, as the user writes it.
         field: String,
-        /// The value that was found.
+        /// The value that the user or a file gives, as text.
         value: String,
         /// Description of the allowed values.
         allowed: String,
@@ -66,7 +66,7 @@ pub enum Error {
         time_secs: f64,
         /// Bond number in the last step.
         bond: f64,
-        /// Time step, s.
+        /// Time step in the last step, s.
         time_step_secs: f64,
         /// Restitution in the last step.
         restitution: f64,
@@ -81,7 +81,7 @@ pub enum Error {
 pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
-    /// Returns an error about the value of a field.
+    /// Returns an error about the value of a field that is not allowed.
     pub fn value(
         field: impl Into<String>,
         value: impl std::fmt::Display,
@@ -90,7 +90,7 @@ impl Error {
         Self::Value { field: field.into(), value: value.to_string(), allowed: allowed.into() }
     }
 
-    /// Returns an error about a file or folder.
+    /// Returns an error about a file or folder that cannot be read or written.
     pub fn file(path: impl AsRef<Path>, reason: impl std::fmt::Display) -> Self {
         // Messages of parsers contain line breaks and end with them. The sentence of an error has no line break.
         let reason = reason.to_string().trim_end().replace('\n', " ");

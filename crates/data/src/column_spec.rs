@@ -1,39 +1,40 @@
-//! Defines how the columns of a table are declared. There is one list of declarations for each kind of row, which all
-//! code that shows or writes a column uses.
+//! Defines how a column of a table is declared: by name, unit, description, and a function that reads the value from a
+//! row. Each type of row has one list of such declarations, which all code that shows or writes its table uses.
 
 /// Declaration of one column of a table with rows of the type `Row`.
 #[derive(Clone, Copy, Debug)]
 pub struct ColumnSpec<Row: 'static> {
     /// Name of the column in tables.
     pub name: &'static str,
-    /// Unit; `1` for a dimensionless quantity, empty if the column is not a quantity.
+    /// Unit; `1` for a dimensionless quantity, empty if the column is not a physical quantity (an id, for example).
     pub unit: &'static str,
     /// Description of the column, in a few words or sentences.
     pub about: &'static str,
-    /// Kind of the column's values, with the function that takes the value from a row.
+    /// Type of the column's values (number, count, flag or word), with the function that reads the value from a row.
     pub value: CellValue<Row>,
 }
 
-/// Kind of a column's values, with the function that takes the value from a row.
+/// Type of a column's values (number, count, flag or word), with the function that reads the value from a row.
 #[derive(Clone, Copy, Debug)]
 pub enum CellValue<Row: 'static> {
     /// A number.
     Number(fn(&Row) -> f64),
-    /// A number that is missing in some rows.
+    /// A number that is missing (`None`) in some rows.
     SomeNumber(fn(&Row) -> Option<f64>),
     /// A whole number ≥ 0.
     Count(fn(&Row) -> u64),
-    /// True or false; `None` if the property does not exist under the contact law.
+    /// True or false; `None` if the contact law does not define the property (a law without bonds, for example).
     Flag(fn(&Row) -> Option<bool>),
     /// A word from a fixed list. The function returns the index of the word in the list.
     Word(&'static [&'static str], fn(&Row) -> u32),
-    /// A name from the list of names that belongs to the table. The function returns the index of the name in that
-    /// list.
+    /// A name from a list that is made together with the table, such as the materials of the scene. The function
+    /// returns the index of the name in that list.
     Name(fn(&Row) -> u32),
 }
 
 impl<Row> CellValue<Row> {
-    /// Returns the value in a row as a number (true is 1 and false is 0); `None` if the value is missing or a word.
+    /// Returns the column's value in a row as a number (true is 1 and false is 0); `None` if the value is missing, a
+    /// word or a name.
     pub fn number(&self, row: &Row) -> Option<f64> {
         match self {
             Self::Number(of) => Some(of(row)),
@@ -45,7 +46,8 @@ impl<Row> CellValue<Row> {
     }
 }
 
-/// Name of the column with the number of the step. Every table has this column, and rows are sorted by it.
+/// Name of the column with the number of the time step since the start of the run. Every table of a recording has this
+/// column, and its rows are sorted by it.
 pub(crate) const STEP: &str = "step";
 
 pub(crate) const fn column<Row>(

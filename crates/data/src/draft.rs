@@ -1,15 +1,17 @@
-//! Creates files without a name, for output that is not complete yet: on a disk, or in memory if there is no disk.
+//! Creates temporary files without a name, in which output is collected until it is complete: on a disk, or in memory
+//! if there is no disk.
 
 use std::path::Path;
 
-/// A file without a name, on a disk.
+/// A temporary file without a name, on a disk.
 #[cfg(not(target_arch = "wasm32"))]
 pub type DraftFile = std::fs::File;
-/// A file without a name, in memory.
+/// A temporary file without a name, in memory.
 #[cfg(target_arch = "wasm32")]
 pub type DraftFile = crate::memory::MemoryFile;
 
-/// Creates a file without a name in a folder. The file disappears with the process, however the process ends.
+/// Creates a temporary file without a name in a folder. The system deletes it when the process ends, even if the
+/// process is killed.
 ///
 /// # Errors
 /// If the system cannot create a file.
@@ -18,7 +20,7 @@ pub fn nameless_file(folder: &Path) -> std::io::Result<DraftFile> {
     tempfile::tempfile_in(folder)
 }
 
-/// Creates a file without a name in memory.
+/// Creates a temporary file without a name in memory.
 ///
 /// # Errors
 /// Never.

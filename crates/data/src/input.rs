@@ -1,4 +1,5 @@
-//! Reads files of unknown origin. Only plain files are read, and only up to a maximum size.
+//! Opens and reads input files that may come from anywhere and may be damaged. Only regular files are read (no devices
+//! or pipes), and the sizes of text files and the lengths of lines are limited.
 
 use std::io::{self, Read};
 use std::path::Path;
@@ -6,19 +7,20 @@ use std::path::Path;
 use crate::draft::DraftFile;
 use crate::error::{Error, Result};
 
-/// Largest accepted size of a page of a Parquet file, and of a file with a contact problem, bytes.
+/// Largest accepted size, in bytes, of an unpacked page (block of data) of a Parquet file, and of a file with a contact
+/// problem.
 pub(crate) const MOST_BYTES: u64 = 256 << 20;
-/// Largest accepted TOML file, bytes. Parsing a file takes about 60 times as much memory as the file. A file with
-/// 10,000 grains has about one MiB.
+/// Size of the largest accepted TOML file, bytes. Parsing a file takes about 60 times its size in memory. The file of a
+/// scene with 10,000 grains has about one MiB.
 pub const MOST_OF_TOML: u64 = 32 << 20;
-/// Longest accepted line of a table, bytes.
+/// Length of the longest accepted line of a table in a text file, bytes.
 const MOST_OF_LINE: usize = 1 << 20;
 
-/// Opens a plain file. `form` describes the expected content, for messages. Devices and pipes are refused, because they
-/// may have no end or cannot be read twice.
+/// Opens a regular file for reading. `form` describes the expected content, for error messages. Devices and pipes are
+/// refused, because they may have no end or cannot be read twice.
 ///
 /// # Errors
-/// The error names the file and gives the system's message, or says that the file is not a plain file.
+/// The error names the file and gives the system's message, or says that the file is a device or a pipe.
 pub(crate) fn open(path: &Path, form: &str) -> Result<DraftFile> {
     let refuse = |said: &dyn std::fmt::Display| Error::unread(path, said, form);
     #[cfg(target_arch = "wasm32")]
@@ -36,11 +38,11 @@ fn open_plain(path: &Path, refuse: &dyn Fn(&dyn std::fmt::Display) -> Error) -> 
     DraftFile::open(path).map_err(|error| refuse(&error))
 }
 
-/// Reads a text file of at most `most` bytes. `form` describes the expected content, for messages.
+/// Reads a text file of at most `most` bytes. `form` describes the expected content, for error messages.
 ///
 /// # Errors
-/// The error names the file and gives the system's message, or says that the file is not a plain file, not text, or too
-/// long.
+/// The error names the file and gives the system's message, or says that the file is a device or a pipe, not text, or
+/// too long.
 pub fn read_text(path: &Path, form: &str, most: u64) -> Result<String> {
     let mut text = String::new();
     let read = open(path, form)?.take(most + 1).read_to_string(&mut text);
@@ -51,7 +53,7 @@ pub fn read_text(path: &Path, form: &str, most: u64) -> Result<String> {
     read.map(|_| text).map_err(|error| Error::unread(path, error, form))
 }
 
-/// A source of bytes whose lines have a bounded length: reading a longer line fails.
+/// Wrapper of a source of bytes that limits the length of lines: reading a longer line fails.
 pub(crate) struct BoundedLines<Source> {
     source: Source,
     length: usize,

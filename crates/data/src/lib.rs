@@ -1,5 +1,5 @@
-//! Reads and writes the data of Slump's runs: requests for runs, measures of grains and piles, recordings in files that
-//! other programs can read, and files of contact problems.
+//! Reads and writes the data of Slump's runs: configurations of runs, recordings in files that other programs can read,
+//! and files of contact problems. Also computes measures of grains and piles, such as stress and solid fraction.
 
 #![cfg_attr(
     target_arch = "wasm32",

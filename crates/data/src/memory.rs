@@ -11,12 +11,12 @@ use std::io::{Cursor, Read, Result, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A file in memory. Copies are handles of the same file and share one position for reading and writing.
+/// A file in memory. Copies of this value are handles of the same file and share one position for reading and writing.
 #[derive(Clone, Debug, Default)]
 pub struct MemoryFile(Arc<Mutex<Cursor<Vec<u8>>>>);
 
 impl MemoryFile {
-    /// Creates a file with these bytes.
+    /// Creates a file with the content `bytes`.
     pub fn of(bytes: Vec<u8>) -> Self {
         Self(Arc::new(Mutex::new(Cursor::new(bytes))))
     }
@@ -38,7 +38,7 @@ impl MemoryFile {
         Ok(())
     }
 
-    /// Does nothing, because memory needs no synchronisation.
+    /// Does nothing, because a file in memory need not be written to a disk.
     ///
     /// # Errors
     /// Never.
@@ -84,7 +84,7 @@ impl Seek for MemoryFile {
     }
 }
 
-/// Files that the web page has given to the program, by their paths.
+/// Contents of the files that the web page has given to the program to read, by their paths.
 static GIVEN: Mutex<BTreeMap<PathBuf, Vec<u8>>> = Mutex::new(BTreeMap::new());
 static WRITTEN: Mutex<Vec<(PathBuf, Vec<u8>)>> = Mutex::new(Vec::new());
 
@@ -109,7 +109,7 @@ pub(crate) fn keep_written(path: &Path, file: &MemoryFile) {
     written.push((path.to_owned(), file.content()));
 }
 
-/// Removes and returns all files written since the last call, with their paths.
+/// Returns all files that the program has written since the last call, with their paths, and removes them from memory.
 pub fn written_files() -> Vec<(PathBuf, Vec<u8>)> {
     std::mem::take(&mut *WRITTEN.lock().unwrap_or_else(PoisonError::into_inner))
 }

@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn where_neither_is_so_one_of_two_is_seen_in_five_of_a_hundred() {
         // The p-values of both claims run over an even grid, as they would be distributed if both claims were false.
-        // Then at least one claim should be accepted at the rate 1 − 0.975².
+        // Then the test should find at least one claim true at the rate 1 − 0.975².
         let side = 400;
         let p = |place: usize| (place as f64 + 0.5) / side as f64;
         let seen = (0..side * side).filter(|at| p_of_either(p(at % side), p(at / side)) < 0.05);

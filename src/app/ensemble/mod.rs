@@ -1,11 +1,11 @@
-//! The ensemble of a world (simulation): runs with the same settings and other initial states, which differ only in
-//! their seed ("other piles" in the window). From these runs the window computes the mean result and its confidence
+//! The ensemble of a world (simulation): runs with the same settings from other initial states, which differ only in
+//! their seed ("other piles" in the window). From these runs the window computes the mean slump and its confidence
 //! interval.
 //!
-//! Piles are chaotic. The built-in pile was chosen because it shows the paper's pattern, so its seed is never in the
-//! ensemble. Idle cores run the other piles from their initial state to the end of the scene, with one set of settings.
-//! A run has no ensemble if its settings changed during the run or if the user pulled a grain, because then it cannot
-//! be compared with these runs.
+//! Piles are chaotic, so the window shows a mean over several runs. The built-in pile was chosen because it shows the
+//! paper's pattern, so its seed is never in the ensemble. Idle cores run the other piles from their initial state to
+//! the end of the scene, with constant settings. A run has no ensemble if its settings changed during the run or if the
+//! user pulled a grain, because such a run cannot be compared with runs under constant settings.
 
 mod pool;
 mod runs;
@@ -25,7 +25,7 @@ use pool::{EnsembleSummary, WorkerPool, idle_cores};
 pub(crate) use runs::Band;
 use runs::others_of;
 
-/// Hover text that explains the mean over other initial states.
+/// Hover text that explains the mean slump of runs from other initial states.
 const RULE: &str = "Idle cores run other piles with the present settings from their initial state on. They differ \
                     from this pile only in their seed. Thin lines show these piles, the dashed line shows their \
                     mean. ± is the 95 % interval of that mean (Student's), not the spread of the piles. They start \
@@ -33,23 +33,23 @@ const RULE: &str = "Idle cores run other piles with the present settings from th
                     hand, has no other piles: reset it. The seed of the shipped pile, which was chosen, is never \
                     among them.";
 
-/// The other initial states of the open scene, and the threads that run them.
+/// The ensembles of the visible simulations: the other initial states of the open scene, and the threads that run them.
 #[derive(Default)]
 pub struct Ensemble {
-    /// Folder in which initial states are stored; `None` if the system has no such folder.
+    /// Folder in which the computed initial states are stored; `None` if the user has no folder for such files.
     folder: Option<PathBuf>,
-    /// The open scene; `piles` are its other initial states.
+    /// The open scene as the window loaded it; `piles` are the same pile with other seeds.
     opened: Option<Arc<LiveStart>>,
     piles: Vec<NewPile>,
     pool: Option<WorkerPool>,
     worlds: Vec<Option<Settings>>,
-    /// Settings of all runs of one kind that the user has started, with the results of their ensembles; `kind` is the
-    /// kind.
+    /// Settings of all comparable runs that the user has started, with the results of their ensembles. `kind` is the
+    /// data that all these runs share.
     released: Vec<Released>,
     kind: Option<PileKind>,
 }
 
-/// Kind of a run: all data that determine the other initial states. Runs of the same kind can be compared.
+/// All data of a run that determine the other initial states. Runs with equal data can be compared.
 #[derive(PartialEq)]
 struct PileKind {
     scene: String,
@@ -65,34 +65,36 @@ impl Ensemble {
         Self { folder, ..Self::default() }
     }
 
-    /// Changes the folder in which initial states are stored.
+    /// Changes the folder in which the computed initial states are stored.
     pub fn keep_in(&mut self, folder: PathBuf) {
         self.stop();
         self.folder = Some(folder);
     }
 
-    /// Folder in which initial states are stored, if there is one.
+    /// Folder in which the computed initial states are stored, if there is one.
     pub(super) fn folder(&self) -> Option<PathBuf> {
         self.folder.clone()
     }
 
-    /// Ends all threads and discards their results.
+    /// Ends all threads that compute ensembles and discards their results.
     pub fn stop(&mut self) {
         self.pool = None;
         self.worlds.clear();
     }
 
-    /// True if the open scene has other initial states, and if there are cores to compute them.
+    /// True if an ensemble can be computed: the open scene was made from a seed, and there are idle cores and a folder
+    /// for initial states.
     pub(super) fn is_possible(&self) -> bool {
         self.folder.is_some() && idle_cores() > 0 && !self.piles.is_empty()
     }
 
-    /// Number of threads that run other initial states.
+    /// Number of threads that compute ensembles.
     pub fn threads(&self) -> usize {
         self.pool.as_ref().map_or(0, WorkerPool::threads)
     }
 
-    /// Computes ensembles for the simulations of the newest frame. If `is_wanted` is false, stops all threads.
+    /// Starts or continues the ensembles of the simulations in the newest frame. If `is_wanted` is false, stops all
+    /// threads.
     pub(super) fn follow(&mut self, context: &egui::Context, frame: &LiveFrame, is_wanted: bool) {
         let address = |opened: &Option<Arc<LiveStart>>| opened.as_ref().map(Arc::as_ptr);
         if address(&self.opened) != address(&frame.start) {
@@ -128,7 +130,7 @@ impl Ensemble {
         }
     }
 
-    /// Discards the runs that the user has started, if the open scene is of another kind.
+    /// Discards the settings and results of started runs if they cannot be compared with runs of the open scene.
     fn note_kind(&mut self) {
         let Some(opened) = self.opened.as_ref().filter(|_| !self.piles.is_empty()) else { return };
         let kind = Some(PileKind {
@@ -143,7 +145,8 @@ impl Ensemble {
         }
     }
 
-    /// Stores the settings of the runs that the user has started. Returns true if some of these settings are new.
+    /// Stores the settings of the visible runs that the user has started. Returns true if some of these settings are
+    /// new.
     fn note_released(&mut self, frame: &LiveFrame, all: &[Option<Settings>]) -> bool {
         let before = self.released.len();
         for (world, settings) in frame.worlds.iter().zip(all) {
@@ -158,7 +161,7 @@ impl Ensemble {
         self.released.len() > before
     }
 
-    /// Discards all runs that the user has started. The visible runs are added again with the next frame.
+    /// Discards the settings and results of all started runs. The visible runs are added again with the next frame.
     pub(super) fn forget_released(&mut self) {
         self.released.clear();
     }
@@ -177,14 +180,14 @@ impl Ensemble {
         self.released.iter().filter(move |(settings, _)| is_open && !is_on_its_way(settings))
     }
 
-    /// Returns the results of the other initial states with the settings of a started run.
+    /// Returns the slumps of the ensemble with the given settings; `None` if no started run has these settings.
     pub(crate) fn band(&self, settings: &Settings) -> Option<&Arc<Band>> {
         let mut released = self.released.iter().filter(|_| !self.piles.is_empty());
         released.find(|(own, _)| own == settings).map(|(_, band)| band)
     }
 
-    /// Returns a sentence on the effect of a change of settings on the slump of the other initial states at a simulated
-    /// time. `None` if fewer than two initial states ran under both settings.
+    /// Returns a sentence that compares the mean slump of the ensemble before and after a change of settings, at a
+    /// simulated time. `None` if fewer than two initial states ran under both settings.
     pub(crate) fn effect(
         &self,
         before: &Settings,
@@ -195,7 +198,7 @@ impl Ensemble {
         Some(format!("{}: {}", change_text(before, after), effect(&paired, self.piles.len())?))
     }
 
-    /// Returns a text on the ensemble of a simulation: its explanation and its seeds.
+    /// Returns a text that explains the ensemble of a simulation and lists its seeds.
     pub(crate) fn about(&self, world: usize) -> String {
         let Some(summary) = self.summary(world) else { return RULE.into() };
         let EnsembleSummary { seeds, settling, failed, .. } = summary;
@@ -210,29 +213,29 @@ impl Ensemble {
         text
     }
 
-    /// Returns the mean result of a simulation's ensemble at the displayed moment, as text. `None` if the simulation
-    /// has no ensemble.
+    /// Returns the mean slump of a simulation's ensemble at the displayed simulated time, as text. `None` if the
+    /// simulation has no ensemble.
     pub(crate) fn said(&self, frame: &LiveFrame, world: usize) -> Option<String> {
         let row = frame.worlds.get(world)?.snapshot.observables;
         Some(said(&self.summary(world)?, row.time_secs))
     }
 
-    /// Returns the mean slump of the other initial states that have reached a simulated time (s), half the width of its 95 %
-    /// interval, and the number of these states.
+    /// Returns the mean slump of a simulation's ensemble at a simulated time, s, half the width of its 95 % confidence
+    /// interval, and the number of runs.
     pub fn mean_at(&self, world: usize, time_secs: f64) -> Option<(f64, f64, usize)> {
         let band = self.summary(world)?.band;
         let (mean, half) = band.at(time_secs)?;
         Some((mean, half, band.count))
     }
 
-    /// Returns the state of a simulation's ensemble; `None` if the simulation has no ensemble.
+    /// Returns the results of a simulation's ensemble so far; `None` if the simulation has no ensemble.
     pub(crate) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
         self.pool.as_ref()?.summary(world)
     }
 }
 
-/// Returns a text with the mean slump before and after a change and the mean difference. `planned` is the total number
-/// of initial states.
+/// Returns a text with the mean slump before and after a change of settings, and the mean difference. `planned` is the
+/// number of initial states in the whole ensemble.
 fn effect([before, after, difference]: &[Mean; 3], planned: usize) -> Option<String> {
     const WORDS: [&str; 9] = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"];
     let count = difference.count;
@@ -252,14 +255,14 @@ fn effect([before, after, difference]: &[Mean; 3], planned: usize) -> Option<Str
     Some(format!("slump {before} → {after}, {piles} each; difference {difference} (paired)"))
 }
 
-/// Returns a text on the results of an ensemble at a simulated time.
+/// Returns a text with the mean slump of an ensemble at a simulated time, s, and the number of its runs.
 fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
     let (planned, count) = (summary.seeds.len() - summary.failed, summary.band.count);
     let mean = summary.band.at(time_secs);
     let of = if count < planned { format!("{count} of {planned}") } else { count.to_string() };
     match (mean, summary.settling) {
         (Some((mean, half)), _) if half.is_finite() => {
-            // The digits show half the width of the interval with two digits, or with one below 0.01.
+            // Half the width of the interval is shown with two digits, or with one digit if it is below 0.01.
             let decimals = if half >= 0.1 { 2 } else { 3 };
             format!("other piles {mean:.decimals$} ± {half:.decimals$} (n = {of})")
         }

@@ -1,4 +1,5 @@
-//! Worker threads that run the ensemble (runs of other initial states), with the jobs that wait, run or have finished.
+//! Worker threads that compute the ensemble (runs from other initial states), with the jobs that wait, run or have
+//! finished.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -15,13 +16,13 @@ use crate::sim::Settings;
 use crate::study::settled_pile;
 use crate::world::Grain;
 
-/// Least time between two progress reports of a pile that is being deposited.
+/// Least time between two reports of the progress while a pile is being deposited.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
-/// Number of cores that these threads do not use. One core is for the visible run. If the system cannot lower the
-/// priority of a thread, one more core is for the window.
+/// Number of cores that the threads of the ensemble do not use. One core is for the visible run. If the system cannot
+/// lower the priority of a thread, one more core is for the window.
 const LEFT: usize = if cfg!(any(target_os = "linux", windows)) { 1 } else { 2 };
 
-/// Returns the number of idle cores while a simulation runs. On a machine with one core it is 0.
+/// Returns the number of cores that are idle while a simulation runs in the window. On a machine with one core it is 0.
 pub(super) fn idle_cores() -> usize {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     cores.saturating_sub(LEFT)
@@ -54,7 +55,7 @@ pub(in crate::app) fn on_idle_cores<T: Send>(work: impl FnOnce() -> Result<T> + 
     pool.map_err(refuse)?.install(work)
 }
 
-/// A job for one pile, which is identified by its index in the ensemble.
+/// A job for one pile of the ensemble. The first number is the index of the pile.
 #[derive(Clone, Copy, PartialEq)]
 enum PileJob {
     /// Deposit the pile: let its grains fall into the box and come to rest.
@@ -72,30 +73,30 @@ enum JobState {
     Failed,
 }
 
-/// Results of the other initial states with the settings of one simulation.
+/// Results of runs from other initial states with the settings of one simulation.
 #[derive(Clone, Debug)]
 pub(crate) struct EnsembleSummary {
     /// Slumps of the piles whose runs have finished.
     pub band: Arc<Band>,
     pub seeds: Vec<u64>,
     pub failed: usize,
-    /// Number of the pile that is being deposited, counted from 1, and its finished fraction, 0 to 1.
+    /// Number (from 1) of the pile that is being deposited, and the finished fraction of its deposition, 0 to 1.
     pub settling: Option<(usize, f32)>,
 }
 
-/// Settings of a run that the user has started, and the slumps of other initial states with these settings.
+/// Settings of a run that the user has started, and the slumps of runs with these settings from other initial states.
 pub(crate) type Released = (Settings, Arc<Band>);
 
-/// The waiting, running and finished jobs.
+/// The waiting, running and finished jobs of the ensemble's threads.
 #[derive(Default)]
 struct Jobs {
     /// Settings of each visible simulation; `None` for a simulation that has no ensemble.
     worlds: Vec<Option<Settings>>,
-    /// Settings of all runs that the user has started. Their jobs have lower priority than the jobs of the visible
-    /// simulations.
+    /// Settings of all runs that the user has started. Ensembles with these settings have lower priority than ensembles
+    /// of the visible simulations.
     released: Vec<Settings>,
     begun: Vec<(PileJob, JobState)>,
-    /// Results of finished runs, by their settings.
+    /// Slumps of finished runs, by their settings.
     bands: Vec<Released>,
     is_over: bool,
 }
@@ -109,8 +110,8 @@ impl Jobs {
         !self.is_over && matches!(self.state(job), Some(JobState::Underway(_)))
     }
 
-    /// Begins the next job and returns it with the grains of its pile. Jobs with the settings of visible simulations
-    /// come first, then jobs with earlier settings, the newest settings first.
+    /// Marks the next job as running and returns it with the grains of its pile. Jobs with the settings of visible
+    /// simulations come first, then jobs with the settings of earlier runs, the newest run first.
     fn next(&mut self, piles: usize) -> Option<(PileJob, Vec<Grain>)> {
         let worlds = self.worlds.iter().copied().flatten().collect();
         let earlier = self.released.iter().rev().map(|&settings| vec![settings]);
@@ -121,7 +122,7 @@ impl Jobs {
     }
 
     /// Returns the next job for these settings. Each pile is run with all settings before the next pile is begun, so
-    /// that all settings have the same number of piles.
+    /// that the results under all settings are from the same piles.
     fn next_of(&self, settings: &[Settings], piles: usize) -> Option<(PileJob, Vec<Grain>)> {
         if settings.is_empty() {
             return None;
@@ -161,7 +162,7 @@ impl Jobs {
     }
 }
 
-/// State that the threads and the window share.
+/// State that the threads of the ensemble and the window share.
 struct PoolState {
     opened: Arc<LiveStart>,
     piles: Vec<NewPile>,
@@ -171,16 +172,17 @@ struct PoolState {
     news: Condvar,
 }
 
-/// The worker threads. When this value is dropped, the threads end after their present step.
+/// The worker threads of the ensemble. When this value is dropped, the threads end after their present step.
 pub(super) struct WorkerPool {
     state: Arc<PoolState>,
-    // A thread ends when its loop ends.
+    // Each thread runs one loop and ends when this loop ends.
     threads: Vec<rayon::ThreadPool>,
 }
 
 impl WorkerPool {
-    /// Starts one thread per idle core. Initial states are stored in `folder`. When a thread has a result, it requests
-    /// a new frame from `context`. Results that `released` contains are not computed again.
+    /// Starts one thread per idle core. The initial states `piles` are stored in `folder` after their deposition. When
+    /// a thread has a result, it requests a new frame from `context`. Results that `released` contains are not computed
+    /// again.
     pub(super) fn start(
         folder: &Path,
         context: &egui::Context,
@@ -217,8 +219,8 @@ impl WorkerPool {
         Self { state, threads }
     }
 
-    /// Computes runs with the settings of the visible simulations, then runs with the settings `released`. Discards the
-    /// results of all other settings.
+    /// Lets the threads compute ensembles with the settings of the visible simulations, then with the settings
+    /// `released`. Discards the results with all other settings.
     pub(super) fn follow(&self, worlds: Vec<Option<Settings>>, released: Vec<Settings>) {
         let mut jobs = self.state.lock();
         let is_wanted =
@@ -232,7 +234,7 @@ impl WorkerPool {
         self.state.news.notify_all();
     }
 
-    /// Copies the results of finished runs to `released`.
+    /// Copies the slumps of finished runs to the entries of `released` with the same settings.
     pub(super) fn note_runs(&self, released: &mut [Released]) {
         let jobs = self.state.lock();
         for (settings, band) in released {
@@ -242,8 +244,8 @@ impl WorkerPool {
         }
     }
 
-    /// Returns the results of the other initial states with the settings of a simulation; `None` if the simulation has
-    /// no ensemble.
+    /// Returns the results of runs from other initial states with the settings of a simulation; `None` if the
+    /// simulation has no ensemble.
     pub(super) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
         let (jobs, piles) = (self.state.lock(), &self.state.piles);
         let settings = (*jobs.worlds.get(world)?)?;
@@ -282,7 +284,7 @@ impl PoolState {
         self.jobs.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Main loop of a thread.
+    /// Main loop of a worker thread: takes and performs jobs until the pool is closing.
     fn work(&self) {
         while let Some((job, grains)) = self.next() {
             let came_to = match job {

@@ -1,4 +1,5 @@
-//! The other initial states of a scene ("other piles"), the computation of one run, and the mean over finished runs.
+//! The other initial states of a scene ("other piles", made from other seeds), the computation of one run, and the mean
+//! over finished runs.
 
 use std::ops::ControlFlow;
 
@@ -13,21 +14,21 @@ use crate::world::Grain;
 /// The slump Δy of a run (relative drop of the mean height) against simulated time: pairs of time, s, and slump.
 pub(crate) type SlumpSeries = Vec<[f64; 2]>;
 
-/// Mean slump of several runs with its 95 % confidence interval (Student's distribution), at the times that all runs
-/// have in common.
+/// Mean slump of several runs against simulated time with its 95 % confidence interval (Student's distribution), at the
+/// times that all runs have in common.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Band {
     pub times_secs: Vec<f64>,
     pub means: Vec<f64>,
-    /// Upper ends of the confidence intervals; ∞ for a single run.
+    /// Upper ends of the confidence intervals of the means; ∞ for a single run.
     pub highs: Vec<f64>,
     pub count: usize,
-    /// The runs, each with the index of its pile in the ensemble.
+    /// The slump curves of the runs, each with the index of its pile in the ensemble.
     pub runs: Vec<(usize, SlumpSeries)>,
 }
 
 impl Band {
-    /// Computes the means of runs that have the same settings and therefore the same times.
+    /// Computes the mean slumps of runs that have the same settings and therefore the same times.
     pub(super) fn of(runs: &[(usize, &SlumpSeries)]) -> Self {
         let all = runs.iter().map(|&(pile, run)| (pile, run.clone())).collect();
         let mut band = Self { count: runs.len(), runs: all, ..Self::default() };
@@ -43,7 +44,7 @@ impl Band {
     }
 
     /// Returns the mean slump and the half-width of its confidence interval at the last computed time up to
-    /// `time_secs`. `None` before the first and after the last time.
+    /// `time_secs`, s. `None` before the first and after the last time.
     pub(crate) fn at(&self, time_secs: f64) -> Option<(f64, f64)> {
         let index = self.index_at(time_secs)?;
         Some((self.means[index], self.highs[index] - self.means[index]))
@@ -55,8 +56,9 @@ impl Band {
         index.checked_sub(1).filter(|_| time_secs < last + spacing)
     }
 
-    /// Compares the piles that ran under both settings, at a simulated time. Returns the mean slump of this band, the
-    /// mean slump of `other`, and the mean of the differences, `other` − `self`.
+    /// Compares runs under two settings at a simulated time, s. Only the piles that ran under both settings count.
+    /// Returns the mean slump under the settings of `self`, the mean slump under those of `other`, and the mean
+    /// difference, `other` − `self`.
     pub(super) fn paired(&self, other: &Self, time_secs: f64) -> Option<[Mean; 3]> {
         let (index, other_index) = (self.index_at(time_secs)?, other.index_at(time_secs)?);
         let pair = |(pile, run): &(usize, SlumpSeries)| {
@@ -70,10 +72,10 @@ impl Band {
     }
 }
 
-/// Largest number of points in the slump curve of a run, without its last point.
+/// Largest number of points in the slump curve of a run, not counting the last point.
 const MOST_POINTS: u64 = 400;
-/// Computes the slump of a scene from its initial state to its end. `goes_on` is called after each step; if it returns
-/// false, the run stops and the result is `None`.
+/// Computes the slump curve of a scene from its initial state to its end. `goes_on` is called after each step; if it
+/// returns false, the run stops and the result is `None`.
 pub(super) fn slump(
     scene: &Scene,
     mut goes_on: impl FnMut() -> bool,
@@ -97,14 +99,14 @@ pub(super) fn slump(
     }
 }
 
-/// Number of other initial states per simulation.
+/// Number of initial states in an ensemble.
 const COUNT: usize = 8;
-/// Largest number of grains of a pile with an ensemble. The deposition of a larger pile takes minutes.
+/// Largest number of grains of a pile for which an ensemble is computed. The deposition of a larger pile takes minutes.
 const MOST_GRAINS: usize = 1_000;
 
-/// Returns the other piles of the open scene: piles that differ only in their seed. The seeds are 1, 2, …, without the
-/// scene's own seed and the seed of the built-in pile. The list is empty if the grains of the scene were not made from
-/// a seed, or if the scene is too large.
+/// Returns the descriptions of the other piles of the open scene, which differ only in their seed. The seeds are 1, 2,
+/// …, without the scene's own seed and the seed of the built-in pile. The list is empty if the grains of the scene were
+/// not made from a seed, or if the scene is too large.
 pub(super) fn others_of(opened: &LiveStart) -> Vec<NewPile> {
     let Some(own) = pile_of(opened).filter(|pile| pile.grains <= MOST_GRAINS) else {
         return Vec::new();
@@ -114,7 +116,8 @@ pub(super) fn others_of(opened: &LiveStart) -> Vec<NewPile> {
     seeds.take(COUNT).map(|seed| NewPile { seed, ..own.clone() }).collect()
 }
 
-/// Returns the settings from which the pile of a scene was made; `None` if it was not made from a seed.
+/// Returns the description from which the pile of a scene was made (seed, number of grains, box); `None` if the grains
+/// were not made from a seed.
 fn pile_of(opened: &LiveStart) -> Option<NewPile> {
     let LiveStart { config, scene, .. } = opened;
     if config.source.initial.is_some() {
@@ -131,7 +134,7 @@ fn pile_of(opened: &LiveStart) -> Option<NewPile> {
     config.new_pile().ok()?.or_else(is_shipped)
 }
 
-/// Returns the open scene with the grains of another initial state and with these settings.
+/// Returns the open scene with the settings `settings` and the grains of another pile.
 pub(super) fn scene_of(
     opened: &LiveStart,
     pile: &NewPile,

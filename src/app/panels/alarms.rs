@@ -5,8 +5,9 @@ use crate::app::watched_run::WatchedRun;
 use crate::live::{WorldAlarm, WorldFrame};
 use crate::sim::{AlarmKind, Settings};
 
-/// Returns the warnings about the selected simulation, then those about the other simulations with their titles. Within
-/// a simulation, warnings under the present settings come first, then earlier warnings, the newest first.
+/// Returns the texts of warnings about the selected simulation, then those about the other simulations with their
+/// titles. Within a simulation, warnings under the present settings come first, then warnings under earlier settings;
+/// the newest are first.
 pub(super) fn alarms(run: &WatchedRun) -> Vec<String> {
     let of_world = |index: usize| {
         let world = &run.frame.worlds[index];
@@ -24,7 +25,7 @@ pub(super) fn alarms(run: &WatchedRun) -> Vec<String> {
     selected.into_iter().chain(others).flat_map(of_world).collect()
 }
 
-/// True for a warning that follows from a choice of the user: unsolved steps under the preset Fast, without cohesion.
+/// True for a warning that the user has chosen to accept: unsolved steps with the solver preset Fast at Bond number 0.
 /// With cohesion the warning is shown, because unsolved steps break bonds.
 fn is_expected(alarm: &WorldAlarm, world: &WorldFrame) -> bool {
     let Settings { parameters, solver, .. } = world.controls.settings;

@@ -8,28 +8,29 @@ use glam::DVec2;
 use super::grabbing::WorldCell;
 use crate::sim::Snapshot;
 
-/// Duration of a flash, s.
+/// Wall-clock time for which the ring of a broken bond is visible, s.
 const LASTS_SECS: f64 = 0.4;
-/// Radius of a ring, mean diameters.
+/// Radius of the ring around a broken bond, in mean diameters.
 const RADIUS: f64 = 0.35;
-/// Largest number of grains of a scene in which rings are drawn. With more grains a ring is only a few pixels large.
+/// Largest number of grains of a scene in which rings around broken bonds are drawn. With more grains a ring is only a
+/// few pixels large.
 const MOST_GRAINS: usize = 3_000;
 
 /// Bonds of one simulation that broke recently.
 #[derive(Default)]
 pub(super) struct BreakingBonds {
-    /// Number of the loaded initial state (counted from 1), and simulated time (s), of the moment that was shown last.
+    /// Number of initial states loaded so far and simulated time (s), both for the snapshot that was shown last.
     seen: (u64, f64),
-    /// Pairs of grains that pulled each other at that moment.
+    /// Pairs of grains that pulled each other in the snapshot that was shown last.
     pulling: BTreeSet<[u32; 2]>,
-    /// Positions of broken bonds, m, each with the time at which its flash began, s.
+    /// Positions of broken bonds, m, each with the wall-clock time at which its ring appeared, s.
     flashes: Vec<(DVec2, f64)>,
 }
 
 impl BreakingBonds {
-    /// Compares the present moment with the moment that was shown before. If a pair of grains pulled each other and now
-    /// has no contact, its bond broke. If the present moment is earlier or belongs to another run, no bond counts as
-    /// broken.
+    /// Compares the present snapshot with the snapshot that was shown before. If a pair of grains pulled each other
+    /// before and has no contact now, its bond broke. If the present snapshot is earlier or belongs to another run, no
+    /// bond counts as broken.
     fn follow(&mut self, run: u64, snapshot: &Snapshot, now_secs: f64) {
         let seen = (run, snapshot.observables.time_secs);
         if seen == self.seen {
@@ -55,7 +56,7 @@ impl BreakingBonds {
         self.pulling = touching(true).collect();
     }
 
-    /// Draws the rings of one simulation, which fade.
+    /// Draws fading rings around the bonds of one simulation that broke recently.
     pub(super) fn show(&mut self, ui: &Ui, run: u64, cell: &WorldCell<'_>, colour: Color32) {
         let snapshot = &cell.frame.snapshot;
         if snapshot.grains.len() > MOST_GRAINS {

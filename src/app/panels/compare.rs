@@ -12,9 +12,9 @@ use crate::solver::{FrictionModel, METHODS, Method, MethodInfo, SolverSettings};
 use crate::study::{FIG4_BONDS, FIG4_TIME_STEPS_SECS};
 use crate::world::{FrictionCone, Parameters};
 
-/// The time steps of the paper, s.
+/// Time steps Δt that the paper compares, s.
 const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
-/// Largest number of worlds side by side.
+/// Largest number of worlds (simulations) side by side.
 const MOST_WORLDS: usize = 6;
 
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
@@ -52,7 +52,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
 struct LineUp {
     name: &'static str,
     hint: &'static str,
-    /// Returns the simulations' settings, made from the settings that [`base`] returns.
+    /// Returns the settings of all simulations, made from the common settings that [`base`] returns.
     worlds: fn(Settings) -> Vec<Settings>,
 }
 
@@ -122,17 +122,17 @@ const METHOD_LINE_UPS: [LineUp; 3] = [
     },
 ];
 
-/// Returns the settings with another stepper. Remedies and settings that this stepper does not support are switched
-/// off.
+/// Returns the settings with another stepper (rule that advances the grains by Δt). Settings and remedies (corrections
+/// of known weaknesses of a step) that this stepper does not support are switched off.
 fn stepped(base: Settings, stepper: Stepper) -> Settings {
     let mut settings = Settings { stepper, ..base };
     settings.parameters.cone = FrictionCone::Shifted;
     settings.with_only_what_is_taken()
 }
 
-/// Returns the settings on which the presets are based: the settings of the scene, with the stepper and the parameters
-/// that all simulations share. Solver, remedies and touch tolerance of the previous comparison are ignored, because the
-/// user would not see them.
+/// Returns the common settings on which the presets for comparisons are based: the settings of the scene, with the
+/// stepper and the parameters that all compared simulations share. Solver, remedies and touch tolerance of these
+/// simulations are ignored, because the user would not see that the presets use them.
 fn base(scene: &Settings, worlds: &[Settings]) -> Settings {
     let mut base = *scene;
     let physics = Parameters::ABOUT.iter().filter(|about| about.name != "touch-tolerance");
@@ -171,7 +171,8 @@ fn line_ups(ui: &mut Ui, run: &mut WatchedRun, all: &[LineUp]) {
     });
 }
 
-/// Shows the row of one simulation. Returns true if the user removes the simulation.
+/// Shows the row of one simulation in the list of compared simulations. Returns true if the user removes the
+/// simulation.
 fn row(ui: &mut Ui, run: &mut WatchedRun, index: usize) -> bool {
     let mut removed = false;
     ui.horizontal(|ui| {

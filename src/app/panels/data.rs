@@ -52,7 +52,7 @@ fn saved_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Shows the field for a file to be opened.
+/// Shows the field for the path of a saved run or session to be opened.
 fn open(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let hint = "A file from Save state, Save session, --save or --checkpoint-every. You can also drop it on \
@@ -79,7 +79,7 @@ fn open(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Shows the choices of an export.
+/// Shows the controls for an exported recording: time interval, spacing of frames, file formats and folder.
 fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
     stretch(ui, context);
     let choices = &mut context.preferences.data;
@@ -135,7 +135,7 @@ fn words(format: FormatName) -> (&'static str, &'static str) {
     }
 }
 
-/// Shows the choice of a time interval of the recorded run.
+/// Shows the controls for the time interval of the run that is exported.
 fn stretch(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let Some(world) = context.run.world() else { return };
     let (first, last) = (world.recorded_from_secs, world.recorded_secs);
@@ -168,7 +168,7 @@ fn stretch(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Shows the button that starts an export or, during an export, its progress.
+/// Shows the button that exports a recording or, during an export, its progress.
 fn export(ui: &mut Ui, context: &mut PanelContext<'_>, is_ready: bool) {
     if let Some(export) = &context.exports.data.export {
         return export.show(

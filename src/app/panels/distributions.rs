@@ -1,5 +1,5 @@
-//! Panel: histograms of forces, directions, contacts and overlaps at the displayed moment, which a separate thread
-//! counts.
+//! Panel: histograms of forces, contact directions, contacts per grain and overlaps at the displayed simulated time. A
+//! separate thread counts the values.
 
 use std::time::Duration;
 
@@ -14,23 +14,23 @@ use crate::app::watched_run::{TakenRun, WatchedRun};
 use crate::app::work::{Work, outcome_of_ended};
 use crate::granular::{Histogram, histograms};
 
-/// Least time between two counts of the histograms.
+/// Least time between two computations of the histograms.
 const INTERVAL: Duration = Duration::from_millis(200);
 
-/// Histograms of one simulation at the displayed moment, or at a slightly earlier moment.
+/// Histograms of one simulation at the displayed simulated time, or slightly before.
 #[derive(Default)]
 pub(super) struct Distributions {
     /// The newest histograms.
     histograms: Vec<Histogram>,
-    /// Index of the simulation and number of the step of the newest count.
+    /// Index of the simulation and number of the step for which histograms were last requested.
     of: Option<(usize, u64)>,
     asked: Option<Instant>,
     coming: Option<Work<Vec<Histogram>>>,
 }
 
-/// Height of the plot, points.
+/// Height of the histogram, points.
 const HEIGHT: f32 = 150.0;
-/// The histograms: name in files, text of the button, text of the axis.
+/// The histograms that the panel offers: name in files, text of the button, text of the axis.
 const ALL: [(&str, &str, &str); 4] = [
     ("normal_force", "forces", "N divided by the mean |N| of contacts with a force"),
     ("contact_orientation", "directions", "direction of normals, degrees from the x axis"),
@@ -70,8 +70,8 @@ impl Distributions {
         ui.label(RichText::new(text).small().weak());
     }
 
-    /// Starts a count of the displayed moment, if this moment is new, no other count is running, and the last count was
-    /// long enough ago.
+    /// Starts to compute the histograms of the displayed state if this state is new, no other computation is running,
+    /// and the last one began long enough ago.
     fn count(&mut self, ui: &Ui, run: &mut WatchedRun) {
         let Some(world) = run.world() else { return };
         let of = Some((run.selected, world.snapshot.observables.step));
@@ -93,8 +93,8 @@ impl Distributions {
     }
 }
 
-/// Returns one bar per bin. The axis of overlaps is logarithmic. A bin that is open at one end is as wide as the first
-/// bin with two ends.
+/// Returns one bar per bin of a histogram. The axis of overlaps is logarithmic. A bin that is open at one end is as
+/// wide as the first bin with two ends.
 fn bars(histogram: &Histogram) -> Vec<Bar> {
     let Histogram { edges, counts, quantity, .. } = histogram;
     let is_log = *quantity == "overlap";

@@ -14,7 +14,7 @@ use crate::live::Command;
 /// Speeds of playing that the user can choose: simulated time per wall-clock time.
 const PACES: [f64; 7] = [0.01, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0];
 
-/// Smallest width of a slider with its number, points.
+/// Smallest width of a main slider with its number, points.
 const LEAST_WIDTH: f32 = 150.0;
 
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -109,8 +109,8 @@ fn pace(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// Changes the speed of playing to the next smaller or larger value of the list. The largest is the full speed of the
-/// machine.
+/// Changes the speed of playing to the next smaller or larger speed of the list. Above the largest speed, the run is
+/// computed as fast as the machine can.
 pub(crate) fn change_pace(context: &mut PanelContext<'_>, is_faster: bool) {
     let now = context.preferences.speed;
     let mut paces = PACES.into_iter();
@@ -164,7 +164,7 @@ fn mark_events(ui: &Ui, context: &PanelContext<'_>, rect: Rect, end_secs: f64) {
     }
 }
 
-/// Shows the main sliders that have an effect in the scene, side by side.
+/// Shows the main sliders that have an effect in the scene, side by side; in a lesson, only the sliders of the lesson.
 fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let Some((before, start)) = context.run.wanted_and_start() else { return };
     let (index, mut settings) = (context.run.selected, before);
@@ -203,7 +203,7 @@ fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// Shows a warning if the time step is too long, otherwise a hint on the sliders.
+/// Shows a warning if the time step is too long, otherwise a hint on the main sliders.
 fn what_to_try(ui: &mut Ui, context: &PanelContext<'_>) {
     let Some(world) = context.run.world() else { return };
     let settings = world.controls.settings;
@@ -229,5 +229,5 @@ fn what_to_try(ui: &mut Ui, context: &PanelContext<'_>) {
     ui.add(egui::Label::new(RichText::new(text).small().weak()).truncate()).on_hover_text(text);
 }
 
-/// Hint beside the sliders while they act on the running simulation.
+/// Hint on a setting that the user changes during the run.
 const LIVE: &str = "A new value acts from the next step on. A longer Δt in mid-fall presses fast grains into one another.";

@@ -14,13 +14,13 @@ use crate::error::Result;
 use crate::render::{Renderer, RendererChoice, Style, draw_scene};
 use crate::scene::{SCENES, SceneGroup, SceneInfo};
 
-/// Size of a picture, points.
+/// Size of the picture of a scene, points.
 const PICTURE: egui::Vec2 = egui::vec2(128.0, 76.0);
-/// Height of the name below a picture, points.
+/// Height of the scene's name below its picture, points.
 const NAME_HEIGHT: f32 = 18.0;
 /// Largest number of pictures in a row.
 const MOST_COLUMNS: usize = 4;
-/// Height of the list, points.
+/// Largest height of the list of scenes, points.
 const HEIGHT: f32 = 470.0;
 
 /// Pictures of scenes that have been drawn, and their style.
@@ -28,12 +28,13 @@ const HEIGHT: f32 = 470.0;
 pub(super) struct Gallery {
     style: Option<Style>,
     pictures: Vec<Option<TextureHandle>>,
-    /// Number of egui's pass in which the last picture was drawn.
+    /// Number of the pass of egui (one frame) in which the last picture was drawn.
     drawn_in: u64,
 }
 
 impl Gallery {
-    /// Shows a list of the scenes of some groups, which is closed until the user opens it. A click opens a scene.
+    /// Shows a list of the scenes of the given groups, which is closed until the user opens it. A click on a scene
+    /// opens the scene.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
@@ -69,7 +70,7 @@ impl Gallery {
         shown.response
     }
 
-    /// Discards the pictures if the style has changed, so that they are drawn again.
+    /// Discards the pictures of scenes if the drawing style has changed, so that they are drawn again.
     fn follow_style(&mut self, ui: &Ui, preferences: &Preferences) {
         let style = Style {
             scale_bar: false,
@@ -113,7 +114,7 @@ impl Gallery {
         response.on_hover_text(info.summary).on_hover_cursor(CursorIcon::PointingHand)
     }
 
-    /// Paints the picture of a scene. If pictures are missing, one picture per frame is drawn.
+    /// Paints the picture of a scene into a rectangle. If pictures are missing, one of them is drawn per frame.
     fn paint(&mut self, ui: &Ui, index: usize, info: &SceneInfo, cell: Rect) {
         let Self { style: Some(style), pictures, drawn_in } = self else { return };
         if pictures[index].is_none() {
@@ -151,7 +152,7 @@ fn picture(info: &SceneInfo, style: &Style, [width, height]: [u32; 2]) -> Result
 mod tests {
     use super::*;
 
-    /// If the scene were outside the picture, the picture would have only one colour.
+    /// Checks that each scene is visible in its picture: more than 40 pixels differ from the background.
     #[test]
     fn every_scene_is_seen_on_its_picture() {
         let style = Style { scale_bar: false, legend: false, ..Style::default() };

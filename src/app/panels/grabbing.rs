@@ -34,15 +34,15 @@ pub struct Grabbing {
 struct Grip {
     /// Index of the simulation.
     pub world: usize,
-    /// Index of the boundary.
+    /// Index of the wall among the boundaries of the simulation.
     pub boundary: usize,
-    /// Vector from the reference point of the boundary to the grabbed point, m.
+    /// Vector from the reference point of the wall to the grabbed point, m.
     pub from_place: DVec2,
-    /// Last position that was sent to the solver's thread, m.
+    /// Target position of the reference point that was last sent to the solver's thread, m.
     pub sent: Option<DVec2>,
 }
 
-/// Rectangle, camera and data of a simulation in the window.
+/// A simulation as the window shows it: its rectangle, camera and data.
 pub(super) struct WorldCell<'a> {
     pub index: usize,
     pub cell: Rect,
@@ -53,7 +53,8 @@ pub(super) struct WorldCell<'a> {
 }
 
 impl WorldCell<'_> {
-    /// Returns the position of the mouse if the mouse is over this simulation or its button was pressed here.
+    /// Returns the position of the mouse if the mouse is over this simulation or if its button was pressed here and is
+    /// still down.
     fn pointer(&self) -> Option<Pos2> {
         self.response.hover_pos().or_else(|| self.response.interact_pointer_pos())
     }
@@ -68,12 +69,12 @@ impl WorldCell<'_> {
         self.cell.center() + egui::vec2(x, -y) / self.pixels_per_point as f32
     }
 
-    /// Converts a length from m to points.
+    /// Converts a length in the scene, m, to a length on the screen, points.
     pub(super) fn points(&self, metres: f64) -> f32 {
         self.camera.pixels(metres) / self.pixels_per_point as f32
     }
 
-    /// Converts a length from points to m.
+    /// Converts a length on the screen, points, to a length in the scene, m.
     fn metres(&self, points: f32) -> f64 {
         f64::from(points) * self.pixels_per_point * self.camera.metres_per_pixel
     }
@@ -127,7 +128,7 @@ impl WorldCell<'_> {
         }
     }
 
-    /// Performs the actions of the mouse.
+    /// Performs the actions that the user requests with the mouse in this simulation.
     pub(super) fn act(&self, ui: &Ui, mouse: &mut Grabbing, context: &mut PanelContext<'_>) {
         let (response, pointer) = (self.response, self.pointer());
         let changes = ui.input(has_shift);
@@ -185,7 +186,7 @@ impl WorldCell<'_> {
         }
     }
 
-    /// Moves the grabbed wall to the mouse, or releases the wall.
+    /// Moves the grabbed wall to the mouse. If the user no longer drags, ends the motion of the wall.
     fn draw_wall(&self, mouse: &mut Grabbing, context: &mut PanelContext<'_>) {
         let Some(mut grip) = mouse.grip else { return };
         if !self.response.dragged() {
@@ -210,7 +211,7 @@ impl WorldCell<'_> {
         }
     }
 
-    /// Removes the grain under the mouse, or adds a grain if there is no grain.
+    /// Removes the grain under the mouse, or adds a grain if the mouse is over no grain.
     fn change_grains(&self, context: &mut PanelContext<'_>) {
         let Some(at) = self.pointer() else { return };
         context.run.selected = self.index;
@@ -282,7 +283,7 @@ impl WorldCell<'_> {
     }
 }
 
-/// Returns the target position of the wall's reference point if the user moves this point to `to`, m. A plane moves
+/// Returns the target position of a wall's reference point, m, if the user moves this point to `to`, m. A plane moves
 /// only along its normal, because a motion in its own plane changes nothing.
 fn goal(boundary: &Boundary, to: DVec2) -> DVec2 {
     match boundary {

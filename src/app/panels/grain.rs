@@ -23,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     ui.separator();
 }
 
-/// Shows the pinned grain in a corner of the scene, if the page of the sidebar that shows it is not open.
+/// Shows the pinned grain in a corner of the scene, unless the sidebar shows this grain.
 pub(super) fn show_over_scene(ui: &Ui, context: &mut PanelContext<'_>) {
     if context.preferences.page == Some(Page::Pile) {
         return;
@@ -47,10 +47,10 @@ pub(super) fn show_over_scene(ui: &Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// Speed below which a grain counts as resting, m/s. Slower motion is an error of the solver.
+/// Speed below which a grain counts as resting, m/s. A slower motion is assumed to be an error of the solver.
 const AT_REST: f64 = 1e-8;
 
-/// Returns the velocity, m/s, or 0 if the grain rests.
+/// Returns the given component of a velocity, m/s, or 0 if it is so small that the grain counts as resting.
 pub(super) fn unless_at_rest(velocity: f64) -> f64 {
     if velocity.abs() < AT_REST { 0.0 } else { velocity }
 }

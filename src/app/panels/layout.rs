@@ -13,11 +13,11 @@ use crate::app::painting::fill;
 use crate::app::work::progress_bar;
 use crate::live::Command;
 
-/// Width of the sidebar, points.
+/// Smallest width of the sidebar, and its width when it opens, points.
 const SIDEBAR: f32 = 364.0;
-/// Width of the window below which a page of the sidebar fills the whole window, as on a telephone, points.
+/// Width of the window, points, below which a page of the sidebar fills the whole window, as on a telephone.
 const NARROW: f32 = 600.0;
-/// Height of the plots, points.
+/// Height of the plots when their panel opens, points.
 const PLOTS: f32 = 150.0;
 
 /// All panels of the window.
@@ -30,7 +30,7 @@ pub struct Panels {
     /// True while the help overlay is open.
     pub(crate) help: bool,
     pub(crate) trust: TrustPanel,
-    /// The page that was open in the previous frame.
+    /// The page of the sidebar that was open in the previous frame.
     page: Option<Page>,
 }
 
@@ -79,7 +79,7 @@ impl Panels {
         bar(Panel::bottom("status")).show(ui, |ui| status::show(ui, context, trust, help));
     }
 
-    /// Draws the bars and panels around the scene.
+    /// Draws the bars, the sidebar and the plots around the scene.
     fn bars(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         self.lesson_line(ui, context);
         let mut is_open = context.preferences.page.is_some() || self.trust.is_open;
@@ -105,7 +105,7 @@ impl Panels {
         bar(Panel::bottom("front")).show(ui, |ui| front::show(ui, context));
     }
 
-    /// Shows the panel "Can I trust this?" if it is open, otherwise the pages.
+    /// Shows the contents of the sidebar: the panel "Can I trust this?" if it is open, otherwise the open page.
     fn side(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         match self.trust.is_open {
             true => self.trust.show(ui, context),
@@ -113,7 +113,7 @@ impl Panels {
         }
     }
 
-    /// Shows the tabs and the open page.
+    /// Shows the tabs of the sidebar and the open page.
     fn sidebar(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
@@ -150,7 +150,7 @@ fn sidebar_frame() -> Frame {
     Frame::new().inner_margin(Margin { left: 10, right: 4, top: 8, bottom: 4 })
 }
 
-/// Shows the button that shows the hidden bars again.
+/// Shows the button by which the user makes the hidden bars visible again.
 fn unfold(ui: &Ui, context: &mut PanelContext<'_>) {
     let area = egui::Area::new(egui::Id::unique("unfold"));
     area.anchor(egui::Align2::RIGHT_TOP, [-8.0, 8.0]).show(ui.ctx(), |ui| {
@@ -160,7 +160,7 @@ fn unfold(ui: &Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Shows the progress of a load and the button that cancels the load.
+/// While a scene is being loaded, shows the progress and a button that cancels the loading.
 fn waiting(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let Some(progress) = context.run.frame.loading.clone() else { return };
     let area = egui::Area::new(egui::Id::unique("loading"));

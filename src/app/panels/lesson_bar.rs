@@ -11,17 +11,17 @@ use crate::app::theme;
 use crate::app::watched_run::WatchedRun;
 use crate::sim::Settings;
 
-/// The bar above the scene, with the present lesson.
+/// State of the bar above the scene, which shows the present lesson.
 #[derive(Default)]
 pub(crate) struct LessonBar {
-    /// Number of initial states that were loaded before the present lesson.
+    /// Number of initial states that the window had loaded before the present lesson was opened.
     pub loads_before: u64,
     /// True while the summary of the lessons is open.
     pub shows_summary: bool,
 }
 
 impl LessonBar {
-    /// Shows the bar.
+    /// Shows the bar: the list of lessons, the buttons, and the text or question of the present lesson.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let at = context.preferences.lesson.at.min(LESSONS.len() - 1);
         ui.horizontal(|ui| {
@@ -47,7 +47,8 @@ impl LessonBar {
         }
     }
 
-    /// Shows the buttons, from right to left: hide the bars, leave the lessons, next lesson, previous lesson.
+    /// Shows the buttons of the bar, from right to left: hide the bars, leave the lessons, next lesson, previous
+    /// lesson.
     fn ways(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>, at: usize) {
         let dark = ui.visuals().dark_mode;
         let hint = "Fold the bars: the scene is the window (B)";
@@ -87,7 +88,8 @@ impl LessonBar {
         });
     }
 
-    /// True if the user has changed the simulations of a lesson, so that its texts are no longer right.
+    /// True if the user has changed settings or the number of simulations of a lesson, so that its texts are no longer
+    /// right.
     fn has_other_worlds(&self, run: &WatchedRun, lesson: &Lesson) -> bool {
         let Some(start) = &run.frame.start else { return false };
         let worlds = (lesson.worlds)(*start.settings());
@@ -128,7 +130,7 @@ fn prediction(
         return;
     }
     let waits = is_there && context.run.frame.at_start() && !context.run.frame.playing;
-    // A run after the question was answered.
+    // This is a later run, after another run has decided the question.
     if predicted.as_ref().is_some_and(|it| it.was_right.is_some()) && is_there && !waits {
         ui.label(LESSONS[at].learnt);
         return;
@@ -139,7 +141,7 @@ fn prediction(
     let mut buttons = Rect::NOTHING;
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(question.text).strong());
-        // The ring that asks for an answer leaves the question free.
+        // Without this space, the ring that highlights the answers would cover the question.
         ui.add_space(4.0);
         for (index, text) in question.answers.iter().enumerate() {
             let button = Button::selectable(answer == Some(index), *text).frame_when_inactive(true);
@@ -217,7 +219,7 @@ pub(super) fn light(ui: &Ui, context: &PanelContext<'_>) {
 const OTHER_WORLDS: &str = "A number was changed: these are no longer the worlds of the lesson. The list above has \
     it as it was.";
 
-/// Shows the list of all lessons; the present lesson is marked.
+/// Shows the list from which the user chooses a lesson; the present lesson is marked.
 fn list(ui: &mut Ui, context: &mut PanelContext<'_>, at: usize) {
     let text = match context.touring {
         true => format!("Lesson {} of {}", at + 1, LESSONS.len()),

@@ -12,7 +12,7 @@ use crate::app::context::PanelContext;
 use crate::app::page::Page;
 use crate::scene::SceneGroup;
 
-/// The state of the panels on the pages.
+/// The state of the panels on the pages of the sidebar.
 #[derive(Default)]
 pub(crate) struct Pages {
     gallery: Gallery,
@@ -22,12 +22,12 @@ pub(crate) struct Pages {
 }
 
 impl Pages {
-    /// Discards the measured times of a step, because the run of that step no longer exists.
+    /// Discards the measured computing times of solvers, because the run with the measured step no longer exists.
     pub(crate) fn forget_race(&mut self) {
         self.race = None;
     }
 
-    /// Shows a page.
+    /// Shows a page of the sidebar.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>, page: Page) {
         // The text contains the number of the world and not its name, because a long name would widen the panel.
         if context.run.compares() && matches!(page, Page::Solver | Page::Save) {
@@ -93,7 +93,7 @@ impl Pages {
     }
 }
 
-/// Shows a panel that the user can open and close. A closed panel is not computed.
+/// Shows a panel that the user can open and close. The contents of a closed panel are not computed.
 fn folded(ui: &mut Ui, title: &'static str, show: impl FnOnce(&mut Ui)) {
     ui.separator();
     CollapsingHeader::new(title).show_unindented(ui, show);

@@ -1,4 +1,5 @@
-//! Panel: the stepper with its contact law, the parameters that have no main slider, and quantities derived from them.
+//! Panel: the stepper (rule that advances the grains by Δt) with its contact law, the parameters that have no main
+//! slider, and quantities derived from them.
 
 use egui::{RichText, Ui};
 
@@ -28,8 +29,8 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     derived(ui, run, &settings);
 }
 
-/// Shows the choice of the stepper. Remedies (corrections of known weaknesses of a step) that the new stepper does not
-/// support are switched off.
+/// Shows the buttons that choose the stepper (rule that advances the grains by Δt). Remedies (corrections of known
+/// weaknesses of a step) that the new stepper does not support are switched off.
 fn stepper_switch(ui: &mut Ui, settings: &mut Settings) {
     let before = settings.stepper;
     ui.horizontal(|ui| {

@@ -20,7 +20,7 @@ use crate::output::write_file;
 use crate::sim::{Observables, QUANTITIES, Quantity, Settings};
 use crate::study::png::write_png;
 
-/// Fraction of the width for the plot of slump against Δt.
+/// Fraction of the panel's width for the plot of slump against Δt; the other plots have the rest.
 const FIGURE_PART: f32 = 0.4;
 
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -42,7 +42,8 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Returns the plot of slump against Δt, if slump is plotted. In a lesson it has only the settings of the lesson.
+/// Returns the plot of slump against Δt; `None` if slump is not plotted or no result exists. In a lesson the plot shows
+/// only results with the settings of the lesson (with any Δt).
 fn figure(ui: &Ui, context: &PanelContext<'_>) -> Option<TimeStepFigure> {
     let mut shown = QUANTITIES.iter().filter(|it| is_shown(context.run, context.preferences, it));
     let slump_is_shown = shown.any(|quantity| quantity.name == "slump");
@@ -119,7 +120,7 @@ fn data(ui: &Ui, context: &PanelContext<'_>) -> PlotData {
     }
 }
 
-/// Returns the curves of the earlier run.
+/// Returns the curves of the earlier run that is compared with the present run, one entry per simulation.
 fn ghosts(context: &PanelContext<'_>) -> Vec<WorldCurve> {
     let worlds = context.ghost().map_or(&[][..], |run| &run.worlds).iter();
     let pairs = worlds.zip(&context.run.frame.worlds).map(|(before, now)| {
@@ -134,7 +135,8 @@ fn ghosts(context: &PanelContext<'_>) -> Vec<WorldCurve> {
     pairs.collect()
 }
 
-/// True if a quantity is plotted: the user chose it, or the user chose no quantity that is meaningful in this scene.
+/// True if a quantity is plotted. If the user chose no quantity that is meaningful in this scene, all meaningful
+/// quantities are plotted, or only the energy next to the plot of an experiment.
 fn is_shown(run: &WatchedRun, preferences: &Preferences, quantity: &Quantity<Observables>) -> bool {
     let is_chosen = |quantity: &Quantity<Observables>| {
         means_something(run, quantity)
@@ -148,12 +150,13 @@ fn is_shown(run: &WatchedRun, preferences: &Preferences, quantity: &Quantity<Obs
     is_chosen(quantity) || (is_default && !QUANTITIES.iter().any(is_chosen))
 }
 
-/// True if a quantity is meaningful in this scene.
+/// True if a quantity is meaningful in this scene. Slump is meaningful only for heaps.
 fn means_something(run: &WatchedRun, quantity: &Quantity<Observables>) -> bool {
     quantity.name != "slump" || run.slumps()
 }
 
-/// Shows the line above the plots: the button that shows or hides the plots, and the result for other initial states.
+/// Shows the line above the plots: the button that shows or hides the plots, and the slump of the pile and of its
+/// ensemble.
 pub(super) fn header(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let text = if context.preferences.plots { "▾ Plot" } else { "▸ Plot" };
@@ -171,7 +174,8 @@ pub(super) fn header(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Returns a sentence on the effect of the last change of settings on other initial states, at the displayed moment.
+/// Returns a sentence that compares the ensembles of the earlier and the present run at the displayed simulated time.
+/// `None` if no settings changed or results are missing.
 fn effect(context: &PanelContext<'_>) -> Option<String> {
     let frame = &context.run.frame;
     let mut worlds = context.ghost()?.worlds.iter().zip(&frame.worlds);
@@ -181,7 +185,7 @@ fn effect(context: &PanelContext<'_>) -> Option<String> {
     context.ensemble.effect(before, now, frame.time_secs()).filter(|_| !frame.at_start())
 }
 
-/// Shows the choice of quantities and the buttons that save plots.
+/// Shows the buttons that choose the plotted quantities and the buttons that save plots.
 pub(super) fn choices(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal_wrapped(|ui| {
         ui.label("Plot");
@@ -211,10 +215,10 @@ pub(super) fn choices(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// Shows the buttons that save the plots, and the spacing of the plotted steps.
+/// Shows the buttons that save the plots, and the simulated time between the plotted steps.
 fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let stem = format!("{}-curves", context.run.file_stem());
-    // The browser version must not wait for a graphics device.
+    // Waiting for a graphics device would block the browser version.
     if !IN_BROWSER
         && ui.button("Plot as PNG").on_hover_text("Save the plots as a picture.").clicked()
     {

@@ -9,10 +9,12 @@ use crate::scene::built_in;
 use crate::sim::Settings;
 use crate::study::stability::Challenge;
 
-/// Settings on which the right answer depends. All other settings belong to the numerical method.
+/// Names of the settings on which the right answer of a stability scene depends. All other settings belong to the
+/// numerical method.
 const PHYSICS: [&str; 6] = ["bond", "bond-acceleration", "tilt", "rho", "mu", "cone"];
 
-/// Shows the right answer and the verdicts. Shows nothing for scenes without a known right answer.
+/// Shows the known right answer of a scene and, for each simulation, whether its result is right. Shows nothing for
+/// scenes without a known right answer.
 pub(super) fn show(ui: &mut Ui, run: &WatchedRun) {
     let Some(start) = run.frame.start.as_ref().filter(|start| start.tally.steps == 0) else {
         return;
@@ -41,7 +43,7 @@ pub(super) fn show(ui: &mut Ui, run: &WatchedRun) {
     });
 }
 
-/// Returns a text with a mark that shows whether the result is right.
+/// Returns `text` with a mark and a colour that show whether a result is right.
 pub(super) fn marked(ui: &Ui, is_right: bool, text: &str) -> RichText {
     let dark = ui.visuals().dark_mode;
     let (mark, colour) =

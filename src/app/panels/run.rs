@@ -13,21 +13,22 @@ use crate::config::{Config, SceneSource};
 use crate::live::{Command, Controls, PastRun};
 use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Sizes};
 
-/// Groups of scenes in the gallery. Stability scenes are not among them, because they are for experts (page "Law,
-/// solver").
+/// Groups of scenes in the gallery. Stability scenes (scenes that are hard for solvers) are not among them, because
+/// they are for experts (page "Law, solver").
 const SCENE_GROUPS: [SceneGroup; 2] = [SceneGroup::Paper, SceneGroup::Experiments];
-/// Largest number of grains that the panel offers. The command line allows more.
+/// Largest number of grains of a new pile that the panel offers. The command line allows more.
 const MOST_GRAINS: usize = 20_000;
 
-/// Number of grains from which on the panel states the computing time of a pile.
+/// Number of grains of a new pile from which on the panel states the computing time.
 const LARGE: usize = 2_000;
-/// Computing times of the deposition of [`LARGE`] grains, s of one core, with the two methods (`docs/runs.md`, new
-/// piles).
+/// Measured computing times of the deposition of [`LARGE`] grains, s on one core: by rain, then by rolling
+/// (`docs/runs.md`, new piles).
 const RAIN_SECS: f64 = 116.0;
 const ROLL_SECS: f64 = 0.2;
-/// Computing time of a solved step of a slumping pile with [`LARGE`] grains, ms.
+/// Approximate computing time of a solved step of a slumping pile with [`LARGE`] grains, ms. The panel estimates the
+/// time for other numbers of grains from this value.
 const STEP_MILLIS: f64 = 60.0;
-/// Methods of deposition, with their names and hints.
+/// Methods by which the grains of a new pile are deposited, with their names and hints.
 const DEPOSITIONS: [(Deposition, &str, &str); 2] = [
     (
         Deposition::Rain,
@@ -92,7 +93,7 @@ fn scene_box(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery)
     }
 }
 
-/// Shows the fields for the settings of a new pile.
+/// Shows the fields for a new pile (number of grains, box, seed, deposition) and the button that makes the pile.
 fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let id = egui::Id::unique("new pile");
     let typed = ui.data(|data| data.get_temp::<NewPile>(id));
@@ -136,7 +137,8 @@ fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.data_mut(|data| data.insert_temp(id, pile));
 }
 
-/// Returns a text on the computing time of a large pile: of its deposition, and of each step after that.
+/// Returns a text on the computing time of a large pile: of its deposition by both methods, and of each step after the
+/// deposition.
 fn cost(grains: usize) -> String {
     // The number of steps of a deposition is proportional to the time of fall, which grows as the square root of the
     // height.
@@ -150,7 +152,7 @@ fn cost(grains: usize) -> String {
     )
 }
 
-/// Returns the configuration of a new pile with the present settings.
+/// Returns the configuration of the new pile `pile` with the settings that the controls show.
 fn pile_like_this(run: &WatchedRun, pile: &NewPile) -> Config {
     let config = run.config();
     let NewPile { grains, seed, box_width_in_diameters, deposition, sizes } = pile.clone();
@@ -171,7 +173,7 @@ fn pile_like_this(run: &WatchedRun, pile: &NewPile) -> Config {
     }
 }
 
-/// Width of the name fields, points.
+/// Width of the fields for names of runs, points.
 const NAME_WIDTH: f32 = 60.0;
 
 /// Shows the earlier runs, if there are any: a button for each run, and a checkbox that shows the newest earlier run as
@@ -234,8 +236,8 @@ fn name_field(ui: &mut Ui, run: &mut WatchedRun, number: Option<u64>, given: &st
     response.on_hover_text("A name for this run. Sessions keep it.");
 }
 
-/// Returns the settings of an earlier run: if it has one simulation, the values of all main sliders and the slump; if
-/// it has several simulations, their differences.
+/// Returns a title for an earlier run. If the run has one simulation, the title contains the values of all main sliders
+/// and the slump; if it has several, the settings in which they differ.
 fn title(run: &PastRun, slumps: bool) -> String {
     let controls: Vec<Controls> = run.worlds.iter().map(|world| world.controls).collect();
     let first = title_among(&controls, 0);

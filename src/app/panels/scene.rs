@@ -1,4 +1,4 @@
-//! The middle of the window: the simulations and the actions of the mouse, or the progress of a new pile.
+//! The middle of the window: the simulations and the actions of the mouse, or the deposition of a new pile.
 
 use egui::{Align2, Color32, FontId, Rect, Sense, Stroke, Ui, Vec2};
 use glam::DVec2;
@@ -16,7 +16,7 @@ use crate::render::{Legend, ScaleBar, Style, scene_picture};
 
 /// Height of the title of a compared simulation, points.
 const TITLE_HEIGHT: f32 = 22.0;
-/// Largest number of grains whose outlines are drawn for the earlier run. More outlines would hide the present grains.
+/// Largest number of grains of an earlier run whose outlines are drawn. More outlines would hide the present grains.
 const MOST_OUTLINES: usize = 3_000;
 /// Space between compared simulations, points.
 const GAP: f32 = 6.0;
@@ -32,7 +32,7 @@ pub struct ScenePanel {
 }
 
 impl ScenePanel {
-    /// Releases a grabbed grain that no longer exists.
+    /// Ends the user's pull on a grain if the grain no longer exists.
     pub(crate) fn follow(&mut self, run: &WatchedRun) {
         self.mouse.grabbed = self.mouse.grabbed.filter(|&grain| run.has(grain));
     }
@@ -135,7 +135,8 @@ fn cells(area: Rect, count: usize) -> Vec<Rect> {
 }
 
 impl WorldCell<'_> {
-    /// Draws the same simulation of the earlier run at the same simulated time, and a label with its settings.
+    /// Draws the grains of the earlier run, for the same simulation at the same simulated time, as grey outlines with a
+    /// label that states the settings.
     fn ghost(&self, ui: &Ui, context: &PanelContext<'_>) {
         let Some(run) = context.ghost() else { return };
         let Some(world) = run.worlds.get(self.index) else { return };
@@ -162,7 +163,8 @@ impl WorldCell<'_> {
         }
     }
 
-    /// Draws the title and the label of the scale bar.
+    /// Draws the texts of a simulation: its title, its slump, the slump of its ensemble, and the label of the scale
+    /// bar.
     fn words(&self, ui: &Ui, context: &PanelContext<'_>, style: &Style, size: [u32; 2]) {
         let painter = ui.painter().with_clip_rect(self.cell);
         let ink = theme::color32(style.theme.palette().ink);
@@ -229,13 +231,13 @@ fn show_making(
 
 /// Length of the arrow of gravity, points.
 const LENGTH: f32 = 34.0;
-/// Distance of the arrow of gravity from the upper right corner, points.
+/// Distance of the arrow of gravity from the upper and right edge of the simulation, points.
 const MARGIN: f32 = 30.0;
 /// Largest ratio of the horizontal to the total acceleration of gravity at which gravity counts as vertical and needs
 /// no arrow.
 const STRAIGHT: f64 = 1e-9;
 
-/// Draws an arrow for gravity, if the user wants an arrow or if gravity does not point straight down.
+/// Draws an arrow in the direction of gravity, if the user wants an arrow or if gravity does not point straight down.
 fn paint_gravity(ui: &Ui, context: &PanelContext<'_>, world: usize, cell: Rect) {
     let shows = |gravity: &DVec2| {
         *gravity != DVec2::ZERO && (context.preferences.gravity || is_tilted(*gravity))

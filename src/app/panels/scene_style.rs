@@ -4,7 +4,7 @@ use crate::app::preferences::Preferences;
 use crate::app::watched_run::WatchedRun;
 use crate::render::{Style, Theme, automatic_range, force_reference, speed_reference};
 
-/// Returns the style that the user chose, with the theme of the window. All simulations have the same scales of
+/// Returns the drawing style that the user chose, with the theme of the window. All simulations have the same scales of
 /// colours, forces and velocities.
 pub(super) fn shared_style(run: &WatchedRun, preferences: &Preferences, dark: bool) -> Style {
     let mut style = own_style(preferences, dark);
@@ -22,13 +22,13 @@ pub(super) fn shared_style(run: &WatchedRun, preferences: &Preferences, dark: bo
     style
 }
 
-/// Returns the style that the user chose, with the theme of the window.
+/// Returns the drawing style that the user chose, with the theme (light or dark) of the window.
 pub(super) fn own_style(preferences: &Preferences, dark: bool) -> Style {
     let theme = if dark { Theme::Dark } else { Theme::Light };
     Style { theme, ..preferences.style.clone() }
 }
 
-/// Returns the number of simulations in a row, if there are `count` simulations.
+/// Returns the number of simulations in a row of the window, if there are `count` simulations.
 pub(super) fn columns(count: usize) -> usize {
     if count == 4 { 2 } else { count.min(3) }
 }

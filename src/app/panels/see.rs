@@ -29,12 +29,13 @@ const COLOURS: [(ColourBy, &str); 6] = [
 
 /// Duration of the GIF that the button "GIF of 5 s" saves, s.
 const SHORT_GIF_SECS: f64 = 5.0;
-/// Zoom factor of the window for a presentation, and zoom factor above which the window counts as presenting.
+/// Zoom factors of the user interface: the factor for a presentation, and the factor above which the window counts as
+/// presenting.
 const PRESENTATION_ZOOM: f32 = 2.0;
 const LEAST_PRESENTATION_ZOOM: f32 = 1.5;
 
-/// Makes text and controls twice as large for a projector, or restores their usual size. Pages and plots are hidden,
-/// because they have no space beside the scene.
+/// Makes text and controls twice as large for a projector, or restores their usual size. In the large size, pages and
+/// plots are hidden, because they have no space beside the scene.
 pub(crate) fn present(context: &egui::Context, preferences: &mut Preferences) {
     let begins = !presents(context);
     context.set_zoom_factor(if begins { PRESENTATION_ZOOM } else { 1.0 });
@@ -191,7 +192,7 @@ pub(super) fn folder(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// Shows a button that opens a dialog. Returns true if the user clicked it.
+/// Shows a button that opens a dialog for a file or folder. Returns true if the user clicked it.
 pub(super) fn choose_button(ui: &mut Ui, name: &str) -> bool {
     let button = ui.button("…").on_hover_text(name);
     button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
@@ -246,7 +247,7 @@ fn save_film(gui: &egui::Context, context: &mut PanelContext<'_>, format: FilmFo
     context.exports.film = Some((format, work));
 }
 
-/// Returns a picture of the displayed simulations. There must be at least one simulation.
+/// Returns the description of a picture of the displayed simulations. There must be at least one simulation.
 fn scene_picture(
     context: &PanelContext<'_>,
     style: Style,

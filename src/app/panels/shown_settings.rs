@@ -11,7 +11,7 @@ use crate::world::Parameters;
 pub const FRONT_SETTINGS: [&str; 4] = ["bond", "dt", "rho", "mu"];
 
 /// Returns the settings of the contact law and of the time step that have an effect in the scene and that the stepper
-/// reads.
+/// uses.
 pub(super) fn shown_settings(run: &WatchedRun, settings: &Settings) -> Vec<&'static About> {
     let Some(physics) = run.frame.start.as_ref().map(|start| start.physics()) else {
         return Vec::new();

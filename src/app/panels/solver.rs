@@ -28,7 +28,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     readings(ui, run);
 }
 
-/// Shows the settings that few users need to change, and applies changes to the selected simulation.
+/// Shows the expert settings of the solver, which few users need, and applies changes to the selected simulation.
 pub(super) fn expert(ui: &mut Ui, run: &mut WatchedRun) {
     let index = run.selected;
     let Some((before, start)) = run.wanted_and_start() else { return };
@@ -39,7 +39,7 @@ pub(super) fn expert(ui: &mut Ui, run: &mut WatchedRun) {
     }
 }
 
-/// Shows the controls that few users need.
+/// Shows the controls for the expert settings of the solver: method, warm start, friction model and remedies.
 fn expert_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings, has_friction: bool) {
     let stepper = settings.stepper;
     if stepper.uses_method() {
@@ -56,13 +56,13 @@ fn expert_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings, has_f
     }
 }
 
-/// Returns the declaration of a setting of the solver.
+/// Returns the declaration (name, range, help text) of a setting of the solver.
 fn about(name: &str) -> &'static About {
     let found = SolverSettings::ABOUT.iter().find(|about| about.name == name);
     found.unwrap_or(&SolverSettings::ABOUT[0])
 }
 
-/// Shows the solver, its stopping criterion and its tolerance.
+/// Shows the controls for the solver, its stopping criterion, its tolerance and its largest number of sweeps.
 fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     egui::Grid::new("solver").num_columns(2).spacing([8.0, 5.0]).show(ui, |ui| {
         method_box(ui, &mut settings.solver);
@@ -87,7 +87,8 @@ fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     setting_control::show(ui, about("max-sweeps"), settings, start);
 }
 
-/// Shows the list of solvers. If the chosen solver does not support the friction model, the friction model is replaced.
+/// Shows the list from which the user chooses the solver. If the chosen solver does not support the friction model, the
+/// friction model is replaced.
 fn method_box(ui: &mut Ui, solver: &mut SolverSettings) {
     let label = ui.label("Solver").on_hover_text("The solver that finds the impulses of a step.");
     let mut method = solver.method;
@@ -104,7 +105,8 @@ fn method_box(ui: &mut Ui, solver: &mut SolverSettings) {
     }
 }
 
-/// Shows the friction model. The list is disabled for a solver that solves only Coulomb friction.
+/// Shows the list from which the user chooses the friction model. The list is disabled for a solver that solves only
+/// Coulomb friction.
 fn friction_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     let method = settings.solver.method.info();
     let model = about("friction-model");
@@ -150,8 +152,9 @@ fn budget_buttons(ui: &mut Ui, settings: &mut Settings, surroundings: &Surroundi
     });
 }
 
-/// Returns the text of the common residual of the last step, and a hover text. If the step was solved under another
-/// friction model than Coulomb's, the text also contains the residual under that model.
+/// Returns the text of the common residual of the last step (the error measure that is the same for all solvers), and a
+/// hover text. If the step was solved under another friction model than Coulomb's, the text also contains the residual
+/// under that model.
 fn residuals(last: &Observables) -> (String, &'static str) {
     let common = format!("{:.1e}", last.residual);
     match last.model_residual.filter(|_| last.is_of_a_model()) {
@@ -164,7 +167,7 @@ fn residuals(last: &Observables) -> (String, &'static str) {
     }
 }
 
-/// Shows measured values of the last step.
+/// Shows measured values of the last step, such as the numbers of sweeps and contacts and the residual.
 fn readings(ui: &mut Ui, run: &WatchedRun) {
     let Some(world) = run.world() else { return };
     let (last, settings) = (&world.snapshot.observables, &world.controls.settings);
@@ -212,7 +215,7 @@ fn within(last: &Observables) -> String {
     format!("velocity error about {} mm/s", compact(rounded_up))
 }
 
-/// Shows whether the last step was solved. The status bar counts the unsolved steps.
+/// Shows whether the last step reached the tolerance of the solver, and its estimated velocity error.
 fn solved(ui: &mut Ui, world: &WorldFrame) {
     let last = &world.snapshot.observables;
     let dark = ui.visuals().dark_mode;

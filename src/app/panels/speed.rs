@@ -1,5 +1,5 @@
-//! Panel: the time that each part of a step takes, and a comparison of all solvers on the displayed step. Each solver
-//! solves the step to several tolerances, on a separate thread.
+//! Panel: the computing time of each part of a step, and a comparison of all solvers on the displayed step. A separate
+//! thread solves the step with each solver to several tolerances.
 
 use std::sync::OnceLock;
 
@@ -18,44 +18,44 @@ use crate::live::WorldFrame;
 use crate::sim::{Settings, Simulation, StepTimes};
 use crate::solver::{METHODS, Method, SolverSettings, StopTest};
 
-/// Tolerances of the residual, from loose to tight.
+/// Tolerances of the residual to which each solver solves the step, from loose to tight.
 const TOLERANCES: [f64; 8] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
-/// Time limit, s. A solver that takes longer for a step is not tried with tighter tolerances.
+/// Limit on the computing time of a step, s. A solver that takes longer is not tried with tighter tolerances.
 const LIMIT_SECS: f64 = 0.25;
-/// Number of repeats of a solve. The shortest time is reported.
+/// Number of times that each solver solves the step to each tolerance. The shortest computing time is reported.
 const REPEATS: usize = 3;
 const MOST_SWEEPS: u32 = 20_000;
-/// Largest number of steps whose times are added, and time limit for these steps, s.
+/// Largest number of steps whose computing time is measured, and limit on the sum of these times, s.
 const TIMED_STEPS: u32 = 50;
 const TIMED_SECS: f64 = 1.0;
 
-/// Result of one solver.
+/// Measured results of one solver for all tolerances.
 struct RaceCurve {
     method: &'static str,
-    /// Time of the step, ms, and its residual, from loose to tight tolerance.
+    /// Computing time of the step, ms, and its residual, for each tolerance from loose to tight.
     points: Vec<[f64; 2]>,
 }
 
 /// A comparison of solvers on one step.
 pub(super) struct StepRace {
-    /// Simulated time of the step, s.
+    /// Simulated time before the measured step, s.
     time_secs: f64,
-    /// Results; empty until all solvers have finished.
+    /// Results of all solvers; empty until all solvers have finished.
     measured: Measured,
     work: Option<Work<Measured>>,
 }
 
-/// Measured times of the steps after the displayed moment.
+/// Measured computing times: of the next steps by their parts, and of one step by each solver.
 #[derive(Default)]
 struct Measured {
-    /// Number of measured steps and the sum of their times.
+    /// Number of measured steps and the sum of their computing times.
     times: Option<(u32, StepTimes)>,
-    /// Results of the solvers; empty for a stepper without a solver.
+    /// Results of the solvers; empty for a stepper that uses no solver.
     curves: Vec<RaceCurve>,
 }
 
-/// Measures all solvers on the step after the displayed moment. `run` is `None` if the user cancelled before the run
-/// arrived.
+/// Measures the computing time of all solvers on the step after the displayed state. `run` is `None` if the user
+/// cancelled before the solver's thread had sent a copy of the run.
 fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Measured> {
     let Some(run) = run else { return Ok(Measured::default()) };
     let simulation = &run.world.simulation;
@@ -86,8 +86,8 @@ fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Measured> {
     Ok(Measured { times, curves })
 }
 
-/// Takes the next steps with the present settings. Returns their number and the sum of their times. `None` if the run
-/// cannot continue.
+/// Takes the next steps with the present settings. Returns their number and the sum of their computing times. `None` if
+/// the run cannot continue.
 fn times_of_steps(mut simulation: Simulation) -> Option<(u32, StepTimes)> {
     let (mut steps, mut sum) = (0, StepTimes::default());
     while steps < TIMED_STEPS && sum.total_secs < TIMED_SECS {
@@ -100,13 +100,13 @@ fn times_of_steps(mut simulation: Simulation) -> Option<(u32, StepTimes)> {
     (steps > 0 && sum.total_secs > 0.0).then_some((steps, sum))
 }
 
-/// Returns the time since the first call of this function, s.
+/// Returns the wall-clock time since the first call of this function, s.
 fn now_secs() -> f64 {
     static BEGUN: OnceLock<Instant> = OnceLock::new();
     BEGUN.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
-/// Returns a sentence on the times of the parts of a step.
+/// Returns a sentence on the computing time of a step and the percentages of its parts.
 fn told(&(steps, times): &(u32, StepTimes)) -> String {
     let part = |secs: f64| 100.0 * secs / times.total_secs;
     let (contacts, solving) = (part(times.detection_secs), part(times.solving_secs));
@@ -118,7 +118,8 @@ fn told(&(steps, times): &(u32, StepTimes)) -> String {
     )
 }
 
-/// Returns the shortest time of the step, ms, and its residual. `None` if the solver cannot solve the step.
+/// Solves the next step several times with one solver and tolerance. Returns the shortest computing time, ms, and the
+/// residual. `None` if the solver cannot solve the step or if the user cancelled.
 fn timed(
     simulation: &Simulation,
     method: Method,
@@ -150,9 +151,9 @@ fn timed(
     (least[1] > 0.0 && least[1].is_finite()).then_some(least)
 }
 
-/// Height of the plot, points.
+/// Height of the chart that compares solvers, points.
 const HEIGHT: f32 = 230.0;
-/// Number of colours. Further curves have the same colours with other line styles.
+/// Number of colours of curves. Further curves have the same colours with other line styles.
 const COLOURS: usize = 6;
 
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace>) {
@@ -185,7 +186,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace
     ui.label(RichText::new(text).small().weak());
 }
 
-/// Shows the button that measures the displayed step.
+/// Shows the button that starts the measurement of the displayed step with all solvers.
 fn measure(ui: &mut Ui, run: &mut WatchedRun, shown: &mut Option<StepRace>) {
     let goes_on = |world: &&WorldFrame| world.failure.is_none();
     let time_secs = run.world().filter(goes_on).map(|world| world.snapshot.observables.time_secs);
@@ -203,8 +204,8 @@ fn measure(ui: &mut Ui, run: &mut WatchedRun, shown: &mut Option<StepRace>) {
     }
 }
 
-/// Returns the point of the present solver on the chart, if the displayed moment is at the measured step. Its time is
-/// the mean time per step of the run.
+/// Returns the point of the present solver on the chart (decimal logarithms of ms per step and residual), if the
+/// displayed state is at the measured step. Its time is the mean computing time per step of the run.
 fn now(run: &WatchedRun, race: &StepRace) -> Option<[f64; 2]> {
     let world = run.world()?;
     let row = &world.snapshot.observables;
@@ -238,8 +239,8 @@ fn draw(ui: &mut Ui, curves: &[RaceCurve], now: Option<[f64; 2]>) {
         });
 }
 
-/// Returns the colour and the line style of a curve, which are different for all curves, and a character that shows the
-/// line style.
+/// Returns the colour and the line style of the curve with this index, and a character that shows the line style. No
+/// two curves have both in common.
 fn look(index: usize, dark: bool) -> (Color32, LineStyle, &'static str) {
     let (style, sign) = match index / COLOURS {
         0 => (LineStyle::Solid, "━"),

@@ -1,4 +1,5 @@
-//! The status bar, with the speed of the run, the verdict on trust, warnings, and buttons for pages and help.
+//! The status bar, with the verdict on trust ("Can I trust this?"), the speed of the run, warnings, and buttons for
+//! pages and help.
 
 use egui::{Align, Label, Layout, Rect, RichText, Ui};
 
@@ -29,7 +30,7 @@ pub(super) fn show(
     });
 }
 
-/// Shows the buttons for pages and help, from right to left.
+/// Shows the buttons of the status bar for pages and help, from right to left.
 fn ways(ui: &mut Ui, context: &mut PanelContext<'_>, help: &mut bool) {
     ui.toggle_value(help, "Help").on_hover_text("All keys (H)");
     let page = context.preferences.page;
@@ -64,8 +65,8 @@ fn pace(ui: &mut Ui, frame: &LiveFrame) {
     }
 }
 
-/// Shows the last action, a failure, a warning, or the reason not to trust the run. Lessons show no warnings, because some
-/// of them are about failures.
+/// Shows one message: the latest notice, otherwise a failure of the run, a warning, or the reason not to trust the run.
+/// Lessons show no warnings, because some lessons demonstrate errors.
 fn messages(ui: &mut Ui, context: &mut PanelContext<'_>, trust: &TrustPanel) {
     if let Some((notice, left_secs)) =
         context.notice.as_ref().and_then(|it| Some((it, it.left_secs()?)))
@@ -86,7 +87,8 @@ fn messages(ui: &mut Ui, context: &mut PanelContext<'_>, trust: &TrustPanel) {
     }
 }
 
-/// Shows one line of text in the remaining space. If the line is cut off, a hover text shows the whole text.
+/// Shows a message as one line of text in the remaining space. If the line is cut off, a hover text shows the whole
+/// text.
 fn message(ui: &mut Ui, text: &str, colour: egui::Color32) -> Rect {
     // A truncated label shows its whole text by itself.
     ui.add(Label::new(RichText::new(text).color(colour)).truncate()).rect

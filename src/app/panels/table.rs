@@ -1,5 +1,5 @@
-//! Panel: grains and contacts at the displayed moment as a table, which the user can filter and sort. A click on a row
-//! pins the grain of that row.
+//! Panel: grains and contacts at the displayed simulated time as a table, which the user can filter and sort. A click
+//! on a row pins the grain of that row, so that its state is shown.
 
 use egui::{RichText, ScrollArea, TextEdit, Ui};
 
@@ -8,17 +8,17 @@ use crate::app::theme;
 use crate::app::watched_run::{GrainRef, WatchedRun};
 use crate::sim::{ContactView, GrainView, Snapshot};
 
-/// Height of the visible rows, points.
+/// Largest height of the visible rows of the table, points.
 const HEIGHT: f32 = 240.0;
-/// Font size of the rows, points.
+/// Font size of the table's rows, points.
 const FONT: f32 = 10.5;
 
-/// State of the table.
+/// State of the table of grains or contacts.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BodyTable {
     /// True for a table of contacts, false for a table of grains.
     contacts: bool,
-    /// Filter, as the user typed it.
+    /// Filter of rows, as the user typed it, for example `y > 2`.
     filter: String,
     /// Index of the sorted column, and true for descending order.
     sort: Option<(usize, bool)>,
@@ -27,13 +27,13 @@ pub(super) struct BodyTable {
 /// A column of a table whose rows have the type `T`.
 struct ShownColumn<T> {
     name: &'static str,
-    /// Width in characters.
+    /// Width of the column in characters.
     width: usize,
     /// True if the values are whole numbers.
     whole: bool,
     hint: &'static str,
-    /// Function that returns the value of a row, given its index, the row, and the mean diameter d (m). Lengths are in
-    /// units of d.
+    /// Function that returns the value of a row in this column, given the index of the row, its data, and the mean
+    /// diameter d (m). Lengths are returned in units of d.
     value: fn(usize, &T, f64) -> f64,
 }
 
@@ -49,7 +49,7 @@ const GRAINS: [ShownColumn<GrainView>; 7] = [
     column("n", 2, true, "Number of contacts.", |_, grain, _| f64::from(grain.coordination)),
 ];
 
-/// Number that is shown for a fixed body.
+/// Number that the table shows as second grain if a grain touches a wall or another body that is not a grain.
 const FIXED: f64 = -1.0;
 
 const CONTACTS: [ShownColumn<ContactView>; 7] = [
@@ -181,7 +181,7 @@ fn written<T>(value: f64, column: &ShownColumn<T>) -> String {
     if fits { format!("{value:.decimals$}") } else { format!("{value:.1e}") }
 }
 
-/// Returns the indices of the rows that pass the filter, in the order of the sorted column.
+/// Returns the indices of the rows that pass the filter, sorted by the column that the user chose.
 fn chosen<T>(
     table: &BodyTable,
     all: &[T],
@@ -208,7 +208,7 @@ struct Comparison {
     number: f64,
 }
 
-/// Signs of comparison. Longer signs come first, because "<=" begins with "<".
+/// Signs of comparison in a filter. Longer signs come first, because "<=" begins with "<".
 const SIGNS: [&str; 5] = ["<=", ">=", "<", ">", "="];
 
 impl Comparison {
@@ -223,7 +223,8 @@ impl Comparison {
     }
 }
 
-/// Reads a filter: comparisons joined by "and".
+/// Reads the text of a filter: comparisons such as `y > 2`, joined by "and". The error message states the wrong
+/// comparison.
 fn read_filter<T>(text: &str, columns: &[ShownColumn<T>]) -> Result<Vec<Comparison>, String> {
     let parts = text.split(" and ").map(str::trim).filter(|part| !part.is_empty());
     let read = |part: &str| -> Option<Comparison> {

@@ -1,8 +1,8 @@
 //! The verdict "Can I trust this?" on the displayed run: one word in the status bar, and a panel that gives the
 //! reasons. The panel contains a sentence, the bars of an error budget (estimated effects of initial state, contact
-//! law, time step and solver on a result), how well the steps were solved, warnings, and the slump of other initial
-//! states. Idle cores compute the budget after the panel was opened. They continue when the panel is closed, until the
-//! settings change.
+//! law, time step and solver on a result), how well the steps were solved, warnings, and the mean slump of runs from
+//! other initial states. Idle cores compute the error budget after the panel was opened. They continue when the panel
+//! is closed, until the settings change.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -31,22 +31,22 @@ use crate::study::{BudgetAnswer, BudgetEffect, BudgetOptions, ErrorBudget, Trust
 
 /// Time limit for the computation of an error budget on the idle cores, s.
 const COST_SECS: f64 = 300.0;
-/// Quantity of the error budget for scenes that are not heaps, which have no slump.
+/// Quantity whose error is estimated in scenes that are not heaps, because slump is meaningful only for heaps.
 const OTHERWISE: &str = "mean(kinetic_energy)";
-/// Largest fraction of unsolved steps at which a run can be trusted.
+/// Largest fraction of the steps that may be unsolved (miss their tolerance) if a run can be trusted.
 const FEW: f64 = 0.01;
 
-/// Text of the panel until the first result of the error budget.
+/// Text that the panel shows until the error budget has its first result.
 const UNDER_WAY: &str = "Idle cores compute an error budget. The first answer takes a minute for a hundred grains, \
     and hours for thousands.";
 
-/// Width of the names of the bars, points.
+/// Width of the names to the left of the bars, points.
 const NAMES: f32 = 150.0;
-/// Height of a bar with its spacing, and of the bar alone, points.
+/// Height of a bar of the error budget with its spacing, and of the bar alone, points.
 const ROW: f32 = 18.0;
 const BAR: f32 = 9.0;
 
-/// The verdict in the status bar, and the panel with its reasons.
+/// The verdict "Can I trust this?" in the status bar, and the panel with its reasons.
 #[derive(Default)]
 pub(crate) struct TrustPanel {
     /// True while the panel is open.
@@ -56,17 +56,18 @@ pub(crate) struct TrustPanel {
 
 /// The error budget of a run, finished or in progress.
 struct RunBudget {
-    /// Command line that reproduces the run, by which the budget is matched with the run.
+    /// Command line that reproduces the run. If the displayed run has another command line, the error budget is not
+    /// valid for it.
     of: String,
-    /// Present result of the error budget.
+    /// Latest result of the error budget; `None` before the first result.
     told: Arc<Mutex<Option<BudgetAnswer>>>,
     work: Option<Work<()>>,
-    /// The reason why the budget could not be computed, if it could not.
+    /// Error message if the error budget could not be computed.
     failure: Option<String>,
 }
 
 impl TrustPanel {
-    /// Returns the verdict on the displayed run, and its reason in a sentence.
+    /// Returns the verdict on whether the displayed run can be trusted, and the reason in a sentence.
     fn verdict(&self, run: &WatchedRun) -> (Trust, String) {
         const BAD: [AlarmKind; 4] = [
             AlarmKind::NotFinite,
@@ -113,14 +114,15 @@ impl TrustPanel {
         (trust, reason)
     }
 
-    /// Returns the result of the error budget, if there is a budget for the present settings.
+    /// Returns the latest result of the error budget; `None` if there is none for the displayed run with the present
+    /// settings.
     fn of_budget(&self, run: &WatchedRun) -> Option<BudgetAnswer> {
         let budget = self.budget.as_ref()?;
         let told = budget.told.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
         (run.command_line().as_ref() == Some(&budget.of)).then_some(told)
     }
 
-    /// Shows the question and its answer in a word. A click opens the panel.
+    /// Shows the button with the verdict in the status bar, which opens or closes the panel.
     pub(super) fn button(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         let (trust, reason) = self.verdict(context.run);
         let dark = ui.visuals().dark_mode;
@@ -136,13 +138,13 @@ impl TrustPanel {
         self.is_open ^= button.on_hover_text(hint).clicked();
     }
 
-    /// Returns the reason not to trust the run; `None` if the answer is not "no".
+    /// Returns the reason not to trust the run; `None` if the run can be trusted or the verdict is not known yet.
     pub(super) fn reason_against(&self, run: &WatchedRun) -> Option<String> {
         let (trust, reason) = self.verdict(run);
         (trust == Trust::No).then_some(reason)
     }
 
-    /// Shows the panel: the reason of the answer, the bars of the error budget, how steps were solved, and warnings.
+    /// Shows the panel: the reason of the verdict, the bars of the error budget, and the other reasons below.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &PanelContext<'_>) {
         let (trust, reason) = self.verdict(context.run);
         ui.horizontal(|ui| {
@@ -163,7 +165,7 @@ impl TrustPanel {
                     ui.label(line);
                 }
             }
-            // A lesson shows what goes wrong with open eyes.
+            // Lessons demonstrate errors on purpose, so their warnings have the usual colour of text.
             let colour = match context.touring {
                 true => ui.visuals().text_color(),
                 false => theme::warning(ui.visuals().dark_mode),
@@ -186,7 +188,7 @@ impl TrustPanel {
         });
     }
 
-    /// Shows the findings of the error budget in words, or its progress.
+    /// Shows the result of the error budget in words, and its progress.
     fn show_budget(&self, ui: &mut Ui, answer: Option<&BudgetAnswer>) {
         if IN_BROWSER {
             let text = "A page has no idle cores: slump budget, with the command line of this run, computes its \
@@ -211,7 +213,7 @@ impl TrustPanel {
         }
     }
 
-    /// Starts an error budget for the displayed run, or discards a budget that belongs to other settings.
+    /// If the panel is open, starts an error budget for the displayed run. Discards an error budget for other settings.
     pub(super) fn follow(&mut self, ui: &Ui, context: &PanelContext<'_>) {
         if let Some(budget) = &mut self.budget
             && let Some(outcome) = outcome_of_ended(&mut budget.work)
@@ -238,7 +240,8 @@ impl TrustPanel {
     }
 }
 
-/// Returns the question and its answer in a word. If several simulations are visible, the question names the selected one.
+/// Returns the question "Can I trust this?" with its answer in a few words. If simulations are compared, the question
+/// is about the selected simulation.
 fn heading(run: &WatchedRun, trust: Trust) -> String {
     let asked = match run.compares() {
         true => format!("Can I trust run {}?", run.selected + 1),
@@ -247,7 +250,8 @@ fn heading(run: &WatchedRun, trust: Trust) -> String {
     format!("{asked} {}", trust.words())
 }
 
-/// Shows the effects of an error budget as bars with their 95 % intervals, the largest first, as `slump budget` draws them.
+/// Shows the effects of an error budget as bars with their confidence intervals, the largest effect first, as in the
+/// picture of the command `slump budget`.
 fn bars(ui: &mut Ui, answer: &BudgetAnswer) {
     let BudgetAnswer { quantity, within, within_text, effects, .. } = answer;
     let ends = effects.iter().flat_map(|effect| effect.adds).filter(|end| end.is_finite());
@@ -269,7 +273,8 @@ fn bars(ui: &mut Ui, answer: &BudgetAnswer) {
     });
 }
 
-/// Draws one bar with the name of the change, its effect, and the confidence interval of the effect.
+/// Draws one bar of an error budget: the name of a change (such as another solver), its effect on the result, and the
+/// confidence interval of the effect.
 fn bar(ui: &mut Ui, effect: &BudgetEffect, within: f64, reach: f64) {
     let BudgetEffect { share, colour: (red, green, blue), changed, adds: [mean, low, high] } =
         effect;
@@ -298,7 +303,7 @@ fn bar(ui: &mut Ui, effect: &BudgetEffect, within: f64, reach: f64) {
     response.response.on_hover_text(text);
 }
 
-/// Returns a warning if the time step of a simulation is too long.
+/// Returns a warning if a grain at rest would fall too far in one time step of a simulation.
 fn warning(world: &WorldFrame) -> Option<String> {
     too_long(&world.controls.settings, &world.snapshot.surroundings, world.substeps)
 }
@@ -341,7 +346,7 @@ fn solved(world: &WorldFrame) -> Vec<String> {
     lines
 }
 
-/// Starts to compute the error budget of a run.
+/// Starts to compute the error budget of the run with the configuration `config` and the command line `of`.
 fn begin(ui: &Ui, context: &PanelContext<'_>, of: String, config: Config) -> RunBudget {
     let quantities = if context.run.slumps() { Vec::new() } else { vec![OTHERWISE.to_owned()] };
     let options = BudgetOptions {

@@ -1,4 +1,4 @@
-//! The state of the window and of the run as a JSON file, for tests that control the program from outside.
+//! A JSON file with the state of the window and of the run, for tests that control the program from outside.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -9,10 +9,10 @@ use super::keeping::replace_file;
 use crate::app::state::AppState;
 use crate::app::told::told;
 
-/// Least time between two writes of the file while the run plays.
+/// Least time between two writes of the state to the file while the run plays.
 const INTERVAL: Duration = Duration::from_millis(50);
 
-/// Writer of the file, which limits the rate of writes.
+/// Writer of the file with the state of the window and of the run. It limits the rate of writes.
 pub(super) struct StateFile {
     path: PathBuf,
     written: Option<Instant>,

@@ -1,7 +1,7 @@
 //! The file in which the window stores its preferences between starts.
 //!
 //! A file that cannot be read, for example a file of another version, is ignored, so that nobody must repair it. If the
-//! file cannot be written, only the preferences are lost.
+//! file cannot be written, only the changed preferences are lost.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use crate::app::preferences::{Preferences, StoredWindow};
 use crate::app::user_folder::user_folder;
 
-/// Path of the file, in the user's configuration folder.
+/// Path of the file with the preferences, in the user's configuration folder.
 fn path() -> Option<PathBuf> {
     Some(user_folder("XDG_CONFIG_HOME", ".config")?.join("window.ron"))
 }
@@ -20,14 +20,15 @@ pub(super) fn load() -> StoredWindow {
     text.and_then(|text| ron::from_str(&text).ok()).unwrap_or_default()
 }
 
-/// Deletes the file.
+/// Deletes the file with the preferences.
 pub(super) fn forget() {
     if let Some(path) = path() {
         let _ = std::fs::remove_file(path);
     }
 }
 
-/// Time between two checks for changes. If the window is killed, at most the changes of this period are lost.
+/// Time between two checks for changed preferences. If the window is killed, at most the changes of this period are
+/// lost.
 const INTERVAL: Duration = Duration::from_secs(2);
 
 /// Stores changed preferences while the window is open.
@@ -38,7 +39,7 @@ pub(super) struct Keeper {
 }
 
 impl Keeper {
-    /// Returns a keeper that compares with `kept`, the preferences that were loaded.
+    /// Returns a keeper that stores preferences if they differ from `kept`, the preferences that were loaded.
     pub(super) fn new(kept: Preferences) -> Self {
         Self { looked: Instant::now(), kept, text: String::new() }
     }
@@ -58,7 +59,7 @@ impl Keeper {
         None
     }
 
-    /// Stores the preferences now, if the text of the file has changed.
+    /// Stores the preferences and the layout now, if the text of their file would change.
     pub(super) fn keep(&mut self, preferences: &Preferences, context: &egui::Context) {
         self.looked = Instant::now();
         self.kept.clone_from(preferences);
@@ -72,8 +73,8 @@ impl Keeper {
     }
 }
 
-/// Writes a new file and renames it to the name of the old file. After a crash either the old or the new file exists,
-/// and readers always see a complete file.
+/// Replaces a file: writes a new file and renames it to the name of the old file. After a crash either the old or the
+/// new file exists, and readers always see a complete file.
 pub(super) fn replace_file(path: &Path, text: &str) {
     let fresh = path.with_extension("new");
     if std::fs::write(&fresh, text).is_ok() {

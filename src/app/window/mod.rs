@@ -28,10 +28,10 @@ pub(crate) use start::WindowOptions;
 use start::{attributes, first, no_display};
 use surface::{Drawn, WindowSurface};
 
-/// Least time between two frames that are drawn because the run has advanced.
+/// Least time between two frames that are drawn because the simulation has advanced.
 pub(crate) const FRAME_INTERVAL: Duration = Duration::from_millis(16);
-/// Least time between two frames if the processor draws. More than 25 frames per second hardly look smoother, and
-/// drawing takes processor time from the solver.
+/// Least time between two frames if the processor draws instead of a graphics card. More than 25 frames per second
+/// hardly look smoother, and drawing takes processor time from the solver.
 pub const SOFTWARE_FRAME_INTERVAL: Duration = Duration::from_millis(40);
 /// Number of consecutive losses of the graphics device after which the program ends with an error.
 const MOST_LOSSES: u32 = 3;
@@ -115,7 +115,7 @@ struct App {
     keeper: Keeper,
 }
 
-/// Resources that exist as long as the window.
+/// Resources of the open window, which exist as long as the window.
 struct Open {
     window: Arc<Window>,
     input: egui_winit::State,
@@ -132,7 +132,7 @@ impl App {
         Ok(())
     }
 
-    /// Shows a window on the surface of a graphics device.
+    /// Connects a new window with egui and with the surface of a graphics device, and requests the first frame.
     fn show(&mut self, window: Arc<Window>, surface: WindowSurface) {
         let input = egui_winit::State::new(
             self.context.clone(),

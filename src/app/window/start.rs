@@ -1,4 +1,4 @@
-//! Choices made before a window opens: its contents and its size.
+//! Choices made before a window opens: the scene or run that it shows first, and its size.
 
 use std::path::{Path, PathBuf};
 
@@ -36,12 +36,12 @@ pub(crate) struct WindowOptions {
 const SIZE: [f64; 2] = [1280.0, 800.0];
 const LEAST_SIZE: [f64; 2] = [640.0, 480.0];
 
-/// Callback that loads the first contents of a window.
+/// Callback that loads the scene or run that a window shows first.
 pub(super) type Opener = Box<dyn FnOnce(&mut AppState)>;
 
-/// Chooses the first contents of a window. A session, link, saved run or scene of the command line comes first; then
-/// the lessons, unless the user has left them; then the last scene, or the default scene if the last scene no longer
-/// exists.
+/// Chooses the scene or run that a window shows first. A session, link, saved run or scene of the command line has
+/// priority; then the lessons, unless the user has left them; then the last scene, or the default scene if the last
+/// scene no longer exists.
 ///
 /// # Errors
 /// Names the first field of the command line or of the saved run that is outside its range, or the file that cannot be

@@ -12,21 +12,21 @@ use crate::app::canvas::Screen;
 use crate::error::{Error, Result};
 use crate::render::RendererChoice;
 
-/// Largest side of font textures, pixels. Every driver allows this size.
+/// Side that font textures of egui may always have, pixels, because every driver allows it.
 const LARGEST_SIDE_NEEDED: u32 = 2048;
 
-/// Result of drawing a frame.
+/// Result of an attempt to draw a frame in the window.
 pub(super) enum Drawn {
     Shown,
-    /// The surface has changed; the frame must be drawn again.
+    /// The surface of the window has changed, so the frame must be drawn again.
     Again,
-    /// The window is not visible.
+    /// The frame was not drawn, because the window is not visible.
     Hidden,
-    /// The device is lost.
+    /// The frame was not drawn, because the graphics device is lost.
     Lost,
 }
 
-/// The surface and the device that draws on it.
+/// The surface of the window and the graphics device that draws on it.
 pub(super) struct WindowSurface {
     // This field is before the window, so that it is dropped first.
     surface: wgpu::Surface<'static>,
@@ -36,7 +36,7 @@ pub(super) struct WindowSurface {
     screen: Screen,
     software: bool,
     lost: Arc<AtomicBool>,
-    /// Textures that the device has not received yet, because their frames were not drawn.
+    /// Textures that the graphics device has not received yet, because their frames were not drawn.
     textures: egui::TexturesDelta,
 }
 
@@ -126,12 +126,12 @@ impl WindowSurface {
         })
     }
 
-    /// True if the device is a software driver, so that the processor draws.
+    /// True if the graphics device is a software driver, so that the processor draws.
     pub(super) fn is_software(&self) -> bool {
         self.software
     }
 
-    /// Largest side of a texture on this device, pixels.
+    /// Largest side that egui's font textures may have on this graphics device, pixels.
     pub(super) fn largest_side(&self) -> usize {
         self.screen.device.limits().max_texture_dimension_2d.max(LARGEST_SIDE_NEEDED) as usize
     }
@@ -150,12 +150,12 @@ impl WindowSurface {
         self.surface.configure(&self.screen.device, &self.configuration);
     }
 
-    /// Destroys the device, as a fault of the driver would.
+    /// Destroys the graphics device, as a fault of the driver would, so that the window must recover.
     pub(super) fn destroy_device(&self) {
         self.screen.device.destroy();
     }
 
-    /// Draws egui's output.
+    /// Draws the output of egui in the window.
     pub(super) fn draw(&mut self, context: &egui::Context, output: egui::FullOutput) -> Drawn {
         self.textures.append(output.textures_delta);
         // `poll` runs callbacks of the device, including the callback that reports its loss.
@@ -191,7 +191,7 @@ impl WindowSurface {
         Drawn::Shown
     }
 
-    /// Creates a new surface on the same device.
+    /// Replaces the lost surface of the window by a new surface on the same graphics device.
     fn replace_surface(&mut self) -> Drawn {
         match self.instance.create_surface(Arc::clone(&self.window)) {
             Ok(surface) => {

@@ -1,5 +1,5 @@
-//! Tests of piles made by drop and roll: final positions of single discs, properties of all packings, and settled piles
-//! that stay at rest.
+//! Tests of piles made by dropping discs that roll down until they are supported ("drop and roll"): final positions of
+//! single discs, properties of all packings, and settled piles that stay at rest.
 
 use proptest::prelude::*;
 use rand::SeedableRng;
@@ -11,12 +11,13 @@ use crate::program::*;
 
 const FLOOR: f64 = -10.0;
 
-/// A test case: name, half the width of the box, discs that lie there already (x, y, radius), start and radius of the
-/// dropped disc, its expected position, and its expected supports (`None` if they are not checked).
+/// A test case: name, half the width of the box, discs that lie there already (x, y, radius), initial x and radius of
+/// the dropped disc, its expected position, and its expected supports (`None` if they are not checked).
 type Drop<'a> =
     (&'a str, f64, &'a [[f64; 3]], [f64; 2], [f64; 2], Option<(Support, Option<Support>)>);
 
-/// Each disc is dropped twice: on the surface of the case, and at the mirrored position on the mirrored surface.
+/// Checks where single dropped discs come to rest. Each disc is dropped twice: on the discs of its case, and at the
+/// mirrored position on the mirrored discs.
 #[test]
 fn single_discs_come_to_lie_where_geometry_says() {
     let (floor, between) = ((Support::Floor, None), (Support::Disc(0), Some(Support::Disc(1))));
@@ -110,7 +111,7 @@ fn single_discs_come_to_lie_where_geometry_says() {
     }
 }
 
-/// Largest gap of touching discs, in diameters.
+/// Largest gap at which two discs count as touching, in diameters.
 const TOUCHING: f64 = 1e-9;
 
 proptest! {
@@ -155,7 +156,7 @@ proptest! {
     }
 }
 
-/// Returns true if compressive forces along two of these normals can carry a weight.
+/// Returns true if compressive forces along two of these contact normals can carry the weight of a disc.
 fn is_held(normals: &[DVec2]) -> bool {
     let bear = |one: DVec2, other: DVec2| {
         let across = one.perp_dot(other);
@@ -206,7 +207,7 @@ fn walled(grains: Vec<Grain>, width: f64) -> Scene {
     Scene { boundaries: vec![wall(-1.0), wall(1.0)], ..pile }
 }
 
-/// Returns the kinetic energy divided by the weight of all grains times d.
+/// Returns the kinetic energy of all grains divided by their weight times the mean diameter d (dimensionless).
 fn energy(run: &Simulation) -> f64 {
     let mass: f64 = run.grains().masses.iter().sum();
     run.observables().kinetic_energy / (mass * 9.8 * DIAMETER)

@@ -9,8 +9,8 @@ const RADIUS: f64 = 0.1;
 const MU: f64 = 0.3;
 const DT: f64 = 1e-3;
 
-/// Returns a scene of a disc without rotation on the level y = 0 under gravity inclined by θ (`slope` = tan θ), with an
-/// initial speed along the level (m/s).
+/// Returns a scene of a disc without rotation on the level y = 0 under gravity inclined by θ (`slope` = tan θ). The
+/// disc has an initial speed along the level (m/s).
 fn on_incline(model: FrictionModel, slope: f64, speed: f64) -> Scene {
     let place = DVec2::new(0.0, RADIUS * (1.0 - 1e-10));
     let gravity = G * DVec2::new(slope, -1.0).normalize();
@@ -92,7 +92,7 @@ fn what_slides_keeps_its_level_under_tresca_and_is_lifted_by_the_cone_models() {
     assert!(dilated > 5e-4, "{dilated}: that the lift is there is seen");
 }
 
-/// Returns the impulses (P_n, P_t) of the only contact, N·s.
+/// Returns the normal and tangential impulses (P_n, P_t) of the only contact of a run, N·s.
 fn impulse(run: &Simulation) -> [f64; 2] {
     let [impulse] = run.contacts().impulses() else { panic!("one contact") };
     [impulse.normal, impulse.tangential]
@@ -136,7 +136,7 @@ fn within_bounds_that_sweeps_lead_to_friction_keeps_up_with_the_pressure_on_what
     }
 }
 
-/// Returns a run of a disc that slides on the floor and a disc that rolls down on it, after two steps.
+/// Returns a run, after two steps, of a disc that slides on the floor and a second disc that rolls down on it.
 fn two_bodies(model: FrictionModel) -> Simulation {
     let below = moving(DVec2::new(0.0, 0.999 * RADIUS), RADIUS, DVec2::new(0.8, 0.0));
     let above = Grain::at_rest(below.position + 1.998 * RADIUS * DVec2::new(0.6, 0.8), RADIUS);

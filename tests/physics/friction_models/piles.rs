@@ -1,5 +1,5 @@
-//! Tests of piles under every convex friction model: the solver solves the model, and its solution is unique. Also
-//! tests of steps that are not solved under Coulomb friction.
+//! Tests of piles under every convex friction model: the solver obeys the model, and its solution is unique. Also tests
+//! of steps that cannot be solved under Coulomb friction.
 
 use proptest::prelude::*;
 
@@ -9,7 +9,8 @@ use crate::common::*;
 pub const CONVEX: [FrictionModel; 3] =
     [FrictionModel::Tresca, FrictionModel::Associated, FrictionModel::Desaxce];
 
-/// Returns piles under every convex friction model, with both cones if the model accepts both.
+/// Returns piles of `count` grains under every convex friction model, with both friction cones if the model supports
+/// both.
 fn piles(count: usize, bond: f64, speed: f64, dt: f64) -> Vec<Scene> {
     let mut all = Vec::new();
     for (model, restitution, cone) in triples(CONVEX, [0.0, 0.9], FrictionCone::ALL) {
@@ -90,8 +91,8 @@ fn solved_steps_obey_the_model_as_world_data_show_it() {
 /// Friction coefficient of [`piles`].
 const MU_OF_PILES: f64 = 0.5;
 
-/// A visitor that solves a contact problem from random impulses with this seed. It returns the velocities of the
-/// bodies.
+/// A visitor that solves a contact problem, starting from random impulses (the number is their seed). It returns the
+/// velocities of the bodies.
 struct FromRandomStarts<'a>(&'a SolverSettings, u64);
 
 impl ProblemVisitor for FromRandomStarts<'_> {
@@ -169,9 +170,9 @@ fn every_step_of_a_pile_that_slumps_is_solved_within_its_model() {
     }
 }
 
-/// Returns two estimates of the velocity error under Coulomb friction, m/s, from positions, velocities and impulses.
-/// The definitions are in `solver::problem::velocity_error`: the root of the duality gap over the mass of touching
-/// bodies, and the velocity change that all contacts need to obey their laws.
+/// Returns two estimates of the velocity error of a step under Coulomb friction, m/s, computed from positions,
+/// velocities and impulses. The definitions are in `solver::problem::velocity_error`: the root of the duality gap over
+/// the mass of touching bodies, and the velocity change that all contacts need to obey their laws.
 fn errors_of_world(run: &Simulation, pile: &Scene, before: &Simulation) -> [f64; 2] {
     let (mut gap, mut touches) = (0.0, vec![false; run.grains().len()]);
     let grains = run.grains().len();
@@ -246,8 +247,8 @@ fn the_error_of_the_velocities_is_what_world_data_make_it() {
     assert!(kinds[0] > 0 && kinds[1] > 0 && kinds[0] + kinds[1] > 5, "{kinds:?} of both kinds");
 }
 
-/// Upper bound on the velocity error divided by the root of the residual, m/s. The largest value in 4,500 steps of such
-/// piles was 0.35.
+/// Upper bound on the velocity error (m/s) divided by the root of the residual (dimensionless). The largest value in
+/// 4,500 steps of such piles was 0.35.
 const ERROR_PER_ROOT_OF_RESIDUAL: f64 = 0.5;
 
 proptest! {
@@ -283,8 +284,9 @@ proptest! {
     }
 }
 
-/// A disc is wedged between two fixed discs. The associated friction model leaves it no possible velocity: at each
-/// contact it would have to leave at an angle of more than atan μ from the tangent.
+/// Checks a step that no velocity solves: it must be reported as unsolved, and its impulses must stay small. A disc is
+/// wedged between two discs at rest. Under the associated friction model it would have to leave each contact at an
+/// angle of more than atan μ from the tangent, which no velocity does.
 #[test]
 fn a_step_that_no_velocity_solves_says_so_and_leaves_no_huge_impulses() {
     let radius = 0.1;
@@ -314,8 +316,8 @@ fn a_step_that_no_velocity_solves_says_so_and_leaves_no_huge_impulses() {
     }
 }
 
-/// Checks that impulses do not grow without limit. If friction bounds came from impulses of wedged discs, the impulses
-/// of the next step could grow further.
+/// Checks that the impulses of wedged discs do not grow from step to step. They could grow if the friction bounds of a
+/// step came from the impulses of the previous step.
 #[test]
 fn discs_that_friction_wedges_press_each_other_no_harder_from_step_to_step() {
     for (bond, friction, restitution) in [(0.0, 10.0, 0.1), (20.0, 5.0, 0.9), (20.0, 10.0, 0.1)] {

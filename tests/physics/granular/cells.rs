@@ -1,4 +1,5 @@
-//! Tests of the cell areas of grains, against known areas and against counting the points of a raster.
+//! Tests of the cell areas of grains (the area that belongs to each grain), against known areas and against counting
+//! the points of a raster.
 
 use std::f64::consts::PI;
 
@@ -9,8 +10,8 @@ use super::packings::{among, box_walls, disc, discs};
 
 const EXACT: f64 = 1e-12;
 
-/// Returns the disc that owns a point by definition: the disc with the smallest power (squared distance minus r²), if
-/// this power is below `largest_power` = 3r̄² (r̄: mean radius).
+/// Returns the index of the disc to whose cell a point belongs: the disc for which the power (squared distance from the
+/// centre minus r²) is smallest, if this power is below `largest_power` = 3r̄² (r̄: mean radius).
 fn owner(point: DVec2, discs: &[(DVec2, f64)], largest_power: f64) -> Option<usize> {
     let power =
         |&(centre, radius): &(DVec2, f64)| (point - centre).length_squared() - radius * radius;
@@ -19,8 +20,8 @@ fn owner(point: DVec2, discs: &[(DVec2, f64)], largest_power: f64) -> Option<usi
     (least < largest_power).then_some(index)
 }
 
-/// Returns two areas for each grain, m², from the points of a raster: the part of its cell within the box around all
-/// grains, and the part within `room`. The raster divides the box into `steps` steps along each side.
+/// Returns two areas for each grain, m², found by counting points of a raster: the area of its cell within the box
+/// around all grains, and the area within `room`. The raster divides the box into `steps` steps along each side.
 fn areas_by_counting(moment: &Moment, steps: i32, room: [DVec2; 2]) -> Vec<[f64; 2]> {
     let grains = &moment.grains;
     let radii: f64 = grains.iter().map(|grain| grain.radius).sum();
@@ -52,7 +53,7 @@ fn areas_by_counting(moment: &Moment, steps: i32, room: [DVec2; 2]) -> Vec<[f64;
     areas
 }
 
-/// Returns discs of very different sizes that overlap, touch or are isolated.
+/// Returns `count` discs of very different sizes at random positions; some overlap, touch or are isolated.
 fn scattered(count: usize, seed: u64) -> Vec<GrainState> {
     let mut random = random(seed);
     let grains = (0..count).map(|_| {

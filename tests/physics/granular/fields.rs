@@ -1,4 +1,5 @@
-//! Tests of smoothed fields: their sums are exact for any position of the borders, and their width is the stated width.
+//! Tests of smoothed fields (quantities of grains averaged over their surroundings): their sums over all cells equal
+//! those over the grains for any position of the periodic borders, and their width is the stated width.
 
 use glam::DMat2;
 use slump::granular::{Fields, PileMeasures};
@@ -7,8 +8,8 @@ use slump::sim::Moment;
 
 use crate::common::*;
 
-/// Names of moving scenes and the number of steps that are run: with walls, with cells that are periodic in x or in
-/// both directions, and with shear.
+/// Names of scenes with moving grains, each with the number of steps that are run: with walls, with cells that are
+/// periodic in x or in both directions, and with shear.
 const SCENES: [(&str, u64); 5] =
     [("pile", 60), ("collapse", 100), ("shear", 400), ("shear-periodic", 300), ("drum", 200)];
 

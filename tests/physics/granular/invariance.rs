@@ -1,5 +1,5 @@
-//! Tests that no measured quantity depends on the position of the pile, on the side from which it is seen, or on the
-//! numbering of the grains.
+//! Tests that no measured quantity depends on the position or orientation of the pile, or on the numbering of the
+//! grains.
 
 use std::sync::Arc;
 
@@ -18,8 +18,8 @@ fn for_random_moments(property: impl Fn(u64, Moment) -> Result<(), TestCaseError
     });
 }
 
-/// Returns random discs over a floor and some fixed discs, with random forces at all overlaps. One disc is marked as
-/// lost.
+/// Returns a state of random discs over a floor and over some discs that are not grains, with random forces at all
+/// overlaps. One grain is marked as lost (it has left the scene).
 fn heap(seed: u64, count: usize) -> Moment {
     let mut random = random(seed);
     let grains = (0..count).map(|_| {
@@ -55,7 +55,8 @@ fn heap(seed: u64, count: usize) -> Moment {
     heap
 }
 
-/// Returns the state with all positions mapped by one function and all vectors (velocities, forces) by another.
+/// Returns the state with all positions mapped by the function `place` and all vectors (velocities, forces) by the
+/// function `vector`.
 fn mapped(
     moment: &Moment,
     place: impl Fn(DVec2) -> DVec2,
@@ -86,7 +87,8 @@ fn mapped(
     mapped
 }
 
-/// Function that returns the expected new value of a column from its name and the old values of all columns in the row.
+/// Function that returns the expected new value of a table's column from the name of the column and the old values of
+/// all columns in the row.
 type Expected<'a> = &'a dyn Fn(&str, &dyn Fn(&str) -> f64) -> f64;
 
 fn compare<Row>(
@@ -210,7 +212,7 @@ fn numbers_of_grains_are_names_alone() {
     });
 }
 
-/// Returns a contact between these two grains as seen from the grain with the smaller number.
+/// Returns a contact between these two grains as it is stored if the grain with the smaller number comes first.
 fn by_number(contact: ContactState, [grain, other]: [u32; 2]) -> ContactState {
     if grain < other {
         return ContactState { grain, other: OtherBody::Grain(other), ..contact };

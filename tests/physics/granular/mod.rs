@@ -1,4 +1,4 @@
-//! Tests of the measured quantities of piles against exact results for packings, and of properties of all piles.
+//! Tests of the measured quantities of piles against exact results for packings, and of properties that all piles have.
 
 mod cells;
 mod fields;

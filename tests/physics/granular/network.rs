@@ -1,13 +1,13 @@
-//! Tests of rattlers, clusters, fractions of contacts and force distributions that can be counted by hand, and of
-//! states with few or no measurable quantities.
+//! Tests of measured quantities that can be counted by hand (rattlers, clusters, fractions of contacts, force
+//! distributions), and of states with few or no measurable quantities.
 
 use super::packings::{RADIUS, among, box_walls, disc, discs, lean, touch, triangular_discs};
 use crate::common::*;
 
 const EXACT: f64 = 1e-12;
 
-/// Returns a ring of four discs with a chain of two discs attached, and a disc inside the ring that presses on no other
-/// disc. At the side, two discs press on each other, and one disc is isolated.
+/// Returns a state of a ring of four discs with a chain of two discs attached, and a disc inside the ring that presses
+/// on no other disc. Away from the ring, two discs press on each other, and one disc is isolated.
 fn ring_and_chain() -> Moment {
     let place = |x: f64, y: f64| disc(2.0 * RADIUS * DVec2::new(x, y), RADIUS);
     let ring = [place(0.0, 0.0), place(1.0, 0.0), place(1.0, 1.0), place(0.0, 1.0)];
@@ -109,7 +109,7 @@ fn on_a_slope_discs_slip_where_friction_is_below_a_third_of_its_tangent() {
     }
 }
 
-/// Returns pairs of touching discs, one pair for each of these forces (N).
+/// Returns a state of separate pairs of touching discs. Each pair has one of these contact forces (N).
 fn pairs_under(forces: &[f64]) -> Moment {
     let place = |k: usize, x: f64| disc(RADIUS * DVec2::new(x, 8.0 * k as f64), RADIUS);
     let mut moment =
@@ -125,7 +125,7 @@ fn histogram(moment: &Moment, quantity: &str) -> Histogram {
     all.into_iter().find(|histogram| histogram.quantity == quantity).expect("a histogram")
 }
 
-/// Returns the lower edges and counts of all bins that are not empty.
+/// Returns the lower edges and counts of all bins of a histogram that are not empty.
 fn filled(histogram: &Histogram) -> Vec<(f64, u64)> {
     let bins = histogram.edges.iter().copied().zip(histogram.counts.iter().copied());
     bins.filter(|&(_, count)| count > 0).collect()

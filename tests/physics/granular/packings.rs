@@ -1,4 +1,5 @@
-//! Handmade states of grains and contacts, and tests of square and triangular packings under known loads.
+//! Functions that build handmade states of grains and contacts, and tests of the measured quantities of square and
+//! triangular packings under known loads.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -43,15 +44,15 @@ pub fn discs(grains: Vec<GrainState>) -> Moment {
     }
 }
 
-/// Returns the state with these boundaries and fixed discs.
+/// Returns a copy of the state with these boundaries and these discs that are not grains.
 pub fn among(mut moment: Moment, boundaries: Vec<Boundary>, fixed_discs: Vec<Disc>) -> Moment {
     let around = (*moment.surroundings).clone();
     moment.surroundings = Arc::new(Surroundings { fixed_discs, boundaries, ..around });
     moment
 }
 
-/// Adds a contact of grain i with a body: branch vector from the body to the grain, gap (m), normal and tangential
-/// force (N).
+/// Adds a contact of grain i with the body `other`, with this vector from the centre of the body to the centre of the
+/// grain (`branch`, m), gap (m), and normal and tangential force (N).
 fn press_on(
     moment: &mut Moment,
     i: usize,
@@ -76,7 +77,7 @@ fn press_on(
     });
 }
 
-/// Adds a contact of the grains i and j with these normal and tangential forces (N).
+/// Adds a contact between the grains i and j with these normal and tangential forces (N).
 pub fn touch(moment: &mut Moment, [i, j]: [usize; 2], forces: [f64; 2]) {
     let (grain, other) = (moment.grains[i], moment.grains[j]);
     let branch = grain.position - other.position;
@@ -95,7 +96,8 @@ pub fn lean(moment: &mut Moment, i: usize, wall: usize, forces: [f64; 2]) {
     press_on(moment, i, (wall, height * normal, height - grain.radius), forces);
 }
 
-/// Returns the walls of a box in the order left, right, bottom, top.
+/// Returns the four walls of a box between its lower left and upper right corner, in the order left, right, bottom,
+/// top.
 pub fn box_walls(low: DVec2, high: DVec2) -> Vec<Boundary> {
     let wall = |point, normal| Boundary::HalfSpace { point, normal };
     vec![
@@ -109,7 +111,7 @@ pub fn box_walls(low: DVec2, high: DVec2) -> Vec<Boundary> {
 pub const RADIUS: f64 = 2e-3;
 const EXACT: f64 = 1e-12;
 
-/// Stress of a packing, N/m: σ_xx, σ_yy, and the shear stress σ_xy = σ_yx.
+/// Stress of a packing (force per length), N/m: σ_xx, σ_yy, and the shear stress σ_xy = σ_yx.
 #[derive(Clone, Copy)]
 struct Loads {
     xx: f64,
@@ -117,7 +119,7 @@ struct Loads {
     xy: f64,
 }
 
-/// Returns discs in rows and columns that fill a box with the lower left corner at `corner`.
+/// Returns a state of discs in rows and columns that fill a box whose lower left corner is `corner`.
 fn square_discs(columns: usize, rows: usize, corner: DVec2) -> Moment {
     let centre = |index: usize| {
         let place = DVec2::new((index % columns) as f64, (index / columns) as f64);
@@ -128,7 +130,7 @@ fn square_discs(columns: usize, rows: usize, corner: DVec2) -> Moment {
     among(discs(grains), box_walls(corner, corner + size), Vec::new())
 }
 
-/// Returns [`square_discs`] with the contact forces of a homogeneous stress.
+/// Returns the state of [`square_discs`] with contact forces that give a homogeneous stress.
 fn square_packing(columns: usize, rows: usize, corner: DVec2, loads: Loads) -> Moment {
     let mut moment = square_discs(columns, rows, corner);
     let [along_x, along_y] = [loads.xx, loads.yy].map(|load| 2.0 * RADIUS * load);
@@ -154,7 +156,8 @@ fn square_packing(columns: usize, rows: usize, corner: DVec2, loads: Loads) -> M
     moment
 }
 
-/// Returns rows of `columns` touching discs without walls. Each second row is shifted by a radius.
+/// Returns a state of touching discs without walls, in rows of `columns` discs. Every second row is shifted by a
+/// radius.
 pub fn triangular_discs(columns: usize, rows: usize) -> Moment {
     let centre = |index: usize| {
         let (row, column) = (index / columns, index % columns);
@@ -164,7 +167,7 @@ pub fn triangular_discs(columns: usize, rows: usize) -> Moment {
     discs((0..columns * rows).map(|index| disc(centre(index), RADIUS)).collect())
 }
 
-/// Adds contacts to all touching pairs, with one normal force (N) for each of the directions 0°, 60° and 120°.
+/// Adds contacts to all touching pairs. The three normal forces (N) are for pairs in the directions 0°, 60° and 120°.
 fn press(moment: &mut Moment, forces: [f64; 3]) {
     let centres: Vec<DVec2> = moment.grains.iter().map(|grain| grain.position).collect();
     for i in 0..centres.len() {
@@ -179,7 +182,7 @@ fn press(moment: &mut Moment, forces: [f64; 3]) {
     }
 }
 
-/// Returns true if a grain has all six neighbours.
+/// Returns true if a grain of a triangular packing touches six neighbours.
 fn is_inside(moment: &Moment, grain: &GrainState) -> bool {
     let near = |other: &&GrainState| other.position.distance(grain.position) < 2.0001 * RADIUS;
     moment.grains.iter().filter(near).count() == 7

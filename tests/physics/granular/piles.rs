@@ -1,4 +1,4 @@
-//! Tests of measured quantities of simulated piles against the balance of forces.
+//! Tests of measured quantities of simulated piles: they must agree with the balance of forces.
 
 use std::path::Path;
 
@@ -9,14 +9,15 @@ use super::packings::box_walls;
 
 const RADIUS: f64 = 0.1;
 
-/// Returns the measured sum Σ f ⊗ ℓ of contact forces times branch vectors (components xx, xy, yx, yy), J.
+/// Returns the measured sum Σ f ⊗ ℓ of contact forces f times branch vectors ℓ (between the centres; components xx, xy,
+/// yx, yy), J.
 fn virial(pile: &PileMeasures) -> [f64; 4] {
     [pile.stress_xx, pile.stress_xy, pile.stress_yx, pile.stress_yy]
         .map(|stress| stress * pile.area)
 }
 
 /// Returns the same sum as [`virial`], computed from external forces: the total contact force on each grain times its
-/// position, minus the forces on fixed bodies times their contact points.
+/// position, minus the contact forces on bodies that are not grains times the contact points.
 fn virial_from_outside(
     moment: &Moment,
     before: &Moment,
@@ -55,7 +56,7 @@ fn weight(moment: &Moment, index: usize, gravity: &Gravity) -> DVec2 {
     acts * gravity.acceleration(grain.position)
 }
 
-/// Runs a scene and compares its stress with the momentum that the grains gained in the last step.
+/// Runs a scene and checks that its stress agrees with the momentum that the grains gained in the last step.
 fn assert_balance_of_momentum(mut run: Simulation, steps: usize) {
     take_steps(&mut run, steps);
     let before = run.moment();
@@ -111,7 +112,8 @@ fn stress_of_a_pile_at_rest_is_what_its_weight_says() {
     assert!(pile.sliding_share < 0.2 && pile.coordination > 3.0, "{pile:?}");
 }
 
-/// Returns a scene whose discs touch even if rounding opens their gaps slightly.
+/// Returns a scene with these grains and boundaries in which touching discs still touch if rounding opens their gaps
+/// slightly.
 fn at_rest(physics: Physics, grains: Vec<Grain>, boundaries: Vec<Boundary>) -> Scene {
     let gravity = DVec2::new(0.0, -G);
     Scene {
@@ -145,8 +147,8 @@ fn stress_in_a_column_grows_with_depth() {
     assert_eq!(measured.pile.rattlers, count);
 }
 
-/// Returns a scene with rows of n and n − 1 discs between two walls, and the row of each disc. Only the top row has
-/// weight.
+/// Returns a scene with rows of n and n − 1 discs in turn between two walls, and the row number of each disc. Only the
+/// top row has weight.
 fn under_a_lid(columns: usize, rows: usize) -> (Scene, Vec<usize>) {
     let (mut grains, mut row_of) = (Vec::new(), Vec::new());
     for row in 0..rows {

@@ -1,4 +1,4 @@
-//! Tests of changes by the user between two steps: added and removed grains, dragged walls, and forces on grains.
+//! Tests of changes that a user makes between two steps: added and removed grains, dragged walls, and forces on grains.
 
 use crate::common::*;
 
@@ -23,15 +23,15 @@ fn heap() -> Scene {
     heap
 }
 
-/// Returns the scene [`heap`] with every combination of stepper and method that accepts the scene, and the name of the
-/// combination.
+/// Returns the scene [`heap`] with every combination of stepper and method that supports the scene, each with the name
+/// of the combination.
 fn in_every_way() -> Vec<(String, Scene)> {
     let mut heap = heap();
     heap.solver.max_sweeps = 200;
     in_each_way(&heap, every_way()).filter(|(_, scene)| scene.simulation().is_ok()).collect()
 }
 
-/// Returns the bit patterns of positions and velocities of some grains.
+/// Returns the bit patterns of positions, angles and velocities of the grains in this range of indices.
 fn bits(run: &Simulation, grains: std::ops::Range<usize>) -> Vec<[u64; 6]> {
     crate::common::bits(run)[grains].to_vec()
 }
@@ -149,9 +149,9 @@ fn a_grain_that_is_added_in_motion_is_one_of_the_scene() {
     assert_eq!(added.world().grains.len(), 13);
 }
 
-/// Takes one step. Returns two relative errors of its balances. The first is the largest momentum change of a grain
-/// that weight, body forces and contacts do not explain, divided by the largest body force times Δt. The second is the
-/// change of kinetic energy that the works do not explain, divided by the kinetic energy.
+/// Takes one step and checks the balances of momentum and energy. Returns two relative errors. The first is the largest
+/// momentum change of a grain that weight, body forces and contacts do not explain, divided by the largest body force
+/// times Δt. The second is the change of kinetic energy that the works do not explain, divided by the kinetic energy.
 fn left_open(run: &mut Simulation) -> [f64; 2] {
     let before = run.world().grains.velocities.clone();
     let energy = run.observables().kinetic_energy;
@@ -252,7 +252,7 @@ fn slump_counts_a_new_grain_from_where_it_is_put() {
     assert!(slump.abs() < settled.abs() + 1e-3 && heights > 0.15, "{settled} {slump} {heights}");
 }
 
-/// Returns a scene with a weightless grain in front of a wall.
+/// Returns a scene without gravity with a grain in front of a wall.
 fn before_a_wall(stepper: Stepper, restitution: f64) -> Scene {
     let grain = Grain::at_rest(DVec2::new(4.0 * RADIUS, 0.0), RADIUS);
     let physics = Physics::FULL;
@@ -264,7 +264,8 @@ fn before_a_wall(stepper: Stepper, restitution: f64) -> Scene {
     scene
 }
 
-/// Returns the speed of a wall that the user drags in a scene without gravity, m/s: half of √(g·d) with g = 9.8 m/s².
+/// Returns the speed at which a wall follows the user's mouse in a scene without gravity, m/s: half of √(g·d) with g =
+/// 9.8 m/s² and the mean diameter d.
 fn speed_of_hand() -> f64 {
     0.5 * (9.8 * 2.0 * RADIUS).sqrt()
 }

@@ -1,11 +1,12 @@
-//! Tests of cohesion that is defined by its own acceleration (`bond_acceleration`) and therefore needs no gravity.
+//! Tests of cohesion whose force is defined by an acceleration of its own (`bond_acceleration`), so that it needs no
+//! gravity.
 
 use crate::common::*;
 
 const RADIUS: f64 = 0.01;
 const BOND: f64 = 20.0;
 
-/// Returns a scene of two weightless discs that touch. One disc moves away at 1 mm/s.
+/// Returns a scene of two weightless discs that touch. One disc moves away from the other at 1 mm/s.
 fn pulled_pair(stepper: Stepper, gravity: DVec2, bond_acceleration: f64) -> Scene {
     let at_rest = weightless(Grain::at_rest(DVec2::ZERO, RADIUS));
     let place = 2.0 * RADIUS * (1.0 - 1e-6) * DVec2::X;
@@ -15,8 +16,8 @@ fn pulled_pair(stepper: Stepper, gravity: DVec2, bond_acceleration: f64) -> Scen
     Scene { stepper, solver: SolverSettings::default(), ..scene }
 }
 
-/// Runs 0.2 s and checks that each step is solved. Returns the relative speed of the discs (m/s) and their gap (in
-/// radii).
+/// Runs 0.2 s and checks that each step is solved. Returns the speed at which the discs separate (m/s) and their gap
+/// (in radii).
 fn parted(scene: &Scene) -> [f64; 2] {
     let mut run = start(scene);
     for _ in 0..200 {

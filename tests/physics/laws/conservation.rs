@@ -1,5 +1,5 @@
-//! Tests of quantities that contacts cannot change: momentum, angular momentum (except for an effect of overlap), and
-//! the energy balance.
+//! Tests of conserved quantities: momentum, angular momentum (which only the overlap of grains can change), and the
+//! energy balance.
 
 use crate::common::*;
 
@@ -27,7 +27,8 @@ fn cluster(physics: Physics, bond: f64, restitution: f64, friction: f64) -> Scen
     }
 }
 
-/// Returns the angular momentum about the origin, including spins, and the sum of the absolute terms, kg·m²/s.
+/// Returns the angular momentum of all grains about the origin, including spins, and the sum of the magnitudes of its
+/// terms, both in kg·m²/s.
 fn angular_momentum(run: &Simulation) -> (f64, f64) {
     let grains = run.grains();
     let orbits = (0..grains.len())
@@ -68,8 +69,8 @@ fn the_overlap_alone_changes_the_angular_momentum() {
     check_angular_momentum(&scene);
 }
 
-/// Runs 400 steps and checks in each step that overlaps explain the change of the angular momentum. Returns the sum of
-/// the explained changes and the scale of the angular momentum, kg·m²/s.
+/// Runs 400 steps and checks in each step that the overlaps explain the change of the angular momentum. Returns the sum
+/// of these changes and the sum of the magnitudes of the initial terms of the angular momentum, both in kg·m²/s.
 fn check_angular_momentum(scene: &Scene) -> (f64, f64) {
     let mut run = start(scene);
     let (mut explained, mut largest) = (0.0, 0f64);

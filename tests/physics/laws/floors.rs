@@ -13,7 +13,7 @@ fn segment(from: f64, to: f64) -> Boundary {
     Boundary::Segment { from: at(from), to: at(to) }
 }
 
-/// Returns level floors along the x axis from 0 to 4 m, most of them made of pieces of 0.1 m, with their names.
+/// Returns level floors along the x axis from 0 to 4 m, with their names. Most of them consist of pieces of 0.1 m.
 fn floors() -> Vec<(&'static str, Vec<Boundary>)> {
     // The end of a piece and the start of the next piece are equal except for rounding.
     let ends = || (0..40).map(|k| (0.1 * f64::from(k), 0.1 * f64::from(k) + 0.1));
@@ -74,8 +74,8 @@ fn a_disc_does_not_feel_where_the_pieces_of_a_floor_meet() {
     }
 }
 
-/// If two pieces move apart, their seam becomes a step that stops the disc. If they move together, they remain one
-/// floor.
+/// Checks that a disc hits the seam between two pieces of a floor if one piece rises, and does not feel the seam if
+/// both rise together.
 #[test]
 fn a_seam_is_where_pieces_go_together() {
     let run_over = |second: MotionCourse| {
@@ -96,8 +96,8 @@ fn a_seam_is_where_pieces_go_together() {
     assert!(lifted.distance(DVec2::new(2.0, 0.1)) < 1e-6, "{lifted}");
 }
 
-/// A piece of the floor that the user drags 2 mm above the other piece becomes a step that stops the disc. Without
-/// dragging, the disc does not feel the seam.
+/// Checks that a disc hits the seam between two pieces of a floor if the user drags one piece 2 mm up, and does not
+/// feel the seam without dragging.
 #[test]
 fn a_hand_opens_and_closes_a_seam() {
     let grain = moving(DVec2::new(0.3, RADIUS), RADIUS, 2.0 * DVec2::X);

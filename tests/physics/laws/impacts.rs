@@ -1,5 +1,5 @@
-//! Tests of shocks that run one after the other through touching grains, and of shocks by walls that move along their
-//! normal: exact results and general properties.
+//! Tests of collisions that run one after the other through touching grains, and of collisions with walls that move
+//! along their normal: exact results and general properties.
 
 use proptest::prelude::*;
 use slump::scene::stability::{bounce, heap};
@@ -11,7 +11,7 @@ const RADIUS: f64 = 0.05;
 const TOUCH: f64 = 1e-9;
 const SPEED: f64 = 2.0;
 
-/// Returns a scene without gravity, cohesion and friction in which Slump treats shocks one after the other (remedy
+/// Returns a scene without gravity, cohesion and friction in which Slump treats collisions one after the other (remedy
 /// `sequential_impacts`).
 fn struck(physics: Physics, restitution: f64, grains: Vec<Grain>) -> Scene {
     let mut scene = scene(physics, DVec2::ZERO, parameters(0.0, 1e-4, restitution, 0.0), grains);
@@ -19,7 +19,7 @@ fn struck(physics: Physics, restitution: f64, grains: Vec<Grain>) -> Scene {
     scene
 }
 
-/// Returns touching balls in a row along `axis`, one for each of the velocities (m/s).
+/// Returns touching balls in a row along `axis`, one ball for each of these velocities along the axis (m/s).
 fn row_of(axis: DVec2, velocities: &[f64]) -> Vec<Grain> {
     let ball = |(place, &velocity): (usize, &f64)| {
         let x = place as f64 * 2.0 * RADIUS * (1.0 - TOUCH);
@@ -89,8 +89,8 @@ fn each_ball_hands_on_the_share_that_a_pair_does() {
     }
 }
 
-/// Returns fifteen touching balls in a triangle about the x axis and one ball that strikes the apex. `order` gives the
-/// order in which the balls are numbered.
+/// Returns a scene of fifteen touching balls in a triangle about the x axis and one ball that strikes the apex. `order`
+/// gives the order in which the balls are numbered.
 fn rack(restitution: f64, order: &[usize]) -> Scene {
     let spacing = 2.0 * RADIUS * (1.0 - TOUCH);
     let mut grains = vec![moving(-spacing * DVec2::X, RADIUS, SPEED * DVec2::X)];
@@ -215,8 +215,8 @@ fn a_wall_that_moves_strikes_twice_and_its_work_is_no_gain_of_the_bounces() {
     }
 }
 
-/// Returns the largest difference of a velocity between runs with and without the remedy `sequential_impacts`, divided
-/// by the largest velocity.
+/// Returns the largest difference between the velocities of a run with and a run without the remedy
+/// `sequential_impacts`, divided by the largest velocity.
 fn difference(scene: &Scene, steps: usize) -> f64 {
     let mut runs = [false, true].map(|sequential_impacts| {
         let mut scene = scene.clone();
@@ -271,8 +271,8 @@ fn a_pile_whose_shocks_are_followed_closes_its_energy_budget() {
 const DT: f64 = 1e-3;
 const WALL_SPEED: f64 = 0.2;
 
-/// Returns a scene with a wall along the y axis that starts at `distance` to the left of a disc at the origin, moves
-/// towards the disc and stops after `travel` (m).
+/// Returns a scene with a wall parallel to the y axis. It starts `distance` (m) to the left of a disc at the origin,
+/// moves towards the disc and stops after the distance `travel` (m).
 fn pushed(physics: Physics, restitution: f64, distance: f64, travel: f64) -> Scene {
     let grains = vec![Grain::at_rest(DVec2::ZERO, RADIUS)];
     let point = DVec2::new(-RADIUS - distance, 0.0);
@@ -366,8 +366,9 @@ fn a_wall_that_cannot_be_is_refused_with_its_field() {
     }
 }
 
-/// The wall moves at V. Each shock runs through the row and gives the speed 2V to the last ball that has not been
-/// struck yet. In the end no contact closes, and every ball has the speed 2V.
+/// Checks that a wall with the speed V gives all balls of a touching row the speed 2V at restitution 1. Each collision
+/// runs through the row and gives the speed 2V to the last ball that has not been struck yet, until no contact closes
+/// any more.
 #[test]
 fn shocks_of_a_moving_wall_run_through_a_row_of_touching_balls() {
     for balls in 1..=4 {

@@ -1,14 +1,14 @@
 //! Compares single steps of piles with LMGC90, an independent program, under its law `RST_WET_CLB` with thickness 0.
-//! This is the law of the stepper `moreau` with the shifted cone. `tests/lmgc90/README.md` describes how LMGC90
-//! computed the reference velocities.
+//! This is the law of the stepper `moreau` with the shifted friction cone. `tests/lmgc90/README.md` describes how
+//! LMGC90 computed the reference velocities.
 
 use crate::common::*;
 
-/// Largest allowed difference of a grain's velocity, and of its angular velocity times its radius, m/s. The masses in
-/// LMGC90 are 2.8e-8 too large, because its π has single precision.
+/// Largest allowed difference between Slump and LMGC90 in a grain's velocity, and in its angular velocity times its
+/// radius, m/s. The masses in LMGC90 are 2.8e-8 (relative) too large, because its π has single precision.
 const LARGEST_DIFFERENCE: f64 = 1e-8;
 
-/// A disc before a step, and the velocity and angular velocity that it has in LMGC90 after the step.
+/// A disc before a step, and the velocity and angular velocity that LMGC90 computes for the end of the step.
 struct Reference {
     before: Grain,
     velocity: DVec2,
@@ -42,7 +42,7 @@ fn references(name: &str) -> Vec<Reference> {
     lines(name).into_iter().map(reference).collect()
 }
 
-/// Takes the step of the reference data in Slump, solved as precisely as Gauss–Seidel can solve it.
+/// Takes the same step as LMGC90, from the same grains, solved as precisely as Gauss–Seidel can solve it.
 fn step(references: &[Reference], bond: f64, time_step_secs: f64) -> Simulation {
     let grains = references.iter().map(|reference| reference.before.clone()).collect();
     let scene = pile_of(grains, NewPile::default().box_width_in_diameters).expect("a pile");

@@ -1,5 +1,5 @@
-//! Tests of grains that pass through walls or leave the simulated region: Slump reports them and omits them from the
-//! slump. Contacts that are detected before grains touch prevent tunnelling through walls.
+//! Tests of grains that pass through walls or leave the simulated region ("lost" grains): Slump reports them and omits
+//! them from the slump. If contacts are detected before grains touch, grains do not pass through walls.
 
 use slump::scene::stability::{WALL_DISTANCE, heap, thin_wall};
 
@@ -20,7 +20,8 @@ fn at(x: f64, y: f64) -> DVec2 {
     DVec2::new(x, y)
 }
 
-/// Returns the number of lost grains. Checks that an alarm reports them if the number is above 0.
+/// Returns the number of grains that have passed through a wall or left the simulated region. Checks that Slump warns
+/// if and only if the number is above 0.
 #[track_caller]
 fn lost(run: &Simulation) -> u32 {
     let lost = run.observables().lost_grains;
@@ -141,8 +142,8 @@ fn no_grain_leaves_a_closed_box_at_random_without_being_counted() {
 const PHASES: u32 = 20;
 
 /// Runs a disc that flies at a thin wall with restitution ρ and moves `travel` diameters per step. Returns the final
-/// velocity divided by the initial velocity, for each phase of the step at the impact; a negative ratio is a rebound.
-/// `mend` changes the scene.
+/// velocity divided by the initial velocity (negative after a rebound), for 20 different times of the impact within a
+/// step. `mend` changes the scene before the run.
 fn rebounds(travel: f64, restitution: f64, mend: impl Fn(&mut Scene)) -> Vec<f64> {
     let rebound = |phase| {
         let mut scene = thin_wall(travel, (f64::from(phase) + 0.5) / f64::from(PHASES));

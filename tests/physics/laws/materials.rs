@@ -19,7 +19,7 @@ fn made_of(name: &str, grain: Grain) -> Grain {
     Grain { material: Some(name.into()), ..grain }
 }
 
-/// Returns solver settings for every method that supports pairs of materials.
+/// Returns solver settings with every method that supports different laws for pairs of materials.
 fn every_solver() -> impl Iterator<Item = SolverSettings> {
     METHODS.iter().filter(|info| info.takes_pairs).map(|info| solved_by(info.method, 1e-12))
 }
@@ -232,7 +232,7 @@ fn pairs_with_the_numbers_of_the_scene_change_no_bit() {
     }
 }
 
-/// Returns the scene with grains that name no material.
+/// Returns a copy of the scene in which no grain names a material.
 fn bare(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     scene.grains.iter_mut().for_each(|grain| grain.material = None);
@@ -244,8 +244,8 @@ fn every_row_of_a_mixed_pile_is_within_the_bounds_of_its_own_pair() {
     const FORCE: f64 = 2e-3;
 
     /// A visitor of contact problems. For each pair of materials it returns the largest ratio of the tangential impulse
-    /// to its bound and the smallest ratio of the normal impulse to the cohesion impulse. It also returns true if
-    /// sweeps solve the problem and Newton's method solves it within 100 sweeps.
+    /// to its friction bound and the smallest ratio of the normal impulse to the cohesion impulse. It also returns true
+    /// if sweeps solve the problem and Newton's method solves it within 100 sweeps.
     struct Extremes<'a>(&'a World);
 
     impl ProblemVisitor for Extremes<'_> {

@@ -1,4 +1,4 @@
-//! Tests of the reported contact states against exact results: status, forces, ages, unsolved steps and residuals.
+//! Tests of the reported states of contacts against exact results: status, forces, ages, unsolved steps and residuals.
 //! Further tests check effects of the paper's §3 in small piles.
 
 use rayon::prelude::*;
@@ -7,7 +7,7 @@ use crate::common::*;
 use crate::program::*;
 
 const RADIUS: f64 = 2e-3;
-/// Initial overlap of discs and floor, m. At a gap of exactly 0 they would not touch.
+/// Initial overlap of discs and floor, m. At a gap of exactly 0 no contact would be detected.
 const DEPTH: f64 = 1e-10;
 
 /// Returns a run of a disc on a floor. Gravity is inclined by `angle` (rad) against the normal of the floor.
@@ -135,7 +135,7 @@ fn grains_and_contacts_are_those_of_the_simulation() {
     assert!(moment.contacts.iter().any(|contact| matches!(contact.other, OtherBody::FixedDisc(_))));
 }
 
-/// Tolerance that no step of a pile can reach, because it is below the rounding error.
+/// Tolerance of the residual that no step of a pile can reach, because it is below the rounding error.
 const OUT_OF_REACH: f64 = 1e-18;
 
 fn pile(stepper: Stepper) -> Scene {
@@ -210,11 +210,11 @@ fn a_run_ends_where_no_number_holds_its_energy() {
 // paired differences over the initial states, with Student's 95 % interval.
 
 const BOX_WIDTH_IN_DIAMETERS: f64 = 8.0;
-/// Number of initial states.
+/// Number of initial states of the pile over which results are averaged.
 const STATES: u64 = 8;
 /// Student's t of the 95 % interval with `STATES` − 1 degrees of freedom.
 const STUDENT_T: f64 = 2.365;
-/// Simulated duration of a collapse, s. A pile of this size has come to rest before.
+/// Simulated duration of a collapse, s. A pile of this size comes to rest earlier.
 const DURATION_SECS: f64 = 0.4;
 
 fn states() -> Vec<Vec<Grain>> {
@@ -241,7 +241,8 @@ fn slumps(states: &[Vec<Grain>], bond: f64, dt: f64) -> Vec<f64> {
     states.par_iter().map(slump).collect()
 }
 
-/// Returns the mean of the paired differences a − b, and half the width of its 95 % interval.
+/// Returns the mean of the paired differences between the numbers in `a` and in `b`, and half the width of its 95 %
+/// interval.
 fn difference(a: &[f64], b: &[f64]) -> (f64, f64) {
     let count = a.len() as f64;
     let differences: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();

@@ -1,5 +1,5 @@
 //! Tests of a pyramid of logs for which equilibrium forces exist: it stands if the touch tolerance preserves its
-//! contacts.
+//! contacts although positions have errors.
 
 use crate::common::*;
 
@@ -7,8 +7,8 @@ const RADIUS: f64 = 0.05;
 const ROWS_OF_LOGS: u32 = 6;
 
 /// Returns a scene of 21 logs on a floor with the friction coefficient 1.7. Random errors of up to `scatter` (in
-/// diameters) are added to each coordinate. The logs overlap by the same distance, so that some gaps are positive and
-/// some negative.
+/// diameters) are added to each coordinate. The rows also overlap by a distance of this order, so that some gaps are
+/// positive and some negative.
 ///
 /// An equilibrium exists: linear programming finds forces within Coulomb's cones that carry all logs.
 fn pyramid(seed: u64, scatter: f64) -> Scene {
@@ -57,7 +57,8 @@ fn a_pyramid_in_equilibrium_stands_with_a_touch_tolerance() {
     }
 }
 
-/// If position errors are as large as the touch tolerance, contacts open and close by chance, and most pyramids fall.
+/// Checks that at least half of the pyramids fall if the errors of positions are as large as the touch tolerance,
+/// because contacts then open and close by chance.
 #[test]
 fn pyramids_fall_with_a_touch_tolerance_that_is_not_above_the_errors_of_positions() {
     for (tolerance, scatter) in [(0.0, 1e-7), (1e-7, 1e-7), (1e-6, 1e-6), (1e-5, 1e-5)] {

@@ -16,8 +16,8 @@ fn rolling(rolling_friction: f64, friction: f64) -> Parameters {
     Parameters { rolling_friction, ..parameters(0.0, DT, 0.0, friction) }
 }
 
-/// Returns a scene with a disc on the level y = 0 under gravity inclined by θ (`slope` = tanθ). The friction
-/// coefficient of 5 prevents slip.
+/// Returns a scene with a disc on the level y = 0 under gravity inclined by θ (`slope` = tanθ). With the friction
+/// coefficient of 5, the disc does not slip.
 fn on_slope(method: Method, slope: f64, cone: FrictionCone, bond: f64) -> Scene {
     let grain = Grain::at_rest(DVec2::new(0.0, RADIUS * (1.0 - 1e-10)), RADIUS);
     let gravity = G * DVec2::new(slope, -1.0).normalize();
@@ -195,7 +195,8 @@ fn a_fixed_disc_counts_with_its_radius_and_its_spin() {
     assert_close(run.grains().angular_velocities[0], rate, 1e-9, "its last spin");
 }
 
-/// Returns a scene of a collapsing pile with rolling friction. 40 sweeps of each method solve its steps badly.
+/// Returns a scene of a collapsing pile with rolling friction. Its steps are limited to 40 sweeps, which leaves large
+/// residuals.
 fn pile(method: Method, rolling_friction: f64) -> Scene {
     let mut scene = paper_pile().expect("the shipped state");
     scene.parameters = Parameters { rolling_friction, ..parameters(20.0, 2e-3, 0.1, 0.5) };
@@ -248,7 +249,8 @@ fn a_pile_with_rolling_friction_is_the_same_on_one_and_two_threads() {
     assert!(bits(&one) != bits(&after(&pile(Method::Auto, 0.0), 150)), "it matters");
 }
 
-/// Solves the contact problem of the next step with one set of physics (`M`). Returns the velocities as bit patterns.
+/// Solves the contact problem of the next step with the equations of one kind of physics (`M`). Returns the velocities
+/// as bit patterns.
 fn solved_in<M: Model>(run: &Simulation, method: Method, rolling_friction: f64) -> Vec<[u64; 3]> {
     let (world, parameters) = (run.world(), run.parameters());
     let numbers = ProblemNumbers {

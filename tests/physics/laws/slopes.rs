@@ -160,8 +160,8 @@ fn a_disc_leaves_a_fixed_disc_at_four_sevenths() {
     }
 }
 
-/// Returns a scene with a disc on an inclined half-space, with cohesion, for a stepper that does not solve the whole
-/// step.
+/// Returns a scene with a cohesive disc on an inclined half-space, for a stepper that does not solve one contact
+/// problem for the whole step. `slope` is the tangent of the angle.
 fn on_slope(
     stepper: Stepper,
     physics: Physics,
@@ -174,8 +174,8 @@ fn on_slope(
     scene
 }
 
-/// Returns the velocity (m/s) and the acceleration (m/s²) of the disc along the slope, after it has settled on the
-/// slope.
+/// Returns the velocity (m/s) and the acceleration (m/s²) of the disc along the slope, measured after it has settled
+/// into its contact.
 fn slides(scene: &Scene) -> (f64, f64) {
     let mut run = after(scene, 500);
     let velocity = run.velocity(0).x;

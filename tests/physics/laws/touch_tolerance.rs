@@ -1,12 +1,12 @@
-//! Tests of the touch tolerance, the gap up to which contacts pull. Grains push each other only at gap 0, within
-//! rounding.
+//! Tests of the touch tolerance, which is the largest gap at which cohesive contacts still pull. Grains push each other
+//! only at gap 0, within rounding.
 
 use crate::common::*;
 
 const RADIUS: f64 = 0.01;
 const DIAMETER: f64 = 2.0 * RADIUS;
 const BOND: f64 = 20.0;
-/// Largest rounding error of gaps, in diameters.
+/// Largest rounding error that the tests allow in gaps, in diameters.
 const ROUNDING: f64 = 1e-4;
 
 /// Returns a scene with this touch tolerance (in diameters): two weightless discs with a gap (in diameters) separate at
@@ -54,8 +54,9 @@ fn discs_bounce_from_within_the_tolerance_as_from_the_surface() {
     }
 }
 
-/// A pair that separates loses the energy that the pull gave it on the approach. With ρ = 1, the whole encounter costs
-/// energy only if the discs approach so slowly that a step ends with the gap at 0.
+/// Checks that discs never separate faster than they approached. The pull takes from them at least the energy that it
+/// gave them on the approach. At restitution 1 most pairs keep all of it, but some slow pairs are caught, because a
+/// step ends with their gap at 0.
 #[test]
 fn the_pull_within_the_tolerance_gives_no_more_energy_than_it_takes() {
     let (mut kept, mut lost) = (0, 0);
@@ -83,8 +84,8 @@ fn the_pull_within_the_tolerance_gives_no_more_energy_than_it_takes() {
     assert!(kept > 100 && lost > 0, "{kept} leave with all of their speed, {lost} are caught");
 }
 
-/// The energy to break a bond is ½ m_ij v² = C₀ (τ + the opening within a step), where τ is the touch tolerance and C₀
-/// = Bond m_ij g the cohesion force.
+/// Checks the energy that breaks a bond: ½ m_ij v² = C₀ (τ + the opening within a step), where τ is the touch tolerance
+/// and C₀ = Bond m_ij g the cohesion force (m_ij: effective mass).
 #[test]
 fn a_bond_takes_its_force_times_the_tolerance_to_break() {
     for tolerance in [1e-3, 0.01, 0.1] {
@@ -106,9 +107,10 @@ fn a_bond_takes_its_force_times_the_tolerance_to_break() {
     }
 }
 
-/// A pair with the angular velocity ω and the diameter d opens by ½ω²Δt²d in a step. If the bond is barely stronger
-/// than the circular motion requires, the pull needs some steps to reverse this opening. Meanwhile the gap grows by at
-/// most ω⁴Δt²d/8(ω_b² − ω²), where ω_b is the largest angular velocity that the bond can carry.
+/// Checks up to which angular velocity ω a circling pair of diameter d stays together. In a step it opens by ½ω²Δt²d.
+/// If the bond is barely stronger than the circular motion requires, the pull needs some steps to reverse this opening.
+/// Meanwhile the gap grows by at most ω⁴Δt²d/8(ω_b² − ω²), where ω_b is the largest angular velocity at which the bond
+/// can hold the pair. The touch tolerance must be larger than this gap.
 #[test]
 fn a_pair_turns_for_good_up_to_the_spin_that_its_bond_bears() {
     let break_up = (BOND * G / DIAMETER).sqrt();
@@ -140,7 +142,8 @@ fn a_pair_turns_for_good_up_to_the_spin_that_its_bond_bears() {
     }
 }
 
-/// Numbers in a file are rounded, so discs that touch according to the file have gaps of about 1e-16 d, of either sign.
+/// Checks that discs that touch according to a file are bonded under the default touch tolerance. The numbers in a file
+/// are rounded, so their gaps are about ±1e-16 d.
 #[test]
 fn discs_that_are_written_as_touching_are_bonded_by_default() {
     let mut random = random(9);

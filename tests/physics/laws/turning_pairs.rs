@@ -1,11 +1,11 @@
-//! Tests of bonded pairs that circle each other. If bonds have a length, a pair breaks at the angular velocity √(Bond
-//! g/2r), where r is the radius. If a bond ends at a gap of zero, the pair breaks at a lower angular velocity, and
-//! Slump warns.
+//! Tests of bonded pairs that circle about their common centre. If bonds have a length, a pair breaks at the angular
+//! velocity √(Bond·g/2r), where r is the radius. If a bond ends at a gap of zero, the pair breaks at a lower angular
+//! velocity, and Slump warns.
 
 use crate::common::*;
 
 const RADIUS: f64 = 0.01;
-/// Overlap at the start, in radii.
+/// Overlap of the two discs at the start, in radii.
 const OVERLAP: f64 = 1e-3;
 
 /// Returns a scene of two weightless discs that touch and circle about their common centre at `rate` (rad/s).
@@ -27,8 +27,8 @@ fn warning(run: &Simulation) -> Option<Alarm> {
     run.alarms().iter().find(|alarm| alarm.kind == AlarmKind::TurnedBonds).copied()
 }
 
-/// Returns the largest angular velocity ω that the bond can carry, rad/s. At this ω, m ω² r is the cohesion force Bond
-/// ½m g.
+/// Returns the largest angular velocity ω at which the bond holds the pair together, rad/s. At this ω, the centripetal
+/// force m ω² r equals the cohesion force Bond ½m g.
 fn break_up(bond: f64) -> f64 {
     (bond * G / (2.0 * RADIUS)).sqrt()
 }
@@ -48,7 +48,7 @@ fn a_pair_breaks_at_the_spin_that_its_bond_bears_where_bonds_have_a_length() {
 }
 
 /// Checks a pair whose circular motion needs only 2e-4 of the strength of its bond. A bond that ends at a gap of zero
-/// breaks nevertheless, and Slump warns. The pair stays together if the advice of the warning is followed.
+/// breaks nevertheless, and Slump warns. With the stepper that the warning recommends, the pair stays together.
 #[test]
 fn a_bond_that_turning_ends_is_counted_and_the_advice_helps() {
     let (bond, rate) = (1000.0, 10.0);
@@ -78,8 +78,8 @@ fn a_bond_that_turning_ends_is_counted_and_the_advice_helps() {
     }
 }
 
-/// In each step the gap of two discs of radius r that circle at the angular velocity ω grows by ω²Δt² r. So a bond with
-/// the overlap s lasts s/(ω²Δt² r) steps.
+/// Checks that the gap of two discs of radius r that circle at the angular velocity ω grows by ω²Δt² r in each step. So
+/// a bond that ends at a gap of zero and begins with the overlap s lasts s/(ω²Δt² r) steps.
 #[test]
 fn the_gap_of_a_pair_grows_by_its_turning_in_each_step() {
     let (rate, dt) = (10.0, 1e-3);

@@ -12,18 +12,19 @@
 
 use crate::common::*;
 
-/// Initial state of a contact between grain i and another body. The velocity (m/s) of i is along the normal.
+/// A test case: initial state of a contact between grain i and another body. The velocity (m/s) of i relative to the
+/// other body is along the normal.
 #[derive(Clone)]
 struct Case {
     parameters: Parameters,
     velocity: f64,
-    /// Sign of gravity: positive presses the pair together, negative pulls it apart, 0 switches gravity off.
+    /// Direction of gravity: 1 presses grain i against the other body, −1 pulls it away, 0 switches gravity off.
     pressing: f64,
 }
 
 const RADIUS: f64 = 0.15;
 const OTHER_RADIUS: f64 = 0.1;
-/// Initial overlap, m: enough for a contact, too small for any other effect.
+/// Initial overlap, m: enough for a contact to be detected, too small for any other effect.
 const OVERLAP: f64 = 1e-9;
 
 fn cases() -> Vec<Case> {
@@ -39,7 +40,8 @@ fn cases() -> Vec<Case> {
     cases
 }
 
-/// Returns a scene in which grain i touches a fixed disc. `direction` points from the disc to the grain.
+/// Returns a scene in which grain i touches a disc that does not move. `direction` is the unit vector from this disc to
+/// the grain.
 fn against_fixed(case: &Case, physics: Physics, direction: DVec2) -> Scene {
     let place = (RADIUS + OTHER_RADIUS - OVERLAP) * direction;
     let mut grain = moving(place, RADIUS, case.velocity * direction);
@@ -54,8 +56,8 @@ fn against_fixed(case: &Case, physics: Physics, direction: DVec2) -> Scene {
     }
 }
 
-/// Returns the scene of [`against_fixed`], with a free disc j without weight instead of the fixed disc. Both discs have
-/// an additional common velocity.
+/// Returns the scene of [`against_fixed`] with a weightless grain j in place of the disc that does not move. Both
+/// grains have an additional common velocity.
 fn free_pair(case: &Case, physics: Physics, direction: DVec2) -> Scene {
     let mut scene = against_fixed(case, physics, direction);
     let drift = 0.3 * direction;
@@ -65,8 +67,9 @@ fn free_pair(case: &Case, physics: Physics, direction: DVec2) -> Scene {
     scene
 }
 
-/// Takes one step and compares the final normal velocity v^n and the normal impulse P with theory. Returns the number
-/// of the case (see the top of this file).
+/// Takes one step and compares the final normal velocity v^n and the normal impulse P with theory. Returns which of the
+/// three cases occurred: 0 if the contact pushes, 1 if it pulls and closes again, 2 if it opens (see the top of this
+/// file).
 fn check(case: &Case, scene: &Scene, direction: DVec2) -> usize {
     let mut run = start(scene);
     run.step().expect("a finite state");
@@ -129,11 +132,11 @@ fn one_contact_bounces_closes_again_or_opens_as_in_section_2_2() {
     }
 }
 
-/// Time steps for which the pull-off force must be equal, s.
+/// Time steps (s) at which the same force must pull a bonded grain off.
 const TIME_STEPS: [f64; 7] = [1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 2e-3, 5e-3];
 
-/// Returns a scene in which gravity pulls grain i off another body. The pull is m_ij g and C₀ is Bond·m_ij·g, so the
-/// bond breaks for Bond < 1.
+/// Returns a scene in which gravity pulls grain i off another body, which is a second grain if `free` is true. The pull
+/// is m_ij g and the cohesion force C₀ is Bond·m_ij·g (m_ij: effective mass), so the bond breaks for Bond < 1.
 fn pulled(bond: f64, dt: f64, physics: Physics, free: bool) -> Scene {
     let parameters = Parameters { touch_tolerance: 0.0, ..parameters(bond, dt, 0.2, 0.5) };
     let case = Case { parameters, velocity: 0.0, pressing: -1.0 };
@@ -198,7 +201,8 @@ const BALL_RADIUS: f64 = 0.05;
 const HEIGHT: f64 = 0.3;
 const DT: f64 = 1e-4;
 
-/// Returns a scene with a disc at rest at the height [`HEIGHT`] above a plane through the origin with the normal `up`.
+/// Returns a scene with a disc at rest at the height [`HEIGHT`] above a plane through the origin. `up` is the normal of
+/// the plane.
 fn drop(physics: Physics, up: DVec2, restitution: f64, bond: f64) -> Scene {
     let grain = Grain::at_rest((BALL_RADIUS + HEIGHT) * up, BALL_RADIUS);
     let parameters = parameters(bond, DT, restitution, 0.5);
@@ -208,8 +212,8 @@ fn drop(physics: Physics, up: DVec2, restitution: f64, bond: f64) -> Scene {
     }
 }
 
-/// Runs until the disc has bounced `count` times. Returns the speeds before and after each shock (m/s), and the highest
-/// point between consecutive shocks (m).
+/// Runs until the disc has bounced `count` times. Returns its speeds before and after each impact (m/s), and its
+/// greatest heights between consecutive impacts (m).
 fn bounces(scene: &Scene, up: DVec2, count: usize) -> (Vec<[f64; 2]>, Vec<f64>) {
     let mut run = start(scene);
     let (mut shocks, mut heights) = (Vec::new(), Vec::new());

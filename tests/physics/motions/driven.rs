@@ -1,4 +1,4 @@
-//! Tests of walls driven by a force: load on contacts, momentum and energy balance, and walls of any mass.
+//! Tests of walls that a force drives: load on contacts, balance of momentum and energy, and walls of any mass.
 
 use super::{saved_and_read, through_a_file};
 use crate::common::*;
@@ -45,7 +45,7 @@ pub(super) fn pressed(mass: f64) -> Scene {
     scene
 }
 
-/// Returns the sum of the normal forces of all contacts of a boundary, N.
+/// Returns the sum of the normal forces of all contacts of the boundary with this index, N.
 pub(super) fn carried(run: &Simulation, boundary: u32) -> f64 {
     let contacts = run.moment().contacts.into_iter();
     let of_it = contacts.filter(|contact| contact.other == OtherBody::Boundary(boundary));
@@ -81,7 +81,7 @@ fn a_piston_at_rest_carries_its_pressure_however_light_it_is() {
     }
 }
 
-/// The wall moves obliquely, so the normal and the tangential impulses of a contact both change its speed.
+/// Checks that an oblique driven wall with bounded friction moves alike with sweeps and the interior-point method.
 #[test]
 fn sweeps_and_the_interior_point_move_a_wall_alike_within_bounds_of_friction() {
     let of_grain = std::f64::consts::PI * 1e-4;
@@ -293,7 +293,7 @@ fn a_motion_of_another_wall_stays_what_it_was() {
     assert_eq!(alone.world().grains, with.world().grains);
 }
 
-/// Returns the steppers that accept driven walls, each with every method that accepts driven walls.
+/// Returns the steppers and methods that support walls driven by a force, in all combinations.
 fn ways() -> impl Iterator<Item = (Stepper, Method)> {
     let methods = |stepper: Stepper| {
         let takes = METHODS.iter().filter(|info| info.takes_drives);
@@ -303,7 +303,7 @@ fn ways() -> impl Iterator<Item = (Stepper, Method)> {
     steppers.flat_map(move |stepper| methods(stepper).map(move |info| (stepper, info.method)))
 }
 
-/// Returns a scene of jumping grains between a damped piston above and a piston at one side, both of this mass (kg).
+/// Returns jumping grains between a damped piston of this mass (kg) above and one of three times this mass at a side.
 fn jumping(mass: f64) -> Scene {
     let mut scene = pressed(mass);
     for (k, grain) in (0..).zip(&mut scene.grains) {
@@ -433,10 +433,10 @@ fn a_wall_on_springs_that_is_lighter_than_its_grains_may_swing_up() {
     assert!(wild > 10.0 * calm * (heavy / light).sqrt(), "{wild} m/s of {light} kg, {calm} m/s");
 }
 
-/// Force on each wall, N.
+/// Force that drives each wall, N.
 const FORCE: f64 = 0.03;
 
-/// Returns a scene of 36 discs of different sizes in loose positions between a floor and three walls with [`FORCE`].
+/// Returns a scene of 36 separate discs of different sizes between a floor and three walls driven by [`FORCE`].
 fn pressed_together(seed: u64) -> Scene {
     let mut random = random(seed);
     let grain = |k: i32| {

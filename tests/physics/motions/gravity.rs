@@ -1,5 +1,5 @@
-//! Tests of gravity that turns with time or is tilted by the user: free fall, sliding, and equality of a tilted scene
-//! with a scene whose gravity is defined in the tilted direction.
+//! Tests of gravity whose direction turns with time or is tilted by the user: free fall, sliding, and equality of a
+//! tilted scene with a scene whose gravity is defined in the tilted direction.
 
 use super::{saved_and_read, through_a_file};
 use crate::common::*;
@@ -11,8 +11,8 @@ fn evenly(rate: f64) -> Option<GravityTurn> {
     Some(GravityTurn { course: TurnCourse::Rate { rate }, elapsed_secs: 0.0 })
 }
 
-/// Checks free fall under gravity that turns at the rate Ω. The velocity must be ∫ g (sin Ωt, −cos Ωt) dt = g/Ω (1 −
-/// cos Ωt, −sin Ωt).
+/// Checks free fall under gravity whose direction turns at the angular velocity Ω. The velocity at the time t must be ∫
+/// g (sin Ωt, −cos Ωt) dt = g/Ω (1 − cos Ωt, −sin Ωt).
 #[test]
 fn what_falls_freely_goes_as_the_integral_of_gravity() {
     for &stepper in Stepper::ALL {
@@ -39,8 +39,9 @@ fn what_falls_freely_goes_as_the_integral_of_gravity() {
     }
 }
 
-/// A table of angles tilts gravity to an angle θ with tan θ just below μ, and later to an angle with tan θ just above
-/// μ.
+/// Checks that a disc on a level floor sticks while gravity is inclined by an angle θ with tan θ just below the
+/// friction coefficient μ, and slides when tan θ is just above μ. A table of angles over time defines the direction of
+/// gravity.
 #[test]
 fn a_disc_on_a_level_slides_once_gravity_leans_by_more_than_friction_holds() {
     let mu: f64 = 0.3;
@@ -73,7 +74,7 @@ fn a_disc_on_a_level_slides_once_gravity_leans_by_more_than_friction_holds() {
     }
 }
 
-/// Returns a scene of grains on a floor: some rest, one falls, one is held by a bond.
+/// Returns a scene of grains on a floor: some rest, one falls, and one is attached to the floor by a bond.
 fn on_a_floor() -> Scene {
     let mut scene = at_rest_and_falling();
     scene.boundaries = vec![level()];

@@ -1,14 +1,15 @@
-//! Tests of periodic cells (at the sides, all round, and sheared): pairs across borders behave like other pairs,
-//! momentum is conserved, measured quantities do not depend on the position of the borders, and files store the cell.
+//! Tests of periodic cells (at the sides, in both directions, and sheared): pairs across borders behave like other
+//! pairs, momentum is conserved, measured quantities do not depend on the position of the borders, and files store the
+//! cell.
 
 use super::periodic::{SIDE, SQUARE, falling, sliding};
 use super::sheared::{SIZE, cell, gas as sheared_gas, ways};
 use super::{saved_and_read, through_a_file};
 use crate::common::*;
 
-/// Returns a scene of moving discs between a frictionless floor and ceiling or, with `all_round`, in a cell that is
-/// periodic in both directions. The diameter of every third disc is `small` times 0.01 m, the diameter of all others
-/// 0.0095 m.
+/// Returns a scene of moving discs between a frictionless floor and ceiling in a cell that is periodic in x or, if
+/// `all_round` is true, in a cell that is periodic in both directions. The diameter of every third disc is `small`
+/// times 0.01 m, the diameter of all others 0.0095 m.
 pub(super) fn gas(small: f64, all_round: bool) -> Scene {
     let mut random = random(5);
     let (spacing, fall) = if all_round { (1.2, 0.3) } else { (1.1, 0.0) };
@@ -109,7 +110,7 @@ fn every_pair_in_touch_is_found_across_borders_and_none_twice() {
     }
 }
 
-/// Returns the velocity of the nearest image of the second disc relative to the first disc, m/s.
+/// Returns the velocity of the second disc, or of its image nearest to the first disc, relative to the first disc, m/s.
 fn seen(run: &Simulation) -> DVec2 {
     let cell = run.world().periodic.expect("a cell");
     let above = ((run.place(0).y - run.place(1).y) / SIZE.y).round();
@@ -195,7 +196,7 @@ fn runs_go_on_from_a_file_bit_for_bit_across_crossings() {
     assert_eq!(after(&still, 600).observables().lost_grains, 0, "nothing moves by itself");
 }
 
-/// Moves all discs of a run by the same vector (m) and returns the measured quantities.
+/// Moves all discs of a run by the same vector (m) within the periodic cell. Returns the measured quantities.
 fn moved(run: &Simulation, by: DVec2) -> MomentMeasures {
     let (mut moment, cell) = (run.moment(), run.world().periodic.expect("a cell"));
     moment.grains.iter_mut().for_each(|grain| grain.position = cell.wrap(grain.position + by));

@@ -1,5 +1,5 @@
-//! Tests of bodies that move on prescribed courses, and of gravity that turns: effect of moving surfaces on grains,
-//! independence of the frame of reference, energy and momentum balance, restart, and mirror images.
+//! Tests of bodies with prescribed motions, and of gravity that turns: effect of moving surfaces on grains,
+//! independence of the frame of reference, balance of energy and momentum, restart, and mirror images.
 
 mod driven;
 mod gravity;

@@ -4,8 +4,8 @@ use super::images::gas;
 use super::through_a_file;
 use crate::common::*;
 
-/// Returns the scene in a periodic cell of this width with the left border at `left`, and moves all discs by `shift`
-/// (m).
+/// Returns the scene in a periodic cell of this width (m) with the left border at x = `left`. All discs are moved by
+/// `shift` (m) along x.
 pub(super) fn in_cell(scene: &Scene, [left, width]: [f64; 2], shift: f64) -> Scene {
     let cell = Periodic::along_x([left, left + width]);
     let mut scene = Scene { periodic: Some(cell), ..scene.clone() };
@@ -16,8 +16,8 @@ pub(super) fn in_cell(scene: &Scene, [left, width]: [f64; 2], shift: f64) -> Sce
     scene
 }
 
-/// Returns the longest distance, m, between a grain of one run and the same grain of a second run whose grains were
-/// moved by `shift`.
+/// Returns the longest distance, m, between a grain of the first run, moved by `shift` along x, and the same grain of
+/// the second run. Distances across the borders of the cell count.
 fn farthest(one: &Simulation, other: &Simulation, shift: f64) -> f64 {
     let cell = one.world().periodic.or(other.world().periodic).expect("a cell");
     let [one, other] = [one, other].map(|run| run.places());
@@ -25,8 +25,8 @@ fn farthest(one: &Simulation, other: &Simulation, shift: f64) -> f64 {
     ways.map(|way| cell.shortest(way).length()).fold(0.0, f64::max)
 }
 
-/// Returns a scene of grains on fixed discs and on a floor, and the width of a periodic cell for it (20 diameters, m).
-/// Each grain can come to rest at only one position.
+/// Returns a scene of grains on a floor and on discs that are not grains, and the width of a periodic cell for it (20
+/// diameters, m). Each grain can come to rest at only one position.
 pub(super) fn at_rest_on_discs() -> (Scene, f64) {
     let mut scene = at_rest_and_falling();
     scene.boundaries = vec![level()];
@@ -119,7 +119,7 @@ fn remedies_work_across_the_border() {
     }
 }
 
-/// Returns the vector from grain 1 to the nearest image of grain 0, m.
+/// Returns the vector from grain 1 to grain 0, or to the nearest image of grain 0 across the borders, m.
 fn offset(run: &Simulation) -> DVec2 {
     let (places, cell) = (run.places(), run.world().periodic.expect("a cell"));
     cell.shortest(places[0] - places[1])
@@ -191,7 +191,8 @@ fn grains_that_bounce_under_the_law_range_keep_their_momentum_across_borders() {
     assert!(run.observables().max_overlap < 0.02, "{:?}", run.observables());
 }
 
-/// Returns a scene of a disc on a floor under gravity that is inclined to the right, with or without a periodic cell.
+/// Returns a scene of a disc on a floor under gravity that is inclined to the right by `tilt` (degrees). `periodic` is
+/// the periodic cell, if there is one.
 fn on_a_slope(stepper: Stepper, tilt: f64, periodic: Option<Periodic>) -> Scene {
     let disc = moving(DVec2::new(0.05, 0.01), 0.01, DVec2::ZERO);
     let mut scene = under_g(parameters(0.0, 5e-4, 0.0, 0.1), vec![disc]);
@@ -281,7 +282,8 @@ fn a_disc_rolls_over_a_floor_that_ends_at_the_borders_as_over_one_without_end() 
 pub(super) const SIDE: f64 = 0.1;
 pub(super) const SQUARE: Periodic = Periodic::along_both([0.0, SIDE], [0.0, SIDE]);
 
-/// Returns the scene turned by +90°: its left side becomes the bottom, and its bottom becomes the right side.
+/// Returns the scene turned by +90° (anticlockwise): its left side becomes the bottom, and its bottom becomes the right
+/// side.
 fn turned(scene: &Scene) -> Scene {
     let mut turned = scene.clone();
     for grain in &mut turned.grains {
@@ -321,7 +323,8 @@ fn a_scene_turned_by_a_right_angle_does_what_it_did() {
     }
 }
 
-/// Returns a scene of grains that fall endlessly past a fixed disc and a disc that moves upward.
+/// Returns a scene of grains that fall endlessly in a periodic cell, past a disc at rest and a disc that moves upward;
+/// neither disc is a grain.
 pub(super) fn falling(bond: f64) -> Scene {
     let mut scene = gas(0.9, true);
     scene.gravity = Gravity::Uniform { acceleration: -9.8 * DVec2::Y };

@@ -1,11 +1,11 @@
-//! Tests that Slump refuses impossible motions, drives, cells and turns of gravity with an error message of one
-//! sentence.
+//! Tests that Slump refuses impossible motions, driving forces, periodic cells and turns of gravity with an error
+//! message of one sentence.
 
 use super::driven::{drive_of, pressed};
 use super::sheared::{cell, gas};
 use crate::common::*;
 
-/// Returns a scene with a grain over a floor, a piston at the side, a fixed disc, and the given motions.
+/// Returns a scene with a grain over a floor, a piston at the side, a disc that is not a grain, and the given motions.
 fn with(motions: Vec<Motion>) -> Scene {
     let piston = piston(DVec2::new(-3.0, 0.0), DVec2::X, 0.1, 1.0);
     Scene {
@@ -296,8 +296,8 @@ fn cells_that_cannot_be_are_refused_in_one_sentence() {
     );
 }
 
-/// In a periodic cell, two discs can be at the same position across a side border, the lower border, or a corner. Slump
-/// refuses these scenes.
+/// Checks that Slump refuses scenes with two discs that are at the same position across a side border, the lower
+/// border, or a corner of a periodic cell.
 #[test]
 fn two_discs_in_one_place_across_a_border_are_refused() {
     let both = Periodic::along_both([0.0, 1.0], [0.0, 1.0]);

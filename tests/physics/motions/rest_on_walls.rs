@@ -1,5 +1,5 @@
-//! Tests of discs at rest relative to moving walls: the gap must not change. For this, the solver uses for each wall
-//! the rigid velocity that is the exact mean over the step.
+//! Tests of discs at rest relative to moving walls: the gap must not change. To ensure this, the solver uses as the
+//! velocity of each wall the exact mean over the step.
 
 use super::through_a_file;
 use crate::common::*;
@@ -7,11 +7,11 @@ use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 const RADIUS: f64 = 0.05;
 const DT: f64 = 1e-3;
-/// Overlap at the start, in radii. With this overlap, bonds exist from the start.
+/// Overlap of disc and wall at the start, in radii. With this overlap, bonds exist from the start.
 const OVERLAP: f64 = 1e-4;
 
-/// A disc rests in the corner of a square drum that turns at 12 rad/s. The centrifugal acceleration of 2.4 g presses
-/// the disc into the corner.
+/// Checks that a disc stays in the corner of a square drum that turns at 12 rad/s. The centrifugal acceleration of 2.4
+/// g presses the disc into the corner.
 #[test]
 fn a_disc_in_the_corner_of_a_drum_that_turns_stays_in_it() {
     let (radius, side, rate) = (0.01, 0.177, 12.0);
@@ -45,7 +45,7 @@ fn is_rigid(stepper: Stepper) -> bool {
     [Stepper::Moreau, Stepper::Range].contains(&stepper)
 }
 
-/// Fixed bodies that form a valley of 90°.
+/// Bodies that are not grains and together form a valley of 90°.
 struct Valley {
     name: &'static str,
     boundaries: Vec<Boundary>,
@@ -54,12 +54,12 @@ struct Valley {
 
 const BOTTOM: DVec2 = DVec2::new(0.3, 0.1);
 
-/// Returns the centre of a disc that lies in a valley of 90°, m.
+/// Returns the centre (m) of a disc that lies at the bottom of a valley of 90°.
 fn place_in_valley() -> DVec2 {
     BOTTOM + SQRT_2 * RADIUS * (1.0 - OVERLAP) * DVec2::Y
 }
 
-/// Returns one valley for each kind of fixed shape.
+/// Returns one valley for each kind of shape that a body other than a grain can have.
 fn valleys() -> Vec<Valley> {
     let at = |x: f64, y: f64| BOTTOM + 0.2 * DVec2::new(x, y);
     let [left, bottom, right] = [at(-1.0, 1.0), BOTTOM, at(1.0, 1.0)];
@@ -94,9 +94,9 @@ fn valleys() -> Vec<Valley> {
     ]
 }
 
-/// Returns every kind of course with its name, and the initial velocity (m/s) and angular velocity (rad/s) of a disc
-/// that moves with it. After each half second, a body on any of these courses is back at its initial position or moves
-/// at constant velocity.
+/// Returns every kind of prescribed motion with its name, and the initial velocity (m/s) and angular velocity (rad/s)
+/// of a disc that moves with the body. From 0.5 s on, each motion is uniform, has ended, or repeats itself every half
+/// second.
 fn courses() -> Vec<(&'static str, MotionCourse, DVec2, f64)> {
     let (pivot, c) = (DVec2::new(0.02, -0.05), place_in_valley());
     let about = |rate: f64| (rate * (c - pivot).perp(), rate);
@@ -131,7 +131,8 @@ fn courses() -> Vec<(&'static str, MotionCourse, DVec2, f64)> {
     ]
 }
 
-/// Returns the largest change of a contact's gap between 0.5 s and 1 s, in diameters per second.
+/// Runs 1 s. Returns the largest rate at which the gap of a contact has changed between 0.5 s and 1 s, in diameters per
+/// second.
 fn drift(scene: &Scene, contacts: usize) -> f64 {
     let half = (0.5 / scene.parameters.time_step_secs).round() as usize;
     let mut run = start(scene);
@@ -146,7 +147,7 @@ fn drift(scene: &Scene, contacts: usize) -> f64 {
     changes.fold(0.0, f64::max) / 0.5 / scene.mean_diameter
 }
 
-/// Checks that the change of the gaps is of second order in Δt, or as small as rounding errors.
+/// Checks that the change of the gaps is proportional to Δt² (second order), or as small as rounding errors.
 #[track_caller]
 fn assert_of_second_order(scene: &Scene, contacts: usize, what: &str) {
     let [coarse, fine] = [1.0, 0.5].map(|part| {
@@ -162,7 +163,7 @@ fn assert_of_second_order(scene: &Scene, contacts: usize, what: &str) {
     }
 }
 
-/// Checks discs that bonds hold in a moving valley, for every stepper, course and shape.
+/// Checks that a disc that is bonded to a moving valley keeps its gaps, for every stepper, prescribed motion and shape.
 #[test]
 fn a_disc_that_goes_with_its_walls_keeps_its_gaps_under_every_stepper_motion_and_shape() {
     for ((valley, course), &stepper) in pairs(0..valleys().len(), courses())
@@ -198,7 +199,8 @@ fn a_disc_that_goes_with_its_walls_keeps_its_gaps_under_every_stepper_motion_and
     }
 }
 
-/// A bonded disc moves round with the surface of a fixed disc. The fixed disc turns, or its surface moves like a belt.
+/// Checks that a disc that is bonded to a larger disc, which is not a grain, keeps its gap while it moves round with
+/// the surface. The larger disc turns, or only its surface moves like a belt.
 #[test]
 fn a_disc_that_goes_round_with_a_surface_keeps_its_gap() {
     let (large, rate) = (0.2, 4.0);
@@ -219,7 +221,7 @@ fn a_disc_that_goes_round_with_a_surface_keeps_its_gap() {
     }
 }
 
-/// Rollers that turn on the spot under a frictionless disc have the same effect as walls at rest.
+/// Checks that rollers that turn on the spot under a frictionless disc do not move the disc.
 #[test]
 fn rollers_that_do_not_rub_leave_what_lies_on_them_in_peace() {
     // Under `range`, shocks do not distinguish a disc that turns from one that moves sideways.
@@ -243,7 +245,7 @@ fn rollers_that_do_not_rub_leave_what_lies_on_them_in_peace() {
     }
 }
 
-/// A frictionless disc slides down a plane that turns.
+/// Checks that the gap of a frictionless disc that slides down a turning plane changes only to the second order in Δt.
 #[test]
 fn a_disc_that_slides_along_a_wall_that_turns_keeps_its_gap_to_the_second_order() {
     let turning = MotionCourse::Rotation { pivot: DVec2::new(-1.0, 0.0), rate: -0.5, travel: None };
@@ -259,7 +261,8 @@ fn a_disc_that_slides_along_a_wall_that_turns_keeps_its_gap_to_the_second_order(
     }
 }
 
-/// With restitution, too, a floor that accelerates does not strike a disc that lies on it.
+/// Checks that a floor that accelerates up and down does not make a disc on it bounce, even with restitution, as long
+/// as the disc is pressed against the floor.
 #[test]
 fn a_disc_on_a_floor_that_is_shaken_does_not_bounce_while_it_is_pressed() {
     let course = MotionCourse::Sine {
@@ -282,7 +285,8 @@ fn a_disc_on_a_floor_that_is_shaken_does_not_bounce_while_it_is_pressed() {
     }
 }
 
-/// At 12 rad/s the centrifugal force presses all grains against the wall of the drum; this happens above 9 rad/s.
+/// Checks that a drum at 12 rad/s loses no grain. Above 9 rad/s the centrifugal force presses all grains against its
+/// wall.
 #[test]
 fn a_fast_drum_loses_no_grain() {
     let mut scene = built_in("drum").expect("a scene of that name");

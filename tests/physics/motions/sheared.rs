@@ -1,4 +1,4 @@
-//! Tests of periodic cells whose lower and upper borders slide along each other (shear): results do not depend on the
+//! Tests of sheared periodic cells, whose lower and upper borders slide along each other: results do not depend on the
 //! position of the borders, momentum and energy are balanced, and flows take the velocity profile of the shear.
 
 use crate::common::*;
@@ -10,7 +10,7 @@ pub(super) fn cell(shear_rate: f64) -> Periodic {
     Periodic { shear_rate, ..Periodic::along_both([0.0, SIZE.x], [0.0, SIZE.y]) }
 }
 
-/// Returns every stepper with every method that supports sheared cells.
+/// Returns every stepper with every method that supports sheared periodic cells.
 pub(super) fn ways() -> impl Iterator<Item = (Stepper, Method)> {
     let takes = |method: Method| method.info().takes_shear;
     every_way()
@@ -18,8 +18,8 @@ pub(super) fn ways() -> impl Iterator<Item = (Stepper, Method)> {
         .filter(move |(stepper, method)| !stepper.uses_method() || takes(*method))
 }
 
-/// Returns a scene of 80 discs with the velocities of uniform shear plus random velocities. The sum of the random
-/// momenta is zero.
+/// Returns a scene of 80 discs with the velocities of uniform shear plus random velocities. The mean velocity along y
+/// is zero.
 pub(super) fn gas(shear_rate: f64, restitution: f64, friction: f64) -> Scene {
     let mut random = random(7);
     let mut grains: Vec<_> = (0..80)

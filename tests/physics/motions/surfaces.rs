@@ -1,8 +1,9 @@
 //! Tests of moving surfaces: drums, shaken floors, and a disc that is laid on a sliding surface.
 //!
-//! The disc has the radius r, its velocity is v, and the surface moves at the speed V. Coulomb friction accelerates the
-//! disc with μg until it moves with the surface. A disc that cannot rotate then has v = V. A disc that rotates has v =
-//! μgt and rω = 2μgt at the time t while it slips (ω: angular velocity), until v + rω = V. Then it rolls with v = V/3.
+//! The disc has the radius r, its velocity is v, and the surface moves at the speed V. Coulomb friction (coefficient μ)
+//! accelerates the disc with μg until it moves with the surface. A disc that cannot rotate then has v = V. A disc that
+//! can rotate slips at first: at the time t it has v = μgt and rω = 2μgt (ω: angular velocity), until v + rω = V. Then
+//! it rolls with v = V/3.
 
 use super::through_a_file;
 use crate::common::*;
@@ -12,8 +13,8 @@ const MU: f64 = 0.25;
 const DT: f64 = 1e-3;
 const SPEED: f64 = 0.6;
 
-/// Returns floors whose surface moves to the right at [`SPEED`]: one for each shape and kind of motion that can express
-/// this, with its name.
+/// Returns floors whose surface moves to the right at [`SPEED`], with their names: one floor for each combination of
+/// shape and kind of motion for which this is possible.
 fn belts() -> Vec<(&'static str, Boundary, Motion)> {
     let at = |x: f64| DVec2::new(x, 0.0);
     let low = |x: f64| DVec2::new(x, -1.0);
@@ -129,9 +130,10 @@ fn drum(radius: f64, sides: usize) -> Boundary {
     Boundary::Polyline { points: (0..=sides).map(corner).collect() }
 }
 
-/// Checks a disc of radius r without rotation in a drum of radius R that turns at Ω. The disc sticks to the wall and
-/// moves about the axis at ΩR/(R − r) until tan φ = μ, where φ is its angle from the lowest point. From then on it
-/// slides and swings like a pendulum about this angle, because friction does not depend on the sliding speed.
+/// Checks a disc of radius r, which cannot rotate, in a drum of radius R that turns at the angular velocity Ω. The disc
+/// sticks to the wall and moves about the axis at ΩR/(R − r) until tan φ = μ, where φ is its angle from the lowest
+/// point. From then on it slides and swings like a pendulum about this angle, because friction does not depend on the
+/// sliding speed.
 #[test]
 fn a_disc_in_a_drum_goes_with_the_wall_until_friction_holds_it_no_more() {
     let (outer, radius, rate) = (1.0, 0.1, 0.2);
@@ -174,7 +176,8 @@ fn a_disc_in_a_drum_goes_with_the_wall_until_friction_holds_it_no_more() {
     }
 }
 
-/// Runs grains in a drum for one turn. A closed drum loses no grain, and its boundary has turned by the right angle.
+/// Checks that a closed drum keeps all grains inside during one turn, and that its boundary has then turned by the
+/// right angle.
 #[test]
 fn a_drum_keeps_its_grains_and_one_that_is_cut_open_loses_them() {
     let mut random = random(4);
@@ -210,7 +213,8 @@ fn a_drum_keeps_its_grains_and_one_that_is_cut_open_loses_them() {
     }
 }
 
-/// A grain on a rising wall is not lost. A grain is lost if a wall jumps past the grain within one step.
+/// Checks which grains count as lost (having passed through a wall): a grain on a rising wall does not, but a grain
+/// does if a wall jumps past it within one step.
 #[test]
 fn a_grain_is_lost_where_a_wall_passes_it_and_not_where_it_rides_on_it() {
     let floor = Boundary::Segment { from: DVec2::new(-1.0, 0.0), to: DVec2::new(1.0, 0.0) };
@@ -229,7 +233,8 @@ fn a_grain_is_lost_where_a_wall_passes_it_and_not_where_it_rides_on_it() {
     }
 }
 
-/// Moving fixed discs start so far away that no list of near pairs contains them. They reach a grain and push it.
+/// Checks that a moving disc (not a grain) pushes a grain that it reaches. The disc starts so far away that no list of
+/// near pairs contains it.
 #[test]
 fn discs_that_move_are_found_wherever_they_come_to() {
     for &stepper in Stepper::ALL {
@@ -331,8 +336,8 @@ fn momentum_comes_from_gravity_and_from_what_is_no_grain_alone() {
     }
 }
 
-/// At constant speed v, a wall's work is m g h to lift a grain by h, ½mv² to accelerate it, and ½mv² that the shock
-/// dissipates.
+/// Checks the work of a wall that lifts a grain of mass m by the height h at the constant speed v: m g h to lift the
+/// grain, ½mv² to accelerate it, and ½mv² that the collision dissipates.
 #[test]
 fn the_work_of_a_wall_is_what_it_lifts() {
     for (stepper, method) in every_way() {
@@ -357,7 +362,7 @@ fn the_work_of_a_wall_is_what_it_lifts() {
     }
 }
 
-/// Without restitution, the energy that contacts dissipate is never negative, even if walls do work on the grains.
+/// Checks that without restitution contacts never create energy in a step, even if walls do work on the grains.
 #[test]
 fn contacts_take_what_walls_give_beyond_the_grains_own() {
     let mut scene = shaken();

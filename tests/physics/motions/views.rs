@@ -1,4 +1,4 @@
-//! Tests of invariance: a run is the same in a moving frame of reference, with a piston instead of an equally moving
+//! Tests of invariance: a run is the same in a moving frame of reference, with a piston in place of an equally moving
 //! wall, and in a mirror image.
 
 use crate::common::*;
@@ -29,8 +29,8 @@ fn on_a_floor(shape: usize) -> Scene {
     scene
 }
 
-/// Runs a scene at rest and in a moving frame of reference. Returns the longest distance between the two positions of a
-/// grain over all steps, in diameters.
+/// Runs a scene at rest and in a moving frame of reference. Returns the longest distance between the positions of a
+/// grain in the two runs, over all steps, in diameters; the motion of the frame is subtracted.
 fn difference_of_views(scene: &Scene) -> f64 {
     let (mut seen, mut velocity) = (scene.clone(), VELOCITY);
     if let Some(Boundary::Piston { speed, .. }) = seen.boundaries.first_mut() {
@@ -85,7 +85,7 @@ fn nothing_depends_on_whether_all_that_is_fixed_goes_past_or_the_onlooker() {
 }
 
 /// Returns a scene in which two walls of a box approach with grains between them and then stop. The walls are pistons
-/// or half-spaces with a prescribed course.
+/// or half-spaces with a prescribed motion.
 fn pressed(normal: DVec2, as_pistons: bool) -> Scene {
     let (speed, travel) = (0.1, 2e-3);
     let mut scene = pressed_pile(30, 0.3, 11, parameters(5.0, 1e-3, 0.3, 0.5));
@@ -127,8 +127,8 @@ fn mirrored(vector: DVec2) -> DVec2 {
     DVec2::new(-vector.x, vector.y)
 }
 
-/// Returns a scene of grains on a shaken floor between a turning wall, a belt and a disc that oscillates, or its mirror
-/// image.
+/// Returns a scene, or its mirror image, of grains on a shaken floor between a turning wall, a belt and a disc that
+/// oscillates.
 fn of_all_kinds(mirror: bool) -> Scene {
     let side = |vector: DVec2| if mirror { mirrored(vector) } else { vector };
     let turn = if mirror { -1.0 } else { 1.0 };
@@ -180,7 +180,8 @@ fn a_mirrored_scene_goes_on_mirrored() {
     }
 }
 
-/// A wall that hits a resting disc gives it (1 + ρ) times the speed of the contact point, where ρ is the restitution.
+/// Checks that a turning wall that hits a resting disc gives it (1 + ρ) times the speed of the contact point, where ρ
+/// is the restitution.
 #[test]
 fn a_paddle_strikes_a_disc_with_the_speed_of_the_point_that_touches() {
     let (radius, arm, rate) = (0.05, 1.0, 2.0);

@@ -1,17 +1,18 @@
-//! Checks steps that are reported as solved. Their error is computed from positions, velocities and impulses,
-//! independently of all methods.
+//! Checks steps that are reported as solved: their error is computed from positions, velocities and impulses,
+//! independently of all solvers.
 
 use crate::common::natural_map::{judge, natural_map};
 use crate::common::*;
 
-/// Allowed ratio of the natural map's norm ‖e‖ to the change ‖ΔP‖ of the impulses per sweep, for stop tests by changes.
+/// Allowed error of a step whose solver stops when the impulses hardly change: the largest ratio of the natural map's
+/// norm ‖e‖ to the change ‖ΔP‖ of the impulses in the last sweep.
 const LEFT: f64 = 8.0;
 
-/// Allowed rounding error, relative to the norm of all contact impulses.
+/// Allowed rounding error of the natural map, relative to the norm of all contact impulses.
 const ROUNDING: f64 = 1e-12;
 
-/// Returns a scene of a disc that falls on a floor. In an earlier version, some methods reported steps of this scene as
-/// solved without doing anything.
+/// Returns a scene of a disc that falls on a floor. In an earlier version, some solvers reported steps of this scene as
+/// solved although they had not changed any impulse.
 fn falling_disc() -> Scene {
     let disc = moving(0.006 * DVec2::Y, 5e-3, DVec2::ZERO);
     Scene { boundaries: vec![level()], ..under_g(parameters(0.0, 1e-3, 0.1, 0.5), vec![disc]) }
@@ -33,7 +34,7 @@ fn moved_discs() -> [Scene; 2] {
     ]
 }
 
-/// Returns the built-in scenes for which [`natural_map`] can check a step. With `all`, these come from all scenes,
+/// Returns scenes whose steps [`natural_map`] can check. They are chosen from all built-in scenes if `all` is true,
 /// otherwise only from the paper's scenes and the stability tests.
 fn scenes(all: bool) -> Vec<Scene> {
     let small = [SceneGroup::Paper, SceneGroup::Stability];
@@ -55,7 +56,7 @@ fn scenes(all: bool) -> Vec<Scene> {
     [falling_disc()].into_iter().chain(moved_discs()).chain(scenes).filter(is_judged).collect()
 }
 
-/// Returns every method with every stop test, and with every friction model that it accepts.
+/// Returns settings for every method with every stop test, and with every friction model that the method supports.
 fn solvers() -> Vec<SolverSettings> {
     let mut solvers = Vec::new();
     for ((method, model), (stop, tolerance)) in pairs(
@@ -79,8 +80,9 @@ fn solvers() -> Vec<SolverSettings> {
     solvers
 }
 
-/// Returns the velocity error under Coulomb friction and the velocity that scales its tolerance, m/s. Both are computed
-/// from positions, velocities and impulses.
+/// Returns the velocity error of a step under Coulomb friction, and the velocity by which the tolerance is multiplied,
+/// both in m/s. Both are computed from positions, velocities and impulses. `before` contains the grains before the
+/// step.
 fn velocity_error(run: &Simulation, before: &Grains) -> (f64, f64) {
     let friction = if run.physics().friction { run.parameters().friction } else { 0.0 };
     let world = run.world();
@@ -148,8 +150,8 @@ fn step_is_what_it_says(run: &mut Simulation, solver: &SolverSettings) -> Result
     Err(format!("solved with {left:e} left of at most {allowed:e}; residual {:e}", row.residual))
 }
 
-/// Runs every `nth` combination of scene and solver for `steps` steps. Returns the number of steps that are reported as
-/// solved, and a description of each wrong report.
+/// Runs every `nth` combination of scene and solver settings for `steps` steps. Returns the number of steps that are
+/// reported as solved, and a description of each wrong report.
 fn look(scenes: Vec<Scene>, nth: usize, steps: usize) -> (usize, Vec<String>) {
     let (mut solved, mut wrong) = (0, Vec::new());
     for (scene, solver) in pairs(scenes, solvers()).into_iter().step_by(nth) {
@@ -173,9 +175,10 @@ fn no_step_is_called_solved_that_is_not() {
     assert!(solved > 1000, "{solved} steps were called solved");
 }
 
-/// A step of `range` consists of substeps with contact problems of their own, which the state at the end of the whole
-/// step cannot check. The reported residual is the largest of all substeps, under Coulomb friction or the friction
-/// model that was solved.
+/// Checks that no step of the stepper `range` is reported as solved if its reported residual is above the tolerance.
+/// Such a step consists of substeps with contact problems of their own, which cannot be checked from the state at the
+/// end of the whole step. The reported residual is the largest residual of all substeps, under Coulomb friction or the
+/// friction model that was solved.
 #[test]
 fn no_step_of_range_is_called_solved_whose_pieces_are_not() {
     let is_by_residual = |solver: &SolverSettings| solver.stop == StopTest::Residual;

@@ -1,11 +1,11 @@
-//! Compares the search for near pairs with a test of every pair, and coloured sweeps on several threads with one
-//! thread.
+//! Compares the search for near pairs with a test of every pair, and parallel (coloured) sweeps on several threads with
+//! sweeps on one thread.
 
 use rand_pcg::Pcg64;
 
 use crate::common::*;
 
-/// Returns all touching pairs, found by testing every pair. Boundaries must be half-spaces.
+/// Returns all touching pairs of bodies, found by testing every pair. Boundaries must be half-spaces.
 fn every_pair(world: &World, gap_tolerance: f64) -> Vec<(u32, u32)> {
     let grains = &world.grains;
     let count = grains.len();
@@ -36,8 +36,8 @@ fn found(contacts: &ContactList) -> Vec<(u32, u32)> {
     contacts.contacts().iter().map(|contact| (contact.grain, contact.other)).collect()
 }
 
-/// Checks that contacts that existed before still have their impulses and that new contacts have zero impulses. Then
-/// gives each contact an impulse that identifies the contact.
+/// Checks the impulses after a search for contacts: contacts that existed before (`before`) must still have their
+/// impulses, and new contacts zero impulses. Then gives each contact an impulse that identifies it.
 fn check_impulses(contacts: &mut ContactList, before: &[(u32, u32)]) {
     for (pair, impulse) in found(contacts).into_iter().zip(contacts.impulses_mut()) {
         let own = Impulse { normal: 1.0 + f64::from(pair.0), tangential: f64::from(pair.1) };
@@ -47,8 +47,8 @@ fn check_impulses(contacts: &mut ContactList, before: &[(u32, u32)]) {
     }
 }
 
-/// Returns a random radius, m. `kind` selects one of three distributions, whose ratio of largest to smallest radius is
-/// 1, 2 and 20.
+/// Returns a random radius, m. `kind` selects one of three distributions, in which the ratio of the largest to the
+/// smallest radius is 1, 2 and 20.
 fn radius(kind: usize, random: &mut Pcg64) -> f64 {
     match kind {
         0 => 0.5,
@@ -58,7 +58,8 @@ fn radius(kind: usize, random: &mut Pcg64) -> f64 {
     }
 }
 
-/// Returns a dense random set of grains about `origin`, with small and large fixed discs and a floor.
+/// Returns a dense random set of grains about `origin`, with a floor and with small and large discs that are not
+/// grains.
 fn random_world(kind: usize, origin: DVec2, random: &mut Pcg64) -> World {
     let mut place = || origin + 8.0 * DVec2::new(random.random(), random.random());
     let places: Vec<DVec2> = (0..160).map(|_| place()).collect();
@@ -179,7 +180,8 @@ fn a_running_simulation_sees_every_contact_of_fast_grains() {
     assert!(contacts > 1000, "{contacts} contacts");
 }
 
-/// Takes three steps on this many threads. Returns the sweeps of each step, the impulses, and the grains.
+/// Takes three steps on this many threads. Returns the number of sweeps of each step, the final impulses, and the final
+/// grains.
 fn three_steps(scene: &Scene, threads: usize) -> ([u32; 3], Vec<Impulse>, Grains) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("threads").install(|| {
@@ -189,7 +191,8 @@ fn three_steps(scene: &Scene, threads: usize) -> ([u32; 3], Vec<Impulse>, Grains
     })
 }
 
-/// Checks that coloured sweeps on two threads give the same result as the method `nsgs` in the order of the colours.
+/// Checks that parallel sweeps on two threads give bitwise the same result as the method `nsgs` on one thread, if
+/// `nsgs` visits the contacts in the order of the colours.
 fn assert_a_sweep_like_any_other(mut scene: Scene) {
     (scene.solver.method, scene.solver.stop) = (Method::NsgsParallel, StopTest::Residual);
     let parallel = three_steps(&scene, 2);

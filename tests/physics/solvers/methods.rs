@@ -1,4 +1,4 @@
-//! Compares the solver methods with each other: if a contact problem has one solution, all methods must find it.
+//! Compares the solvers with each other: if a contact problem has one solution, all of them must find it.
 
 use crate::common::*;
 
@@ -18,7 +18,8 @@ fn with(scene: &Scene, method: Method, tolerance: f64) -> Simulation {
     Scene { solver, ..scene.clone() }.simulation().expect("a proper scene")
 }
 
-/// Without friction the velocities of a step are unique, so all methods agree if they solve to a small tolerance.
+/// Checks that all solvers and all orders of sweeps give the same velocities of a frictionless pile. Without friction
+/// the velocities of a step are unique.
 #[test]
 fn all_methods_and_orders_agree_on_the_velocities_of_a_frictionless_pile() {
     for (seed, rotation) in [(1, true), (2, false)] {
@@ -55,7 +56,7 @@ fn all_methods_and_orders_agree_on_the_velocities_of_a_frictionless_pile() {
     }
 }
 
-/// Returns the scene as it is after five steps.
+/// Returns a scene whose initial state is the state of the given scene after five steps.
 fn advanced(scene: &Scene) -> Scene {
     let mut run = with(scene, Method::Nsgs, 1e-8);
     take_steps(&mut run, 5);
@@ -85,7 +86,7 @@ fn newton_solves_nearly_all_steps_of_a_moving_pile_in_less_than_half_the_sweeps(
     }
 }
 
-/// A visitor that solves a contact problem. It returns the solver's report and the residual.
+/// A visitor that solves a contact problem with these settings. It returns the solver's report and the residual.
 struct Solve(SolverSettings);
 
 impl ProblemVisitor for Solve {
@@ -97,8 +98,8 @@ impl ProblemVisitor for Solve {
     }
 }
 
-/// A visitor that solves a contact problem with the first settings and then, from this solution, with the second
-/// settings.
+/// A visitor that solves a contact problem with the first settings and then, starting from this solution, with the
+/// second settings. It returns both reports.
 pub struct SolveTwice(pub SolverSettings, pub SolverSettings);
 
 impl ProblemVisitor for SolveTwice {
@@ -110,7 +111,8 @@ impl ProblemVisitor for SolveTwice {
     }
 }
 
-/// Returns piles that begin to fall, with both cones, with and without rotation. The last pile has no cohesion.
+/// Returns piles that begin to fall, with both friction cones, with and without rotation. The last pile has no
+/// cohesion.
 fn moving_piles() -> [(FrictionCone, bool, Scene); 4] {
     let (shifted, compressive) = (FrictionCone::Shifted, FrictionCone::Compressive);
     let kinds = [
@@ -127,8 +129,8 @@ fn moving_piles() -> [(FrictionCone, bool, Scene); 4] {
     })
 }
 
-/// Returns states of falling piles, computed by sweeps. Piles are chaotic: if the method that computes the states
-/// changes, so do the contact problems of all tests.
+/// Returns states of falling piles, computed by Gauss–Seidel sweeps. Piles are chaotic: if another method computed the
+/// states, the contact problems of all tests would change.
 fn moments() -> Vec<Simulation> {
     let mut moments = Vec::new();
     for (_, _, mut scene) in moving_piles() {
@@ -143,14 +145,16 @@ fn moments() -> Vec<Simulation> {
     moments
 }
 
-/// Solves the next contact problem of a state with these settings. Returns the solver's report and the residual.
+/// Solves the contact problem of the next step from a state with these settings. Returns the solver's report and the
+/// residual.
 fn next_with(moment: &Simulation, solver: SolverSettings) -> (SolveReport, f64) {
     let mut run = moment.clone();
     run.set_solver(solver).expect("proper settings");
     run.next_problem(Solve(solver))
 }
 
-/// Returns the residual that a method must reach in these tests. Jacobi's method converges slowly.
+/// Returns the residual to which a method must solve the problems of these tests. It is larger for Jacobi's method,
+/// which converges slowly.
 fn tight_for(method: Method) -> f64 {
     if method == Method::Jacobi { 1e-5 } else { 1e-8 }
 }

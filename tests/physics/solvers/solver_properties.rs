@@ -1,5 +1,5 @@
-//! Tests properties of every solved step of random piles: the reports of the solver are checked only against positions,
-//! velocities and impulses.
+//! Tests properties of every solved step of random piles. The solver's reports are checked against positions,
+//! velocities and impulses only.
 
 use std::cell::Cell;
 
@@ -18,8 +18,8 @@ fn for_random_piles(cases: u32, property: impl Fn(Scene) -> Result<(), TestCaseE
     for_random(cases, (numbers, kinds), run);
 }
 
-/// Returns a pile from the numbers (Bond, μ, ρ, Δt, speed) and the choices (number of grains, seed, shifted cone, warm
-/// start, rotation).
+/// Returns a pile with these numbers (Bond, μ, ρ, Δt in s, speed in m/s) and choices (number of grains, seed, shifted
+/// friction cone or not, warm start or not, rotation or not).
 fn pile(
     (bond, friction, restitution, dt, speed): (f64, f64, f64, f64, f64),
     (count, seed, shifted, warm_start, turning): (usize, u64, bool, bool, bool),
@@ -231,8 +231,8 @@ fn overlap_grows_by_no_more_than_one_steps_travel() {
     assert!(old.get() > 1000 && new.get() > 100, "{} old, {} new contacts", old.get(), new.get());
 }
 
-/// Returns a scene for every kind of physics, with the least number of contacts that its first contact problem must
-/// have.
+/// Returns a scene for every kind of physics and friction cone, each with the smallest number of contacts that its
+/// first contact problem must have.
 fn scenes() -> Vec<(Scene, usize)> {
     let mut scenes = Vec::new();
     for (physics, cone) in pairs(
@@ -250,13 +250,13 @@ fn scenes() -> Vec<(Scene, usize)> {
     scenes
 }
 
-/// Returns the number of unknowns per contact.
+/// Returns the number of unknown impulse components per contact.
 fn entries<M: Model>() -> usize {
     if M::FRICTION { 2 } else { 1 }
 }
 
-/// Returns the Delassus operator as a matrix, column by column, from the velocity changes by unit impulses. `origin`
-/// has the velocities without impulses.
+/// Returns the Delassus operator (which maps impulses to changes of velocities) as a matrix. Each column is the
+/// velocity change by a unit impulse; `origin` contains the velocities without impulses.
 fn matrix<M: Model>(system: &mut BodySystem<'_, M>, origin: &[[f64; 2]]) -> Vec<Vec<f64>> {
     let entries = entries::<M>();
     let size = entries * origin.len();
@@ -275,7 +275,7 @@ fn matrix<M: Model>(system: &mut BodySystem<'_, M>, origin: &[[f64; 2]]) -> Vec<
     matrix
 }
 
-/// Returns the largest eigenvalue of a matrix whose rows and columns are scaled, by power iteration.
+/// Returns the largest eigenvalue of a matrix by power iteration. Row and column k are first multiplied by `scale(k)`.
 fn largest_eigenvalue(matrix: &[Vec<f64>], scale: impl Fn(usize) -> f64) -> f64 {
     let size = matrix.len();
     let mut vector: Vec<f64> = (0..size).map(|index| 1.0 + (index % 7) as f64).collect();
@@ -355,7 +355,8 @@ impl ProblemVisitor for Check {
     }
 }
 
-/// Returns the scale of the residual, ‖(m_n v_n^free, m_t v_t^free)‖, N·s.
+/// Returns the scale of the residual, ‖(m_n v_n^free, m_t v_t^free)‖, N·s: the norm of the impulses that would stop all
+/// free velocities.
 fn scale_of_residual<M: Model>(problem: &StepProblem<M>) -> f64 {
     let rows = problem.rows.fixed.iter().map(|row| (&row.row, true));
     let rows = rows.chain(problem.rows.pairs.iter().map(|row| (&row.row, false)));

@@ -1,11 +1,11 @@
-//! Tests that alarms are right under every stepper and that their advice helps: after the recommended change, the scene
-//! no longer raises the alarm.
+//! Tests that warnings are right under every stepper and that their advice helps: after the recommended change, the
+//! scene no longer raises the warning.
 
 use slump::scene::stability::{column, mass_ratio, overlapped, squeeze};
 
 use crate::common::*;
 
-/// Runs `steps` steps, or less if the state becomes infinite. Returns the alarms of the run.
+/// Runs `steps` steps, or fewer if a step fails. Returns the warnings that Slump has raised.
 fn raised(scene: &Scene, steps: usize) -> Vec<Alarm> {
     let mut run = start(scene);
     for _ in 0..steps {
@@ -20,7 +20,7 @@ fn kinds(scene: &Scene, steps: usize) -> Vec<AlarmKind> {
     raised(scene, steps).iter().map(|alarm| alarm.kind).collect()
 }
 
-/// Runs a scene and checks that it raises an alarm of this kind. Returns the alarm and its message.
+/// Runs a scene and checks that Slump raises a warning of this kind. Returns the warning and its message.
 #[track_caller]
 fn alarm_of(kind: AlarmKind, scene: &Scene, steps: usize) -> (Alarm, String) {
     let alarms = raised(scene, steps);
@@ -331,8 +331,8 @@ fn unsolved_steps_are_told_what_solves_them() {
     solved(&squeezed, "bounded friction");
 }
 
-/// Returns a scene of a disc that is wedged between two fixed discs, so that friction prevents it from leaving and from
-/// sliding.
+/// Returns a scene of a disc that is wedged between two discs at rest, so that friction prevents it from separating and
+/// from sliding.
 fn wedged() -> Scene {
     let angle = 75f64.to_radians();
     let touching = 2.0 * RADIUS * (1.0 - 1e-9);
@@ -391,7 +391,7 @@ fn a_bond_number_that_makes_no_cohesion_is_told() {
     }
 }
 
-/// Returns a scene of six discs in two rows that fall on a floor together.
+/// Returns a scene of six discs in two rows that fall on a floor at the same time.
 fn six_discs() -> Scene {
     let place = |k: u32| at(0.505 * f64::from(k), 3.5 + 0.75f64.sqrt() * f64::from(k % 2));
     let grains = (0..6).map(|k| Grain::at_rest(place(k), 0.5)).collect();

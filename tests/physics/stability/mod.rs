@@ -1,5 +1,5 @@
-//! Tests of the limits of all methods. A quick run of the stability tests must give the verdicts of the committed
-//! table, and measured limits must agree with theory.
+//! Tests of the limits of solvers and steppers, in scenes in which they fail. A quick run of the stability tests must
+//! give the verdicts of the stored table, and measured limits must agree with theory.
 //!
 //! After a change that improves a verdict, or worsens it for a good reason, write the table again: `cargo run --release
 //! -- stability --quick --table tests/physics/stability/table.csv --overwrite`.
@@ -19,7 +19,7 @@ use crate::common::*;
 
 const RENEW: &str = "cargo run --release -- stability --quick --table tests/physics/stability/table.csv --overwrite";
 
-/// Stability tests that every method passes at every level.
+/// Names of the stability tests that every method passes at every level of difficulty.
 const UNBROKEN: [&str; 1] = ["rest"];
 
 fn quick() -> &'static StabilityTable {
@@ -86,7 +86,7 @@ fn every_scene_breaks_a_method_at_its_last_level_and_none_at_its_first() {
     }
 }
 
-/// Largest speed of a grain that counts as rest after a few solved steps, in √(g d).
+/// Largest speed with which a grain still counts as at rest after a few solved steps, in units of √(g d).
 const STILL: f64 = 1e-7;
 
 fn solved(mut scene: Scene) -> Simulation {
@@ -97,7 +97,7 @@ fn solved(mut scene: Scene) -> Simulation {
     start(&scene)
 }
 
-/// Takes some steps. Each step must be solved, no contact may be lost, and all grains must come to rest.
+/// Takes some steps and checks that each step is solved, that no contact is lost, and that all grains come to rest.
 fn stays(mut run: Simulation, what: &str) {
     let contacts = {
         assert!(error_against_model(&run) < 1e-4, "{what}");
@@ -141,7 +141,7 @@ fn heaps_of_any_size_are_at_rest() {
     assert_eq!(heap_of(10_000).grains.len(), 9870);
 }
 
-/// Overlap that the remedy `push_out` leaves, in diameters.
+/// Overlap at which the remedy `push_out` stops pushing grains apart, in diameters.
 const LEFT: f64 = 2e-4;
 
 #[test]
@@ -229,8 +229,9 @@ fn a_step_is_cut_into_no_more_than_a_hundred_pieces() {
     }
 }
 
-/// Failures that no remedy prevents (scene, level). At this distance from the origin, neighbouring floating-point
-/// numbers are 2·10⁻³ d apart, so positions are too coarse.
+/// Stability tests (scene and level of difficulty) that fail with every remedy (an optional correction of the
+/// simulation). At this distance from the origin, neighbouring floating-point numbers are 2·10⁻³ d apart, so positions
+/// are too coarse.
 const UNMENDED: [(&str, f64); 1] = [("far", 1e13)];
 
 #[test]
@@ -242,7 +243,8 @@ fn the_robust_preset_holds_everywhere_but_where_nothing_could() {
     }
 }
 
-/// Runs a scene. Returns the alarms of the run: kinds and messages.
+/// Runs a scene for `steps` steps, or until a step fails. Returns the kinds and messages of the warnings that Slump has
+/// raised.
 fn alarms(scene: &Scene, steps: u32) -> Vec<(AlarmKind, String)> {
     let mut run = start(scene);
     for _ in 0..steps {

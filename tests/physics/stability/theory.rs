@@ -1,5 +1,5 @@
-//! Compares measurements with theoretical limits of the methods, and with the theoretical effect of friction models on
-//! sliding bodies.
+//! Compares measured errors of the solvers with their theoretical limits, and the effect of friction models on sliding
+//! bodies with theory.
 
 use slump::scene::stability::{
     FRICTION_OF_ARCH, WALL_DISTANCE, arch, balls, blow, breaking_bond_of_cantilever, cantilever,
@@ -10,8 +10,8 @@ use slump::study::stability::contraction_of_column;
 
 use crate::common::*;
 
-/// Number of steps until a column sinks at a steady speed: each step reduces the deviation from this speed to a tenth
-/// or less.
+/// Number of steps after which a column that is not solved completely sinks at a steady speed: each step reduces the
+/// deviation from this speed to a tenth or less.
 const STEADY: usize = 40;
 
 fn cold(sweeps: u32) -> SolverSettings {
@@ -23,7 +23,8 @@ fn cold(sweeps: u32) -> SolverSettings {
     }
 }
 
-/// Returns the steady speed of the last grain, in g Δt, if each step makes this many sweeps from zero impulses.
+/// Returns the steady speed at which the last grain of a column sinks, in units of g Δt, if each step makes this many
+/// sweeps from zero impulses.
 fn sinking_speed(mut scene: Scene, sweeps: u32) -> f64 {
     scene.solver = cold(sweeps);
     let run = after(&scene, STEADY);
@@ -84,10 +85,10 @@ fn a_disc_goes_through_a_wall_in_the_share_of_phases_that_geometry_gives() {
     }
 }
 
-/// With restitution 1 the struck contact requires v₂ − v₁ = v, where v is the speed of the first of n balls. All other
-/// contacts require zero relative velocity. If all balls except the first move at u, conservation of momentum gives u −
-/// v + (n − 1) u = v. So they leave with u = 2v/n, and the first ball bounces back. Momentum and energy are conserved,
-/// but no real Newton's cradle behaves in this way.
+/// Checks the final velocities of n touching balls in a row of which the first has the speed v, with restitution 1. The
+/// struck contact requires v₂ − v₁ = v. All other contacts require zero relative velocity. If all balls except the
+/// first move at u, conservation of momentum gives u − v + (n − 1) u = v. So they leave with u = 2v/n, and the first
+/// ball bounces back. Momentum and energy are conserved, but no real Newton's cradle behaves in this way.
 #[test]
 fn balls_in_a_row_keep_momentum_and_energy_and_leave_together() {
     for count in [2, 3, 5, 20] {
@@ -106,8 +107,8 @@ fn balls_in_a_row_keep_momentum_and_energy_and_leave_together() {
     }
 }
 
-/// Returns a run of a column of springs with one substep per step. The time step is `part` times the critical time
-/// step.
+/// Returns a run of a column under the stepper `dem` (springs) with one substep per step. The time step is `part` times
+/// the critical time step.
 fn springs(part: f64) -> Simulation {
     let mut scene = column_on_line(12);
     scene.parameters.restitution = 0.5;
@@ -197,15 +198,15 @@ fn sliding(time_step_secs: f64, solver: SolverSettings) -> Simulation {
     start(&scene)
 }
 
-/// Returns the initial speed v₀ (m/s), the friction coefficient μ, gravity g (m/s²) and the diameter d (m) of the scene
-/// `dilatancy`.
+/// Returns four numbers of the scene `dilatancy`: the initial speed v₀ (m/s), the friction coefficient μ, gravity g
+/// (m/s²) and the diameter d (m).
 fn numbers() -> [f64; 4] {
     let scene = dilatancy();
     let speed = scene.grains[0].velocity.x;
     [speed, scene.parameters.friction, scene.gravity.magnitude(), scene.mean_diameter]
 }
 
-/// Runs until the disc has stopped. Returns its displacement from the start, m.
+/// Runs until the sliding disc has stopped. Returns its displacement from the initial position, m.
 fn way(run: &mut Simulation) -> glam::DVec2 {
     let [speed, friction, gravity, _] = numbers();
     let start = run.place(0);
@@ -286,8 +287,8 @@ fn desaxce_sinks_what_slides_by_the_way_of_a_step_times_friction() {
     }
 }
 
-/// Returns the speed of the two discs along the floor (mean by mass, m/s), their mean position along it (m), and true
-/// if the upper disc has already hit the lower disc.
+/// Returns three results for two discs that slide on a floor: their mean speed along the floor (weighted by mass, m/s),
+/// their mean position along it (m), and true if the upper disc has already hit the lower disc.
 fn along_the_floor(run: &Simulation) -> (f64, f64, bool) {
     let grains = run.grains();
     let mass: f64 = grains.masses.iter().sum();

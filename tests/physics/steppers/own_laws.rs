@@ -1,5 +1,4 @@
-//! Tests of a contact law that a user adds by `Stage::prepare_within`: cohesion of finite range as a function of the
-//! gap.
+//! Tests of a contact law that a user adds by `Stage::prepare_within`: here, cohesion that acts up to a finite gap.
 
 use crate::common::*;
 use slump::sim::{Advance, Stage, StepResult};
@@ -21,17 +20,17 @@ impl Advance for Wet {
     }
 }
 
-/// The kind of fixed body next to a grain.
+/// Kind of the body next to a grain; this body is not a grain and does not move.
 #[derive(Clone, Copy, Debug)]
 enum Near {
     Disc,
     Wall,
-    /// A fixed disc across a border of a periodic cell.
+    /// A disc across a border of a periodic cell.
     Image,
 }
 
-/// Takes one step with a grain next to a fixed body, from an initial gap (m) and speed (m/s). Returns the velocity of
-/// the grain away from the body, m/s.
+/// Takes one step with a grain next to a body at rest, from an initial gap (m) and an initial speed away from the body
+/// (m/s). Returns the final velocity of the grain away from the body, m/s.
 fn after_a_step(near: Near, gap: f64, speed: f64, time_step_secs: f64, physics: Physics) -> f64 {
     const CELL: f64 = 20.0 * RADIUS;
     let (place, away, disc, boundaries, periodic) = match near {

@@ -1,15 +1,16 @@
-//! Tests of the contact law of the stepper `range` (`contact::range`), mostly of a single bond against its exact
+//! Tests of the contact law of the stepper `range` (`contact::range`), mostly by comparing a single bond with its exact
 //! motion.
 
 use crate::common::*;
 
 const RADIUS: f64 = 2.5e-3;
 const BOND: f64 = 20.0;
-/// Time steps from a tenth to ten times the time in which a bond breaks, s. This time is 0.7 ms at Bond 20.
+/// Time steps from a tenth of to about ten times the time in which a bond breaks, s. A bond breaks in 0.7 ms at Bond
+/// 20.
 const TIME_STEPS: [f64; 7] = [5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 
-/// Returns a run of a grain that leaves a fixed disc with a speed (m/s) while a load (an acceleration, m/s²) pulls it
-/// away. For every load the cohesion force C₀ is the same as for Bond [`BOND`] under g.
+/// Returns a run of a grain that leaves a disc at rest with a speed (m/s) while a load, given as an acceleration
+/// (m/s²), pulls it away. For every load the cohesion force C₀ is the same as for Bond [`BOND`] under g.
 fn pair(time_step_secs: f64, speed: f64, load: f64, physics: Physics) -> Simulation {
     let direction = DVec2::X;
     let grain = moving(2.0 * RADIUS * direction, RADIUS, speed * direction);
@@ -30,7 +31,8 @@ fn pair(time_step_secs: f64, speed: f64, load: f64, physics: Physics) -> Simulat
     })
 }
 
-/// Returns the speed of the grain at a distance of three bond lengths (m/s), or `None` if it stays at the disc.
+/// Returns the speed of the grain when it has moved away by three debonding distances (m/s), or `None` if the bond does
+/// not break.
 fn speed_far_away(mut run: Simulation) -> Option<f64> {
     let far = 2.0 * RADIUS * (1.0 + 3.0 * DISTANCE_IN_DIAMETERS);
     let steps = (0.1 / run.parameters().time_step_secs) as usize;
@@ -43,7 +45,8 @@ fn speed_far_away(mut run: Simulation) -> Option<f64> {
     None
 }
 
-/// Returns the work C₀δ_c that breaks a bond, divided by the effective mass m_ij, m²/s².
+/// Returns the work C₀δ_c that breaks a bond, divided by the effective mass m_ij, m²/s² (C₀: cohesion force, δ_c:
+/// debonding distance).
 fn work() -> f64 {
     BOND * G * DISTANCE_IN_DIAMETERS * 2.0 * RADIUS
 }
@@ -191,14 +194,14 @@ fn a_bond_gives_back_what_it_took_or_keeps_all_of_it() {
 /// L is the distance of the centres, and ω_c = √(C₀/(m_ij L)) is the angular velocity at which the cohesion force C₀ is
 /// the centripetal force (m_ij: effective mass).
 ///
-/// The bond pulls with C₀ up to the debonding distance δ_c, and L²ω is conserved. So the pair opens to L(1 + δ) if
+/// The bond pulls with C₀ up to the debonding distance δ_c = δL, and L²ω is conserved. So the pair opens to L(1 + δ) if
 /// ½ω²L²(1 − (1 + δ)⁻²) = (C₀/m_ij)Lδ.
 fn tearing_part(delta: f64) -> f64 {
     (2.0 * delta / (1.0 - (1.0 + delta).powi(-2))).sqrt()
 }
 
-/// Returns true if two bonded grains (ratio of radii `size`) that turn as one body at `part` of ω_c are still together
-/// after two turns.
+/// Returns true if two bonded grains that turn as one body are still together after two turns. `part` is their angular
+/// velocity divided by ω_c (see [`tearing_part`]), and `size` the ratio of their radii.
 fn circling_pair_holds(
     part: f64,
     [bond, time_step_secs, size]: [f64; 3],
@@ -277,7 +280,7 @@ fn a_grain_that_rides_on_a_moving_disc_does_not_circle_it() {
     assert!(!circles(1.0));
 }
 
-/// Returns a scene of a pile that collapses and forms bonds.
+/// Returns a scene of a pile that collapses and forms bonds, with the stepper `range`.
 fn pile(bond: f64, time_step_secs: f64, method: Method) -> Scene {
     let parameters =
         Parameters { restitution: 0.1, restitution_threshold: 2.0, ..range(bond, time_step_secs) };
@@ -345,8 +348,8 @@ fn the_paper_s_law_tells_nothing_of_bonds() {
     assert!(!serde_json::to_string(now).expect("numbers").contains("bond_"));
 }
 
-/// Returns the number of steps of a collapsing pile that both Newton's method and another method have solved, and the
-/// number of those steps in which the final velocities agree.
+/// Returns the number of steps of a collapsing pile that both Newton's method and the given method have solved, and the
+/// number of those steps in which the final velocities of the two agree.
 fn solved_and_alike(seed: u64, friction: f64, method: Method) -> [u32; 2] {
     let parameters =
         Parameters { restitution: 0.1, restitution_threshold: 2.0, friction, ..range(20.0, 2e-4) };
@@ -375,12 +378,13 @@ fn solved_and_alike(seed: u64, friction: f64, method: Method) -> [u32; 2] {
     counts
 }
 
-/// Number of compared steps in each pile.
+/// Number of steps that are compared in each pile.
 const MOMENTS: u32 = 12;
 
-/// Checks how often methods agree. They need not agree on all steps: Coulomb's law may have several solutions, and the
-/// method decides which solution is found. If the impulses of a shock are not unique, the method also decides which
-/// bond breaks first. Methods that solve different laws would agree on hardly any step.
+/// Checks that other methods agree with Newton's method on nearly all steps. They need not agree on all steps:
+/// Coulomb's law may have several solutions, and the method decides which solution is found. If the impulses of a
+/// collision are not unique, the method also decides which bond breaks first. Methods that solve different laws would
+/// agree on hardly any step.
 #[test]
 fn methods_agree_on_nearly_all_steps_with_bonds() {
     for (method, (friction, least_share)) in
@@ -395,8 +399,8 @@ fn methods_agree_on_nearly_all_steps_with_bonds() {
     }
 }
 
-/// At Δt = 5e-3 s, half the steps of a slumping pile are unsolved under Coulomb friction. With bounded friction all are
-/// solved.
+/// Checks that all steps of a pile are solved with bounded friction, and not all of them under Coulomb friction. At Δt
+/// = 5e-3 s, half the steps of a slumping pile are unsolved under Coulomb friction.
 #[test]
 fn under_bounds_of_friction_no_piece_of_a_step_is_left_unsolved() {
     let run = |bond: f64, time_step_secs: f64, solver: SolverSettings| {

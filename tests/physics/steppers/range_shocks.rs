@@ -1,4 +1,5 @@
-//! Tests of shocks under the stepper `range` against exact motion, for every Δt and any time of impact within a step.
+//! Tests of collisions under the stepper `range` against exact motion, for every Δt and any time of impact within a
+//! step.
 
 use crate::common::*;
 
@@ -6,9 +7,9 @@ const RADIUS: f64 = 2.5e-3;
 const BOND: f64 = 20.0;
 const TIME_STEPS: [f64; 6] = [1e-4, 3e-4, 1e-3, 2e-3, 5e-3, 2e-2];
 
-/// Returns a run of two discs in free flight; the second disc is at rest. They collide after the first has moved by
-/// `gap` (m) along x. Their centres are offset along y by `aside` times the sum of the radii. `size` is the ratio of
-/// the radii.
+/// Returns a run of two discs without gravity; the second disc is at rest. They collide after the first has moved by
+/// `gap` (m) along x at `speed` (m/s). Their centres are offset along y by `aside` times the sum of the radii. `size`
+/// is the ratio of the radii.
 fn two(physics: Physics, numbers: Parameters, [gap, aside, speed, size]: [f64; 4]) -> Simulation {
     let radii = RADIUS * (1.0 + size);
     let ahead = (1.0 - aside * aside).sqrt() * radii;
@@ -48,7 +49,8 @@ fn two_discs_bounce_by_rho_at_any_time_step_phase_mass_ratio_and_slant() {
     assert!(met > 3000, "{met} bounces");
 }
 
-/// Steps past the shock of [`two`] and compares the velocities with those of a shock at the exact position.
+/// Takes steps past the collision of [`two`] and compares the velocities with those of a collision at the exact
+/// position.
 fn check_bounce(run: &mut Simulation, restitution: f64, [gap, aside, speed, size]: [f64; 4]) {
     let (momentum_before, friction) = (momentum(run), run.parameters().friction);
     let mass = effective_mass(run);
@@ -178,8 +180,8 @@ fn what_passes_by_or_is_deflected_before_is_not_struck() {
     }
 }
 
-/// Returns the heights that a ball above a plane reaches after each bounce, m. They are the highest positions at the
-/// ends of steps.
+/// Returns the heights above a plane that a ball reaches after each bounce, m. They are the highest of its positions at
+/// the ends of steps.
 fn apexes(time_step_secs: f64, restitution: f64, height: f64, count: usize) -> Vec<f64> {
     let radius = 0.05;
     let grain = Grain::at_rest(DVec2::new(0.0, radius + height), radius);
@@ -228,7 +230,7 @@ fn apexes_of_a_ball_follow_the_squares_of_rho() {
 }
 
 /// Returns a run of discs at random positions in a box, with random velocities. `fill` is the fraction of the area that
-/// they cover.
+/// the discs cover.
 fn gas(count: usize, fill: f64, numbers: Parameters, seed: u64) -> Simulation {
     let mut random = random(seed);
     let columns = (count as f64).sqrt().ceil() as usize;
@@ -276,8 +278,8 @@ fn a_gas_without_losses_keeps_its_energy() {
     }
 }
 
-/// Returns the final speeds of a ball that hits a row of four balls, and of the balls of the row, m/s. Neighbours in
-/// the row have this gap (m).
+/// Returns the final velocities of a ball that hits a row of four balls, and of these four balls, m/s. Neighbours in
+/// the row are separated by `gap` (m).
 fn cradle(gap: f64, restitution: f64, time_step_secs: f64, stepper: Stepper) -> Vec<f64> {
     let mut place = -(2.0 * RADIUS + 1.234e-3);
     let grains = (0..5).map(|index| {

@@ -1,4 +1,4 @@
-//! Tests of the stepping schemes `tgs-soft`, `dem` and `avbd`: properties that each of them must have.
+//! Tests of the steppers `tgs-soft`, `dem` and `avbd`: properties that each of them must have.
 
 use rayon::prelude::*;
 
@@ -32,8 +32,8 @@ fn a_threshold_of_restitution_holds_for_soft_substeps() {
     }
 }
 
-/// Returns a scene in which gravity pulls a disc off another disc above it. The upper disc is fixed, or free and
-/// weightless.
+/// Returns a scene in which gravity pulls a disc off another disc above it. The upper disc is a weightless grain if
+/// `free` is true; otherwise it is not a grain and does not move.
 fn pulled(stepper: Stepper, bond: f64, dt: f64, free: bool) -> Scene {
     let (radius, other) = (0.15, 0.1);
     let hanging = Grain::at_rest(DVec2::new(0.0, -(radius + other) * (1.0 - 1e-9)), radius);
@@ -165,7 +165,7 @@ fn settings_that_change_before_the_first_step_are_those_of_the_start() {
     }
 }
 
-/// Returns the mean of some numbers and the standard error of the mean.
+/// Returns the mean of these numbers and the standard error of the mean.
 fn mean(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
@@ -202,8 +202,8 @@ fn a_pile_without_cohesion_slumps_as_it_does_in_contact_dynamics() {
     }
 }
 
-/// Returns a scene of discs on one another along x, on a fixed disc. The radius of the top disc is `ratio` times the
-/// radius of the others.
+/// Returns a scene of discs on one another along x, on a disc that does not move. The radius of the top disc is `ratio`
+/// times the radius of the others.
 fn column(count: usize, ratio: f64) -> Scene {
     let radius = 0.1;
     let apart = 2.0 * radius * (1.0 - 1e-9);
@@ -248,7 +248,8 @@ fn a_pair_that_meets_stays_together_and_keeps_its_momentum_as_far_as_iterations_
     }
 }
 
-/// Returns the change of kinetic energy in a step that the works do not explain, J.
+/// Returns the change of kinetic energy in a step that the works of gravity and contacts do not explain, J. `before` is
+/// the kinetic energy before the step, J.
 fn unexplained(before: f64, after: &Observables) -> f64 {
     let works = after.gravity_work + after.normal_work + after.tangential_work;
     (after.kinetic_energy - before - works).abs()

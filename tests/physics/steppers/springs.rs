@@ -1,5 +1,5 @@
-//! Tests of the stepping scheme `dem`: its springs and dashpots, the numbers that define them, and the time step at
-//! which they become unstable.
+//! Tests of the stepper `dem`: its springs and dashpots, the numbers that define them, and the time step at which they
+//! become unstable.
 
 use slump::error::Error;
 
@@ -11,8 +11,8 @@ fn springs(run: &Simulation) -> SpringDashpot {
     SpringDashpot::of(run.world(), physics.axes, run.parameters())
 }
 
-/// Takes steps until two colliding discs have separated. Returns the duration of the contact, s, and the ratio of final
-/// to initial speed.
+/// Takes steps until two colliding discs have separated. Returns the time during which they pushed each other, s, and
+/// the ratio of their final to their initial relative speed.
 fn until_parted(scene: &Scene) -> [f64; 2] {
     let mut run = start(scene);
     let (before, carried) = (relative_velocity(&run), momentum(&run));
@@ -53,7 +53,8 @@ fn springs_and_dashpots_give_the_restitution_that_is_asked_for() {
     }
 }
 
-/// Returns true if a small push makes a bonded pair oscillate around its rest position with growing amplitude.
+/// Returns true if the oscillation of a bonded pair after a small push grows. `dt_over_critical` is the time step
+/// divided by the critical time step.
 fn shakes_up(restitution: f64, dt_over_critical: f64) -> bool {
     let probe = start(&meeting(LINE, restitution, 1e-3));
     let (mass, springs) = (effective_mass(&probe), springs(&probe));
@@ -122,8 +123,8 @@ const RADIUS: f64 = 2.5e-3;
 /// Overlap of a bonded pair at rest, in radii.
 const REST: f64 = 1e-3;
 
-/// Returns the stiffness (N/m) at which a bond between bodies of this effective mass (kg) rests at the overlap
-/// [`REST`].
+/// Returns the stiffness (N/m) with which the overlap of a bonded pair at rest is [`REST`]. `mass` is the effective
+/// mass, kg.
 fn stiffness(bond: f64, mass: f64) -> f64 {
     bond * mass * G / (REST * RADIUS)
 }
@@ -162,8 +163,8 @@ fn what_is_left_open_is_what_it_was_and_what_is_given_sets_the_substeps() {
     assert!(critical(stiffness, 10.0).0 < 0.5 * secs, "a stronger dashpot");
 }
 
-/// Runs a collision of two discs. Returns four numbers: duration of the contact (s) and its exact value, ratio of final
-/// to initial speed and its exact value.
+/// Runs a collision of two discs with `parts` steps in the exact contact time. Returns four numbers: contact time (s)
+/// and its exact value, ratio of final to initial relative speed and its exact value.
 fn collision(physics: Physics, stiffness: f64, damping_ratio: f64, parts: f64) -> [f64; 4] {
     let mut scene = by(Stepper::Dem, 1, meeting(physics, 0.1, 1e-3));
     scene.parameters.stiffness = stiffness;
@@ -211,8 +212,8 @@ fn the_contact_time_that_is_told_is_that_of_two_mean_grains() {
     }
 }
 
-/// Throws two equal grains apart that are at rest in their bond. Returns the energy of their relative motion that they
-/// lose until they are far apart (J), or `None` if they stay together.
+/// Throws two equal grains, which are at rest in their bond, apart at this speed (m/s). Returns the energy of their
+/// relative motion that they have lost when they are far apart (J), or `None` if they stay together.
 fn thrown(mut scene: Scene, speed: f64, until_secs: f64) -> Option<f64> {
     scene.grains[1].velocity.x = speed;
     let mut run = start(&scene);
@@ -229,7 +230,7 @@ fn thrown(mut scene: Scene, speed: f64, until_secs: f64) -> Option<f64> {
     None
 }
 
-/// Returns a scene of a pair at rest in its bond, with time steps that are short for its springs.
+/// Returns a scene of a pair at rest in its bond. Under `dem`, its time step is short for the springs.
 fn bonded(stepper: Stepper, damping_ratio: f64) -> Scene {
     let bond = 20.0;
     let at = |x| weightless(moving(DVec2::new(x, 0.0), RADIUS, DVec2::ZERO));
@@ -290,8 +291,8 @@ fn a_dashpot_lets_a_fast_pair_lose_twice_that_work_and_none_more() {
     }
 }
 
-/// Pulls a bonded pair apart within the time 2000/ω₀ (ω₀: natural angular frequency). Returns the work that the contact
-/// takes, and C₀²/2k (k: stiffness), J.
+/// Pulls a bonded pair apart slowly, within the time 2000/ω₀ (ω₀: natural angular frequency). Returns the work that the
+/// contact takes, and the work of fracture C₀²/2k (C₀: cohesion force, k: stiffness), both in J.
 fn pulled_apart(damping_ratio: f64) -> [f64; 2] {
     let grain = weightless(Grain::at_rest(DVec2::new((2.0 - REST) * RADIUS, 0.0), RADIUS));
     let mut scene = scene(LINE, G * DVec2::X, parameters(1.0, 1e-4, 1.0, 0.0), vec![grain]);

@@ -9,9 +9,9 @@ use image::{DynamicImage, Rgba, RgbaImage};
 /// Largest allowed difference of a picture from its golden picture.
 #[derive(Clone, Copy)]
 pub struct Tolerance {
-    /// Largest difference in any channel, from 0 to 255.
+    /// Largest difference in any colour channel of any pixel, from 0 to 255.
     pub channel: u8,
-    /// Largest fraction of pixels that differ.
+    /// Largest fraction of pixels that may differ from the golden picture, 0 to 1.
     pub pixels: f64,
 }
 
@@ -51,7 +51,7 @@ impl std::fmt::Display for Difference {
     }
 }
 
-/// Returns the absolute differences of two pictures, amplified twenty times, on black.
+/// Returns a picture of the absolute differences between two pictures, amplified twenty times, on black.
 fn difference_image(actual: &RgbaImage, golden: &RgbaImage) -> RgbaImage {
     let width = actual.width().max(golden.width());
     let height = actual.height().max(golden.height());
@@ -66,7 +66,7 @@ fn difference_image(actual: &RgbaImage, golden: &RgbaImage) -> RgbaImage {
     })
 }
 
-/// Returns the path of a golden picture.
+/// Returns the path of the golden picture with this name.
 pub fn golden_path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures/golden").join(format!("{name}.png"))
 }
@@ -79,8 +79,8 @@ pub fn save_small(picture: &RgbaImage, name: &str, filter: FilterType) {
     opaque.write_with_encoder(encoder).unwrap();
 }
 
-/// Compares a picture that a renderer of this kind has drawn with the golden picture. Returns a message if the
-/// difference is too large, and writes the picture and the difference to files.
+/// Compares a picture with the golden picture. `kind` is the kind of the renderer that has drawn the picture. If the
+/// difference is too large, returns a message and writes the picture and the difference to files.
 pub fn complaint(
     actual: &RgbaImage,
     name: &str,

@@ -61,7 +61,8 @@ fn grains_of_a_material_share_a_colour_that_the_legend_shows() {
     assert!(one.abs_diff(other) < grains / 10 && one + other > grains * 9 / 10, "{one}, {other}");
 }
 
-/// Draws each golden picture by some renderers and compares it with its file. Each renderer has the name of its kind.
+/// Draws each golden picture with each of the renderers and compares it with its file. `renderers` also contains the
+/// kind of each renderer, such as "vulkan".
 fn assert_kept(renderers: &mut [(&'static str, &mut Renderer)], tolerance: Tolerance) {
     let mut complaints = Vec::new();
     for (name, draw) in &GOLDENS {
@@ -78,7 +79,7 @@ fn assert_kept(renderers: &mut [(&'static str, &mut Renderer)], tolerance: Toler
 mod with_driver {
     use super::*;
 
-    /// Returns a renderer for each graphics driver of this machine, with the name of its kind.
+    /// Returns a renderer for each graphics driver of this machine, with its kind ("vulkan" or "gl").
     fn gpus() -> Vec<(&'static str, Renderer)> {
         let mut found = Vec::new();
         for (kind, choice) in [("vulkan", RendererChoice::Vulkan), ("gl", RendererChoice::Gl)] {

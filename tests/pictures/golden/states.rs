@@ -1,5 +1,5 @@
-//! Handmade states for pictures: stored numbers and plain arithmetic without any simulation, so that the pictures do
-//! not change with the physics.
+//! Handmade states of grains for pictures: stored numbers and plain arithmetic without any simulation, so that the
+//! pictures do not change with the physics.
 
 use std::sync::Arc;
 
@@ -9,9 +9,9 @@ use slump::world::{Boundary, Disc};
 
 /// Mean diameter of the pile, m.
 const D: f64 = 0.005;
-/// Radii of the pile's grains in units of d/2, used in turn.
+/// Radii of the pile's grains in units of d/2. The grains take them in turn.
 const RADII: [f64; 7] = [0.97, 0.88, 1.0, 0.93, 0.9, 0.99, 0.95];
-/// Grey values of the pile's grains, used in turn.
+/// Grey values of the pile's grains, from 0 (black) to 255 (white). The grains take them in turn.
 const TONES: [u8; 5] = [205, 225, 190, 240, 175];
 
 fn grain(position: DVec2, radius: f64, tone: u8) -> GrainView {
@@ -69,8 +69,8 @@ pub fn pile() -> Snapshot {
     }
 }
 
-/// Returns contacts between all neighbours closer than 1.06 times the sum of their radii. Steep contacts push; nearly
-/// horizontal contacts in the upper rows pull.
+/// Returns contacts between all neighbours whose centres are closer than 1.06 times the sum of their radii. Steep
+/// contacts push; nearly horizontal contacts in the upper rows pull.
 fn pile_contacts(grains: &mut [GrainView], fixed: &[Disc]) -> Vec<ContactView> {
     let mut contacts = Vec::new();
     for i in 0..grains.len() {

@@ -1,4 +1,5 @@
-//! Tests of the figures of studies: every run gives the same numbers and pictures, and charts look as before.
+//! Tests of the figures of studies: every run gives the same numbers and pictures, and charts look like the stored
+//! charts.
 //!
 //! After an intended change of the charts, look at the new chart and store it: `SLUMP_BLESS=1 cargo test --release
 //! --test pictures`.
@@ -7,9 +8,9 @@ use slump::study::chart::{Axis, Chart, Layer, Look, MapCell, PALETTE, Point, She
 
 use crate::program::*;
 
-/// Figures of the paper that take at most a few seconds.
+/// Names of the paper's figures that take at most a few seconds to compute.
 const FAST: [&str; 5] = ["fig2", "two-body", "fig8", "cradle-choices", "cradle-map"];
-/// Fraction of pixels that may differ, because processors round differently.
+/// Largest fraction of pixels of a chart that may differ from the stored chart, because processors round differently.
 const MOST_DIFFERENT: f64 = 0.002;
 
 fn reproduce(folder: &Path) {
@@ -59,7 +60,7 @@ fn stored(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures/study_figures").join(name)
 }
 
-/// Returns the charts in `chart.csv`: curves in each style, and a map.
+/// Returns a sheet of the charts whose points are in the file `chart.csv`: curves in each style, and a map.
 fn sheet() -> Sheet {
     let mut chart =
         Chart::new("Every look", Axis::log("Δt (s)", 1e-4, 1e-2), Axis::linear("δ/d", -0.2, 1.2));
@@ -126,7 +127,7 @@ fn elasticity(folder: &Path) -> String {
     succeed(slump("validate elasticity --quick --out").arg(folder))
 }
 
-/// Returns all rows of the table without the columns that depend on the speed of the machine.
+/// Returns all rows of a study's table, without the columns that depend on the speed of the machine.
 fn rows(folder: &Path) -> Vec<Vec<String>> {
     let mut reader = csv::Reader::from_path(folder.join("quantities.csv")).expect("a table");
     let names = reader.headers().expect("names").clone();
@@ -171,8 +172,8 @@ fn a_validation_goes_on_where_it_was_stopped_and_comes_out_the_same() {
     assert_eq!(read("quantities.csv"), before);
 }
 
-/// Checks that the computed elasticity of a row of discs equals the published one, and that the report names the source
-/// of each number.
+/// Checks that the elasticity of a row of discs in the report equals the published elasticity, and that the report
+/// names the source of each number.
 fn check_report(folder: &Path) {
     let rows = rows(folder);
     let of = |name: &str| {

@@ -1,5 +1,6 @@
 //! Checks that the program accepts all commands in the documentation. Blocks that begin with ```sh contain quick
-//! commands; they all run in order, in one folder for each page. Blocks that begin with ```sh slow are only parsed.
+//! commands; they all run in order, in one folder for each page. Commands in blocks that begin with ```sh slow are only
+//! parsed.
 
 use std::time::Instant;
 
@@ -11,7 +12,7 @@ use crate::program::*;
 /// Time limit for all quick commands together.
 const MOST_TIME: Duration = Duration::from_secs(60);
 
-/// Returns the arguments of a line that calls `slump`, or `None` if the line calls another program.
+/// Returns the arguments in a line that calls `slump`, or `None` if the line calls another program.
 fn command_in(line: &str) -> Option<Vec<String>> {
     let words = shlex::split(line).unwrap_or_else(|| panic!("{line}"));
     let end = words.iter().position(|word| matches!(word.as_str(), "|" | ";" | ">" | "&&"));
@@ -23,13 +24,13 @@ fn command_in(line: &str) -> Option<Vec<String>> {
     Some(words.split_off(at + 1))
 }
 
-/// Returns the commands of a block. Lines that end in a backslash are joined with the next line.
+/// Returns the commands in the lines of a code block. Lines that end in a backslash are joined with the next line.
 fn lines_of(lines: &[&str]) -> Vec<String> {
     let text = lines.join("\n").replace("\\\n", " ");
     text.lines().map(str::to_owned).filter(|line| !line.trim().is_empty()).collect()
 }
 
-/// Parses the arguments. Returns the error message of the program, if there is one.
+/// Parses the arguments. Returns the error message of the program, or `None` if the arguments are valid.
 fn refusal(words: Vec<String>) -> Option<String> {
     let words = std::iter::once("slump".to_owned()).chain(words);
     let error = slump::cli::command().try_get_matches_from(words).err()?;
@@ -55,7 +56,7 @@ fn commands_of_documents_are_taken() {
     assert!(taken > 50, "{taken} commands");
 }
 
-/// First words of the command in a report that an example program writes.
+/// First words of the command that an example program writes into its report.
 const EXAMPLE: &str = "cargo run --release --example ";
 
 #[test]

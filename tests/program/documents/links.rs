@@ -1,11 +1,12 @@
-//! Checks that links lead to existing targets and that checked numbers equal those of their reports.
+//! Checks that links in the documentation lead to existing targets and that checked numbers equal those of their
+//! reports.
 
 use serde_json::Value;
 
 use super::{pages, root};
 use crate::program::{json, read};
 
-/// Returns the links of a page outside code blocks: text and target.
+/// Returns text and target of each link of a page outside code blocks.
 fn links(text: &str) -> Vec<(&str, &str)> {
     let prose = text.split("```").step_by(2);
     let found = prose.flat_map(|prose| {
@@ -17,17 +18,17 @@ fn links(text: &str) -> Vec<(&str, &str)> {
     found.collect()
 }
 
-/// Returns the anchor that GitHub gives to a heading.
+/// Returns the anchor that GitHub gives to a heading, for links to the heading.
 fn anchor(heading: &str) -> String {
     let heading = heading.trim_start_matches('#').trim().to_lowercase();
     let kept = heading.chars().filter(|it| it.is_alphanumeric() || matches!(it, ' ' | '-' | '_'));
     kept.map(|it| if it == ' ' { '-' } else { it }).collect()
 }
 
-/// A number whose source is named by a comment below its table or paragraph: `<!-- checked: REPORT.json 0.252 /pointer,
-/// … -->`, or `<!-- checked: REPORT.md words #heading, … -->`. The number must agree with the report.
+/// A number in the documentation that must agree with a report. A comment below its table or paragraph names the
+/// report: `<!-- checked: REPORT.json 0.252 /pointer, … -->`, or `<!-- checked: REPORT.md words #heading, … -->`.
 struct CheckedNumber<'a> {
-    /// The table or paragraph above the comment.
+    /// The table or paragraph above the comment, in which the number must occur.
     block: &'a str,
     report: &'a str,
     number: &'a str,
@@ -50,14 +51,15 @@ fn checked_numbers(text: &str) -> Vec<CheckedNumber<'_>> {
     found
 }
 
-/// Returns a block without its comments, as a reader sees it.
+/// Returns a table or paragraph without its comments, as a reader sees it.
 pub(super) fn without_comments(block: &str) -> String {
     let mut parts = block.split("<!--");
     let first = parts.next().unwrap_or_default().to_owned();
     parts.fold(first, |text, part| text + part.split_once("-->").map_or("", |(_, after)| after))
 }
 
-/// Returns true if a text is the number of the report, rounded to the shown digits: `−.25`, `+0.3`, `49`, `1.2e-3`.
+/// Returns true if a text of the documentation is the number `value` of a report, rounded to the digits of the text:
+/// `−.25`, `+0.3`, `49`, `1.2e-3`.
 fn is_printed(text: &str, value: &Value) -> bool {
     let Some(number) = value.as_f64() else { return value.as_str() == Some(text) };
     let plain = text.replace('−', "-").replace('+', "");

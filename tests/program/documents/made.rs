@@ -12,7 +12,7 @@ use slump::sim::{AlarmKind, Settings};
 use super::{book, root};
 use crate::program::{Command, folder, json, read, run, said, sentence, slump, succeed, write};
 
-/// Name of a generated part, and the function that generates it.
+/// Name of a generated part of the documentation, and the function that generates it.
 type Part = (&'static str, fn() -> String);
 
 const PARTS: [Part; 4] =
@@ -23,7 +23,7 @@ fn begin(name: &str) -> String {
     format!("<!-- made: {name} -->\n")
 }
 
-/// Returns a page with its generated parts replaced.
+/// Returns a page in which the function `part` has replaced the generated parts.
 fn with_parts(text: &str, part: impl Fn(&str, fn() -> String) -> String) -> String {
     PARTS.iter().fold(text.to_owned(), |text, (name, make)| {
         let Some((before, rest)) = text.split_once(&begin(name)) else { return text };
@@ -92,8 +92,8 @@ fn option_row(arg: &Arg) -> String {
     format!("| `{}`{aliases} | {help} |\n", cell(&name))
 }
 
-/// Returns the tables of a command's options, one for each heading. Options in `known` are omitted, because another
-/// table has them.
+/// Returns Markdown tables of a command's options, one for each heading. Options in `known` are omitted, because
+/// another table has them.
 fn tables_of(command: &clap::Command, known: &[String]) -> String {
     let is_told = |arg: &&Arg| {
         let name = arg.get_id().as_str();
@@ -149,7 +149,7 @@ fn commands() -> String {
     text
 }
 
-/// Returns the tables of a scene file that contain settings: name and content.
+/// Returns the tables of a scene file that contain settings: their names and contents.
 fn tables(settings: &Settings) -> [(&'static str, Value); 4] {
     let Settings { stepper, parameters, solver, remedies } = settings;
     let stepper = serde_json::json!({ "stepper": stepper });
@@ -203,7 +203,8 @@ fn settings() -> String {
     text
 }
 
-/// Returns a description of the columns of all tables, as a recording describes them.
+/// Returns descriptions of the columns of all recorded tables as Markdown. They are taken from the manifest of a
+/// recording.
 fn columns() -> String {
     let folder = folder();
     let out = folder.path().join("run");
@@ -220,7 +221,7 @@ fn columns() -> String {
     text
 }
 
-/// Solver variants in the table of stability tests on the page.
+/// Solver variants that the documentation's table of stability tests shows.
 const VARIANTS: [&str; 11] = [
     "default",
     "nsgs",

@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 
 use crate::program::read;
 
-/// Largest number of words on one page, and on all pages together, without generated parts.
+/// Largest number of words on one page, and on all pages together. Words in generated parts do not count.
 const MOST_WORDS: [usize; 2] = [2_000, 20_000];
-/// Largest number of pages that are written by hand. Two pages are generated, and the summary is an index.
+/// Largest number of pages that are written by hand. Two further pages are generated, and the summary is an index.
 const MOST_PAGES: usize = 16;
 const NOT_WRITTEN: [&str; 3] = ["SUMMARY.md", "commands.md", "columns.md"];
 
@@ -19,7 +19,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Returns the paths of the pages in `docs`.
+/// Returns the paths of all pages in the folder `docs`.
 fn book() -> Vec<PathBuf> {
     let entries = std::fs::read_dir(root().join("docs")).expect("the book");
     let paths = entries.map(|entry| entry.expect("an entry").path());
@@ -29,7 +29,7 @@ fn book() -> Vec<PathBuf> {
     pages
 }
 
-/// Returns the paths of all pages for readers, including the pages outside `docs`.
+/// Returns the paths of all pages for readers: those in `docs` and others, such as the README.
 fn pages() -> Vec<PathBuf> {
     let others = [
         "README.md",
@@ -43,7 +43,7 @@ fn pages() -> Vec<PathBuf> {
     others.iter().map(|name| root().join(name)).chain(book()).collect()
 }
 
-/// Returns the code blocks of a page: the text after the opening three backticks, and the lines of the block.
+/// Returns the code blocks of a page. Each has the text after its opening three backticks, and its lines.
 fn blocks(text: &str) -> Vec<(&str, Vec<&str>)> {
     let mut blocks = Vec::new();
     let mut open: Option<(&str, Vec<&str>)> = None;

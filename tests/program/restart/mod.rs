@@ -30,8 +30,8 @@ fn small(scene: &str, steps: u64) -> (Vec<u8>, usize) {
     (bytes, line)
 }
 
-/// Checks that the bytes are refused as a saved state, in one sentence that says which form is allowed. Returns the
-/// sentence.
+/// Checks that the bytes are refused as a saved state, in one sentence that says which form a saved state must have.
+/// Returns the sentence.
 #[track_caller]
 fn refusal(bytes: &[u8]) -> String {
     let said = SavedState::from_bytes(bytes, "a.slump").expect_err("no state").to_string();
@@ -40,7 +40,7 @@ fn refusal(bytes: &[u8]) -> String {
     said
 }
 
-/// Returns a saved state with this content and a first line that matches it.
+/// Returns a saved state that consists of this content and a first line with its length and checksum.
 fn sealed(content: &[u8]) -> Vec<u8> {
     let version = env!("CARGO_PKG_VERSION");
     let line = format!("slump-state 7 {version} {} {}\n", content.len(), blake3::hash(content));

@@ -20,7 +20,8 @@ fn refusal(command: &mut Command) -> String {
     said
 }
 
-/// Returns all files of a folder. The entries about the command and the interruptions are removed from the manifest.
+/// Returns names and contents of all files of a folder. The entries about the command and the interruptions are removed
+/// from the manifest.
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let content = |name: String| (name.clone(), bytes(folder.join(name)));
     let mut files: BTreeMap<_, _> = names_in(folder).into_iter().map(content).collect();
@@ -47,7 +48,8 @@ fn same(one: &Path, other: &Path, what: &str) {
     }
 }
 
-/// Runs 0.1 s at once, and again in two halves with a state saved at 0.05 s. Returns the three output folders.
+/// Runs 0.1 s in one run, and again in two runs: the first saves its state at 0.05 s, and the second starts from it.
+/// Returns the three output folders.
 fn halves(more: &str) -> [TempDir; 3] {
     let folders = [folder(), folder(), folder()];
     let state = folders[1].path().join("half.slump");

@@ -6,10 +6,11 @@ use slump::setting::{Group, Kind, Value};
 use super::{bytes_of, read_back};
 use crate::common::*;
 
-/// Number of steps before a state is saved, and number of steps after that.
+/// Number of steps that are taken before a state is saved, and again after that.
 const STEPS: usize = 4;
 
-/// Takes a step of two runs and checks that they are equal, even if the state is then no longer finite.
+/// Takes a step in each of two runs and checks that the runs are equal after it, even if the state is then no longer
+/// finite.
 #[track_caller]
 fn step_both(scene: &Scene, one: &mut Simulation, other: &mut Simulation, what: &str) {
     let ends = [&mut *one, other].map(|simulation| format!("{:?}", simulation.step().err()));
@@ -23,7 +24,8 @@ fn step_both(scene: &Scene, one: &mut Simulation, other: &mut Simulation, what: 
     );
 }
 
-/// Saves a run, reads it, applies `change` to the original and the copy, and compares their next steps.
+/// Saves a run, reads it back, applies `change` to the original and to the copy, and compares `steps` further steps of
+/// the two.
 #[track_caller]
 fn goes_on_with(
     scene: &Scene,
@@ -53,7 +55,7 @@ fn goes_on(scene: &Scene, simulation: &Simulation, steps: usize, what: &str) -> 
     goes_on_with(scene, simulation, steps, what, |_| {})
 }
 
-/// Returns settings with one remedy switched on.
+/// Returns settings with one remedy (an optional correction of the simulation, such as `push_out`) switched on.
 fn with(remedy: &Remedy) -> Remedies {
     let mut remedies = Remedies::default();
     let about = Remedies::ABOUT.iter().find(|about| about.name == remedy.name).expect("a setting");
@@ -65,7 +67,7 @@ fn with(remedy: &Remedy) -> Remedies {
     remedies
 }
 
-/// Returns settings with every combination of stepper and method, and with every remedy and the scene's own method.
+/// Returns settings with every combination of stepper and method, with every friction model, and with every remedy.
 fn ways(scene: &Scene) -> Vec<Settings> {
     let mut base = scene.settings();
     base.solver.max_sweeps = base.solver.max_sweeps.min(40);
@@ -177,7 +179,7 @@ fn a_spring_that_pulls_and_walls_that_move_go_on() {
 }
 
 /// Returns a scene of a pile on a shaken base, next to a plate that swings, a wall that moves by a table, a belt, and a
-/// wall that is about to reach the end of its path.
+/// wall that is about to reach the end of its motion.
 fn among_motions() -> Scene {
     let mut scene = pressed_pile(40, 0.3, 5, parameters(5.0, 1e-3, 0.3, 0.5));
     let at = DVec2::new;

@@ -1,4 +1,5 @@
-//! Checks that the recorded forces explain the change of the grains' momentum and the work of the borders.
+//! Checks that the recorded contact forces explain the change of the grains' momentum and the work of the periodic
+//! borders.
 
 use glam::DVec2;
 use slump::data::{Frame, Table, Values};
@@ -62,19 +63,19 @@ impl FrameTables {
     }
 }
 
-/// Largest errors in the frames of a run. Errors of momentum and angular momentum are relative to the largest impulse
-/// and torque in a step. Errors of the work of the sheared borders and of the stress are relative to the largest border
-/// work.
+/// Largest errors in all frames of a run, relative. Errors of momentum are divided by the largest impulse of a contact
+/// between two frames, errors of angular momentum by the largest angular impulse on a grain. Errors of the work of the
+/// sheared borders and of the stress are divided by the largest work of the borders.
 #[derive(Debug, Default)]
 struct Off {
     momentum: f64,
     spin: f64,
     border_work: f64,
     stress: f64,
-    /// Number of contacts that transmitted a force.
+    /// Number of contacts with a force that is not zero.
     contacts: usize,
     crossing: usize,
-    /// Number of contacts that existed between two frames but ended before the second frame.
+    /// Number of contacts that had a force since the previous frame but no longer exist in the frame itself.
     parted: usize,
 }
 
@@ -82,8 +83,8 @@ const STRESSES: [&str; 4] = ["stress_xx", "stress_xy", "stress_yx", "stress_yy"]
 const MEAN_STRESSES: [&str; 4] =
     ["mean_stress_xx", "mean_stress_xy", "mean_stress_yx", "mean_stress_yy"];
 
-/// Returns the largest difference between the mean stresses of a frame and the sums over its steps, J·s, and the
-/// largest of these sums, J·s.
+/// Compares the mean stresses of a frame, times area and duration, with the sums of the stresses over the frame's
+/// steps. Returns the largest difference and the largest sum, both in J·s.
 fn off_of_means(frame: &Frame, summed: [f64; 4]) -> [f64; 2] {
     let number = |name: &str| numbers(&frame.measures, name)[0];
     let areas = numbers(&frame.grains, "cell_area");
@@ -106,7 +107,8 @@ fn off_of_means(frame: &Frame, summed: [f64; 4]) -> [f64; 2] {
     [off, largest]
 }
 
-/// Runs this many frames, with `every` steps per frame. Returns the largest errors.
+/// Runs this many frames, with `every` steps per frame. Returns the largest errors of the balances of momentum, work
+/// and stress.
 fn off_by(run: &mut Simulation, frames: usize, every: usize) -> Off {
     let mut off = Off::default();
     let mut sums = ForceSums::default();
@@ -212,10 +214,10 @@ fn off_by(run: &mut Simulation, frames: usize, every: usize) -> Off {
     off
 }
 
-/// Allowed rounding error, relative to the sums of a step.
+/// Largest allowed error, relative to the sums of a step; it allows for rounding.
 const EXACT: f64 = 1e-10;
 
-/// Cases: scene, Bond number, time step (s), number of steps before the comparison, and number of compared steps.
+/// Test cases: scene, Bond number, time step (s), number of steps before the comparison, and number of compared steps.
 const CASES: [(&str, f64, f64, u64, usize); 10] = [
     ("pile", 0.0, 1e-3, 20, 30),
     // These steps are divided into substeps.

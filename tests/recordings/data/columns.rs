@@ -1,4 +1,4 @@
-//! Tests of the contents of columns: every number of the recorded states, bitwise.
+//! Tests of the columns of recorded tables: they contain every number of the recorded states, bitwise.
 
 use slump::granular::{GrainMeasures, measure};
 use slump::scene::SCENES;
@@ -21,7 +21,7 @@ fn assert_same(found: &Columns, expected: &Columns, what: &str) {
     }
 }
 
-/// Records a scene and checks that the files contain all data of the recorded states. Returns the states.
+/// Records a scene and checks that the files contain all data of the recorded states. Returns these states.
 fn check(scene: &Scene, frames: usize, every: u64) -> Vec<Moment> {
     let folder = folder();
     let formats = [FormatName::Parquet, FormatName::Csv];
@@ -161,8 +161,8 @@ fn parts_end_with_a_frame_and_do_not_hang_on_how_fast_the_disk_was() {
     assert!(grains["time"].iter().map(number).is_sorted());
 }
 
-/// OVITO recognises a file only if its first frame begins early enough: after a head of 16 lines it recognises the
-/// file, after 17 lines it does not (OVITO 3.17.2).
+/// Checks that the first frame of a dump begins at most 16 lines after the start of the file. If more lines precede it,
+/// OVITO does not recognise the file (measured with OVITO 3.17.2).
 #[test]
 fn the_first_frame_of_a_dump_begins_where_ovito_looks_for_it() {
     for entry in SCENES {
@@ -181,7 +181,7 @@ fn the_first_frame_of_a_dump_begins_where_ovito_looks_for_it() {
 
 type Row = Vec<(&'static str, Cell)>;
 
-/// Returns the columns of a table from its rows.
+/// Arranges the rows of a table as columns.
 fn columns(rows: impl IntoIterator<Item = Row>) -> Columns {
     let mut columns = Columns::new();
     for (name, cell) in rows.into_iter().flatten() {

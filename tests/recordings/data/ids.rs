@@ -10,8 +10,8 @@ use slump::world::Disc;
 use super::tables::{Cell, Columns, number, parquet, whole};
 use super::*;
 
-/// Returns the radius (bit pattern) of each body by its id. The discs of a pile have different radii, so an id with two
-/// radii would belong to two bodies.
+/// Returns for each id the radius (bit pattern) of the body with this id. The discs of a pile have different radii, so
+/// an id with two radii would belong to two bodies; this fails the test.
 fn radii(rows: impl Iterator<Item = (u64, f64)>) -> BTreeMap<u64, u64> {
     let mut radii = BTreeMap::new();
     for (id, radius) in rows {
@@ -21,7 +21,7 @@ fn radii(rows: impl Iterator<Item = (u64, f64)>) -> BTreeMap<u64, u64> {
     radii
 }
 
-/// Returns the columns `id` and `radius` of all frames of a LAMMPS dump.
+/// Returns the numbers in the columns `id` and `radius` of all frames of a LAMMPS dump.
 fn of_dump(path: &Path) -> Vec<(u64, f64)> {
     let (mut rows, mut places) = (Vec::new(), [0; 2]);
     for line in read(path).lines() {
@@ -37,7 +37,7 @@ fn of_dump(path: &Path) -> Vec<(u64, f64)> {
     rows
 }
 
-/// Returns the arrays `id` and `radius` of a VTK file.
+/// Returns the numbers in the arrays `id` and `radius` of a VTK file.
 fn of_vtk(path: &Path) -> Vec<(u64, f64)> {
     const DATA: &[u8] = b"<AppendedData encoding=\"raw\">\n   _";
     let bytes = bytes(path);

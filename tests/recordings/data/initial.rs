@@ -8,7 +8,7 @@ use slump::world::{Disc, Grain};
 use super::tables::{csv, parquet};
 use super::*;
 
-/// Returns the bit patterns of all numbers of an initial state.
+/// Returns the bit patterns of all numbers of an initial state that was read from a recording.
 fn bits(grains: &RecordedGrains) -> Vec<u64> {
     let of = |grain: &Grain| {
         let (place, velocity) = (grain.position, grain.velocity);
@@ -31,7 +31,7 @@ fn with_fixed(moving: impl Iterator<Item = f64>, fixed: &[Disc]) -> Vec<u64> {
     moving.chain(fixed).map(f64::to_bits).collect()
 }
 
-/// Records the pile. Returns its states at the steps 10, 20, …, 60.
+/// Records the pile. Returns its states after the steps 10, 20, …, 60.
 fn recorded_pile(folder: &Path) -> Vec<Moment> {
     let pile = scene("pile");
     let mut recording = start(folder, FormatName::ALL, &pile);
@@ -45,7 +45,7 @@ fn recorded_pile(folder: &Path) -> Vec<Moment> {
     moments
 }
 
-/// Returns the files and folders of a recording that `--initial` accepts.
+/// Returns all files and folders of a recording that can be given to the option `--initial`.
 fn sources(folder: &Path) -> Vec<PathBuf> {
     [".", "grains", "grains/part-00000.parquet", "csv/grains.csv"]
         .iter()

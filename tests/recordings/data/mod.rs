@@ -1,4 +1,4 @@
-//! Tests of recordings: the contents of their files, the parts that survive any end of a run, and reading them.
+//! Tests of recordings: the contents of their files, the data that remain however a run ends, and reading them.
 
 mod balance;
 mod columns;
@@ -17,7 +17,8 @@ use slump::sim::{Moment, Simulation};
 
 use crate::program::*;
 
-/// Runs the program without a window and checks that it refuses in one sentence. Returns the sentence.
+/// Runs the program without a window and checks that it ends with an error message of one sentence. Returns the
+/// sentence.
 fn refusal(arguments: &[&str]) -> String {
     let said = sentence(slump("--headless").args(arguments));
     said.strip_prefix("slump: ").unwrap_or_else(|| panic!("{said}")).to_owned()
@@ -32,7 +33,7 @@ fn start(folder: &Path, formats: &[FormatName], scene: &Scene) -> Recording {
     Recording::start(folder, formats, &about, false).expect("a recording")
 }
 
-/// Takes steps, records each step, and records a frame after every `every` steps.
+/// Takes `steps` steps and passes each to the recording, which stores a frame after every `every` steps.
 fn record(recording: &mut Recording, simulation: &mut Simulation, steps: u64, every: u64) {
     recording.follow(simulation);
     for _ in 0..steps {

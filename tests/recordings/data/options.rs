@@ -1,9 +1,9 @@
-//! Tests of the options of recordings, and of recordings of a study's runs.
+//! Tests of the options of recordings, and of recordings of the runs of a study.
 
 use super::tables::{metadata, number, parquet, parts, steps};
 use super::*;
 
-/// Arguments of a run of the cradle for 0.1 s, which takes 100 steps.
+/// Arguments of a short run: the cradle for 0.1 s, which takes 100 steps.
 const BRIEF: [&str; 6] = ["--scene", "cradle", "--dt", "1e-3", "--duration", "0.1"];
 
 fn frames(folder: &Path) -> Vec<u64> {
@@ -181,7 +181,7 @@ fn written(folder: &Path, study: &str) -> PathBuf {
     path
 }
 
-/// Returns the key and the Bond number of each run of a study.
+/// Returns the key (the name that the study gives to a run) and the Bond number of each run of a study.
 fn runs(out: &Path) -> Vec<(String, String)> {
     let mut table = csv::Reader::from_path(out.join("runs.csv")).expect("a table");
     let names = table.headers().expect("names").clone();

@@ -218,8 +218,8 @@ fn masses_densities_and_materials_of_a_file_are_used_in_every_format() {
     assert_eq!(masses_in(&columns), (vec![1e-5, 1e-2, 1e-2], vec![1, 0, 0], vec![true; 3]));
 }
 
-/// Checks tables in the default formats of pandas, numpy and spreadsheets. Slump refuses these tables and says how to
-/// correct them.
+/// Checks that Slump refuses tables in the default formats of pandas, numpy and spreadsheets, and says how to correct
+/// them.
 #[test]
 fn a_table_of_another_program_is_refused_with_the_way_to_mend_it() {
     let folder = folder();
@@ -289,8 +289,8 @@ fn damaged_parquet_is_refused_or_read_and_nothing_else() {
     assert!(refused > 90, "many were damaged where it shows: {refused}");
 }
 
-/// A scene needs about sixty times the length of its text in memory. So a file that is too long is refused before it is
-/// parsed.
+/// Checks that a scene file that is too long is refused before it is parsed. A scene needs about sixty times the length
+/// of its text in memory.
 #[test]
 fn a_text_that_nobody_means_is_refused_before_it_is_parsed() {
     let folder = folder();
@@ -301,8 +301,9 @@ fn a_text_that_nobody_means_is_refused_before_it_is_parsed() {
     assert!(said.contains("has more than 33554432 bytes, but must have no more"), "{said}");
 }
 
-/// If the decoder reads other numbers than the check before the decoding, it may allocate any amount of memory: one
-/// flipped bit caused an allocation of 24 GiB.
+/// Flips each bit of two small Parquet files and checks that reading neither panics nor runs out of memory. In an
+/// earlier version one flipped bit caused an allocation of 24 GiB, because the decoder read other numbers than the
+/// check before the decoding.
 #[test]
 fn parquet_with_any_bit_turned_is_read_or_refused() {
     let folder = folder();
@@ -321,8 +322,8 @@ fn parquet_with_any_bit_turned_is_read_or_refused() {
     assert!(refused > 2_000, "{refused}");
 }
 
-/// Checks small Parquet files with wrong numbers. In earlier versions each of these files has ended the program
-/// abruptly: by lack of memory, by a stack overflow, or by a panic of the decoder.
+/// Checks that Slump refuses small Parquet files with wrong numbers. In earlier versions each of these files ended the
+/// program abruptly: by lack of memory, by a stack overflow, or by a panic of the decoder.
 #[test]
 fn small_parquet_that_lies_is_refused_in_a_sentence() {
     let folder = folder();

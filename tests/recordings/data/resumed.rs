@@ -1,4 +1,4 @@
-//! Tests of resumed recordings, and of several recordings for the same folder.
+//! Tests of resumed recordings, and of several recordings that use the same folder.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use slump::sim::ForceSums;
 
 use super::*;
 
-/// Returns all files of a recording except the manifest: relative path and content.
+/// Returns all files of a recording except the manifest: their relative paths and contents.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut all = BTreeMap::new();
     for name in names_in(folder) {
@@ -117,8 +117,8 @@ fn a_recording_that_lacks_frames_of_its_run_is_refused_and_keeps_what_it_has() {
     assert_eq!(bytes(&grains), before);
 }
 
-/// A power failure may lose written rows, and users may delete files. Slump must refuse to resume such a recording, and
-/// must not change it.
+/// Checks that Slump refuses to resume a recording from which rows or files are missing, and does not change the
+/// recording. A power failure may lose written rows, and users may delete files.
 #[test]
 fn a_recording_that_lost_rows_is_refused_and_keeps_what_it_has_in_every_format() {
     let pile = scene("pile");

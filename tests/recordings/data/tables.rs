@@ -26,8 +26,8 @@ impl From<f64> for Cell {
 
 pub type Columns = BTreeMap<String, Vec<Cell>>;
 
-/// Returns the part files of a table. Hidden files are omitted: killed programs leave them, and readers of whole
-/// folders ignore them.
+/// Returns the files of which a table in Parquet consists. Hidden files are omitted: killed programs leave them, and
+/// readers of whole folders ignore them.
 pub fn parts(folder: &Path, table: &str) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(folder.join(table)) else { return Vec::new() };
     let mut parts: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
@@ -36,7 +36,7 @@ pub fn parts(folder: &Path, table: &str) -> Vec<PathBuf> {
     parts
 }
 
-/// Reads a table in Parquet from all its part files.
+/// Reads a table in Parquet from all its files.
 pub fn parquet(folder: &Path, table: &str) -> Columns {
     let mut columns = Columns::new();
     for part in parts(folder, table) {
@@ -59,14 +59,14 @@ pub fn parquet(folder: &Path, table: &str) -> Columns {
     columns
 }
 
-/// Returns the metadata of a part file.
+/// Returns the metadata of one Parquet file of a table.
 pub fn metadata(part: &Path) -> BTreeMap<String, String> {
     let reader = SerializedFileReader::new(File::open(part).expect("a part")).expect("a part");
     let pairs = reader.metadata().file_metadata().key_value_metadata().expect("metadata");
     pairs.iter().map(|pair| (pair.key.clone(), pair.value.clone().unwrap_or_default())).collect()
 }
 
-/// Reads a table in CSV. The types of its columns are the types in the table `like`.
+/// Reads a table in CSV. Its columns get the types of the columns with the same names in the table `like`.
 pub fn csv(path: &Path, like: &Columns) -> Columns {
     let mut reader =
         csv::ReaderBuilder::new().comment(Some(b'#')).from_path(path).expect("a table");
@@ -88,7 +88,7 @@ pub fn csv(path: &Path, like: &Columns) -> Columns {
     columns
 }
 
-/// Returns the steps of a table's rows, each once.
+/// Returns the step numbers that occur in a table's rows, each once.
 pub fn steps(columns: &Columns) -> Vec<u64> {
     let mut steps: Vec<u64> = columns.get("step").into_iter().flatten().map(whole).collect();
     assert!(steps.is_sorted(), "rows rise by their steps");

@@ -16,7 +16,8 @@ fn start(out: &Path) -> Child {
     command.spawn().expect("the program starts")
 }
 
-/// Returns the steps of the frames in the list of frames. An incomplete last row is omitted.
+/// Returns the step numbers of the frames in the recording's list of frames (`frames.csv`). An incomplete last row is
+/// omitted.
 fn indexed(folder: &Path) -> Vec<u64> {
     let index = std::fs::read_to_string(folder.join("frames.csv")).unwrap_or_default();
     let whole = index.rfind('\n').map_or("", |end| &index[..end]);
@@ -24,7 +25,8 @@ fn indexed(folder: &Path) -> Vec<u64> {
     rows.map(|row| row.split(',').next().expect("a step").parse().expect("a number")).collect()
 }
 
-/// Checks that every table in every format contains all frames of the list of frames. Returns the number of frames.
+/// Checks that every table in every format contains all frames that are in the recording's list of frames
+/// (`frames.csv`). Returns the number of these frames.
 fn check(folder: &Path) -> usize {
     let frames = indexed(folder);
     assert!(frames.iter().copied().eq((0..frames.len() as u64).map(|frame| 2 * frame)));

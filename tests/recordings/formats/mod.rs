@@ -14,7 +14,7 @@ use slump::sim::{
 };
 use slump::world::{Boundary, Disc};
 
-/// A number whose shortest exact decimal form has all digits.
+/// A number whose shortest exact decimal form needs all digits of a double.
 const THIRD: f64 = 1.0 / 3.0;
 
 fn about() -> RunFacts {
@@ -23,7 +23,8 @@ fn about() -> RunFacts {
     }
 }
 
-/// Returns the state of three grains, of which one is lost, on a fixed disc and a floor.
+/// Returns a handmade state of three grains on a floor and on a disc that is not a grain. One grain is marked as lost
+/// (it has left the scene).
 fn moment(step: u64) -> Moment {
     let grain = |id: u32, x: f64, y: f64, radius: f64| GrainState {
         id,
@@ -77,7 +78,7 @@ fn moment(step: u64) -> Moment {
     }
 }
 
-/// Checks that a text begins with the lines of a pattern. Returns the rest of the text. In the pattern, a line `…`
+/// Checks that a text begins with the lines of a pattern, and returns the rest of the text. In the pattern, a line `…`
 /// matches any number of lines, and `…` at the end of a line matches the rest of that line.
 fn after<'a>(mut text: &'a str, pattern: &str) -> &'a str {
     let mut skips = false;
@@ -109,7 +110,8 @@ fn start(folder: &Path) -> Recording {
     Recording::start(folder, FORMATS, &about(), false).expect("a recording")
 }
 
-/// Resumes a recording at a step, with the frames up to this step that every format has.
+/// Resumes a recording at a step number. The recording keeps the frames up to this step that are complete in every
+/// format.
 fn go_on(folder: &Path, step: u64) -> Recording {
     let index = std::fs::read_to_string(folder.join("frames.csv")).unwrap_or_default();
     let whole = index.rfind('\n').map_or("", |end| &index[..end]);
@@ -119,7 +121,7 @@ fn go_on(folder: &Path, step: u64) -> Recording {
     Recording::go_on(folder, FORMATS, &about(), step, &mark).expect("a recording to go on with")
 }
 
-/// Writes frames with these numbers. Frame n shows step 10 n.
+/// Records frames with these numbers. Frame n shows the state after step 10 n.
 fn write_frames(recording: &mut Recording, numbers: std::ops::Range<u64>) {
     for number in numbers {
         recording.add(moment(10 * number)).expect("a frame");

@@ -52,7 +52,7 @@ const GRAINS: &str = r#"<?xml version="1.0"?>
   <AppendedData encoding="raw">
    _"#;
 
-/// A `.vtp` file: its XML, and the binary data behind the XML.
+/// A `.vtp` file: its XML text, and the binary data that follow the XML.
 struct File {
     xml: String,
     data: Vec<u8>,
@@ -100,7 +100,7 @@ fn second_frame(kind: &str) -> (tempfile::TempDir, PathBuf) {
     (folder, path)
 }
 
-/// Compares the bit patterns of numbers, so that −0 differs from 0.
+/// Checks that two lists of numbers have the same bit patterns, so that −0 differs from 0.
 fn assert_same(found: &[f64], expected: &[f64], name: &str) {
     let bits = |numbers: &[f64]| numbers.iter().map(|number| number.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(found), bits(expected), "{name}: {found:?} of {expected:?}");
@@ -170,8 +170,8 @@ ITEM: ATOMS id type element x y z radius vx vy vz omegaz coordination_number ang
 2 3 Li -1000000.0 0.0 0.0 0.5 0.3333333333333333 -2e-9 0.0 1e22 0.0 -0.0 0.125 …
 3 2 He 0.0 -1.0 0.0 0.75 0.0 0.0 0.0 0.0 NaN 0.0 NaN …
 ";
-/// Start of the second frame of grains. A frame has eight head lines, a line with the names of the columns, and one
-/// line per disc: MDAnalysis finds frames by this number of lines.
+/// First lines of the second frame in a dump of grains. A frame has eight head lines, a line with the names of the
+/// columns, and one line per disc. The program MDAnalysis finds frames by this number of lines.
 const SECOND_HEAD: &str = "ITEM: TIMESTEP\n10\nITEM: NUMBER OF ATOMS\n4\n";
 
 const DUMPED_CONTACTS: &str = "\
@@ -239,7 +239,7 @@ fn what_is_written_for_other_programs_is_refused_as_an_initial_state() {
     assert_refused(folder.path(), "has grains for other programs alone");
 }
 
-/// Returns two numbers of a frame of fields, by their names.
+/// Returns two numbers by their names from the file of smoothed fields of one frame.
 fn of_fields(folder: &Path, number: usize, names: [&str; 2]) -> [f64; 2] {
     let file = bytes(folder.join(format!("fields/fields_{number:06}.vti")));
     let text = String::from_utf8_lossy(&file);

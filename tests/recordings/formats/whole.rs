@@ -9,13 +9,13 @@ use slump::data::Recording;
 use super::{FORMATS, about, go_on, moment, start, write_frames};
 use crate::program::*;
 
-/// Environment variable that gives the output folder to the child process that the test kills.
+/// Environment variable by which the test tells its child process, which it later kills, the output folder.
 const FOLDER: &str = "SLUMP_TEST_FORMATS_FOLDER";
 const KILLS: usize = 12;
 const MOST_FRAMES: u64 = 100_000;
 
-/// Returns the content of a file at one time. Reading takes several calls, between which the file may change, so the
-/// file is read until two results are equal.
+/// Returns the content of a file that another process may be changing. Reading takes several calls, so the file is read
+/// until two results are equal.
 fn snapshot_of(path: &Path) -> String {
     let (mut text, mut again) = (read(path), read(path));
     while text != again {
@@ -24,7 +24,8 @@ fn snapshot_of(path: &Path) -> String {
     text
 }
 
-/// Returns the times of a VTK series (`.pvd`). Checks that the series and the files that it lists are complete.
+/// Returns the simulated times in a VTK series (`.pvd`), s. Checks that the series and the files that it lists are
+/// complete.
 pub fn frames_of_series(path: &Path) -> Vec<f64> {
     let text = snapshot_of(path);
     let body = text.strip_prefix("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\"");
@@ -43,8 +44,8 @@ pub fn frames_of_series(path: &Path) -> Vec<f64> {
     times.collect()
 }
 
-/// Returns the steps of a LAMMPS dump. Checks that the dump consists of complete frames and at most one incomplete
-/// frame at the end.
+/// Returns the step numbers of the frames in a LAMMPS dump. Checks that the dump consists of complete frames and at
+/// most one incomplete frame at the end.
 pub fn frames_of_dump(path: &Path) -> Vec<u64> {
     let text = snapshot_of(path);
     let mut lines = text.lines().peekable();
@@ -70,7 +71,7 @@ pub fn frames_of_dump(path: &Path) -> Vec<u64> {
     steps
 }
 
-/// Returns the step of a frame of a dump, or `None` if the frame is incomplete.
+/// Returns the step number of a frame of a dump, or `None` if the frame is incomplete.
 fn read_frame<'a>(lines: &mut impl Iterator<Item = &'a str>, has_time: bool) -> Option<u64> {
     if has_time {
         lines.next()?.parse::<f64>().ok()?;

@@ -6,7 +6,7 @@ use slump::interchange::{Friction, ProblemFile, Solution};
 use super::{SICONOS, problems};
 use crate::program::*;
 
-/// Returns a correct problem of two contacts, which the tests change.
+/// Returns a correct problem of two contacts as JSON. The tests change it into faulty problems.
 fn sound() -> Value {
     json!({
         "nc": 2,
@@ -25,7 +25,7 @@ fn spoilt(mut problem: Value, change: fn(&mut Value)) -> String {
     problem.to_string()
 }
 
-/// Checks that each text is refused in one sentence that contains the expected words.
+/// Checks that each text is refused with an error message of one sentence that contains the expected words.
 fn assert_refused(cases: &[(String, &str)]) {
     let folder = folder();
     let path = folder.path().join("problem.json");

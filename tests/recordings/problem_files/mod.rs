@@ -1,4 +1,4 @@
-//! Tests of contact problems as files: written from a scene, read back, checked, and solved without a scene.
+//! Tests of contact problems as files: they are written from a scene, read back, checked, and solved without the scene.
 
 mod faults;
 
@@ -31,7 +31,8 @@ fn settings(method: Method, tolerance: f64) -> SolverSettings {
     SolverSettings { method, tolerance, max_sweeps: 1_000_000, stop, ..SolverSettings::SWEEPS }
 }
 
-/// Returns scenes for every set of physics, each with a name and the time at which its problem is written (s).
+/// Returns scenes for every kind of physics and friction cone, each with a name and the time at which its contact
+/// problem is written (s).
 fn scenes() -> Vec<(&'static str, Scene, f64)> {
     let pile = |physics: Physics, bond: f64, cone: FrictionCone| {
         let parameters = parameters(bond, 1e-3, 0.1, 0.5);
@@ -66,7 +67,7 @@ fn scenes() -> Vec<(&'static str, Scene, f64)> {
     ]
 }
 
-/// A visitor that solves the contact problem of a step by this number of sweeps. It returns the residual and the
+/// A visitor that solves the contact problem of a step by this number of sweeps and returns the residual and the
 /// impulses.
 struct Swept(u32);
 
@@ -143,7 +144,8 @@ fn a_file_reads_back_bit_for_bit_and_solves_as_the_simulation_does() {
     }
 }
 
-/// Methods that need the bodies refuse a problem that has only the matrix W. All other methods accept both forms.
+/// Checks that each method solves each stored problem to a residual of 1e-6, given as bodies and given only as the
+/// matrix W. Methods that need the bodies must refuse the matrix.
 #[test]
 fn every_method_reaches_1e_6_on_every_kept_problem_or_says_that_it_cannot() {
     let mut on_matrix = 0;
@@ -176,15 +178,16 @@ fn every_method_reaches_1e_6_on_every_kept_problem_or_says_that_it_cannot() {
     assert!(on_matrix >= kept().len());
 }
 
-/// Solution by the program Siconos, written by `tests/problems/make_reference.py`.
+/// Solution of a contact problem by the program Siconos, written by `tests/problems/make_reference.py`.
 #[derive(serde::Deserialize)]
 struct Reference {
     residual: f64,
     u: Vec<f64>,
 }
 
-/// Without friction the velocities are unique, and in these problems they are unique with friction, too: cold starts,
-/// warm starts and both solvers agree to 1e-9 of the fastest free velocity.
+/// Checks that the velocities agree with those of Siconos to 1e-9 of the fastest free velocity, from warm and from cold
+/// starts, and with W instead of the bodies. Without friction the velocities are unique; in these problems they are
+/// unique with friction, too.
 #[test]
 fn velocities_are_those_that_siconos_finds() {
     let with_friction = [SICONOS, "bond_0.json", "bond_20.json", "pile_138_bond_50.json"];
@@ -209,7 +212,8 @@ fn velocities_are_those_that_siconos_finds() {
     }
 }
 
-/// With grains that are not discs, the block of each contact couples its normal and tangential components.
+/// Checks that methods that work on the matrix W solve contacts whose 2 × 2 block of W couples the normal and the
+/// tangential component. Grains that are not discs have such contacts.
 #[test]
 fn methods_on_w_solve_contacts_that_couple_normal_and_tangent() {
     let mut random = random(5);

@@ -1,4 +1,4 @@
-//! Tests of pictures of the panels before the first step. They do not depend on the solver.
+//! Tests of pictures of the panels before the first step. These pictures do not depend on the solver.
 
 #[path = "../../pictures/golden/compare.rs"]
 mod compare;
@@ -9,7 +9,7 @@ use compare::{FilterType, Tolerance, complaint, save_small};
 
 const TOLERANCE: Tolerance = Tolerance { channel: 2, pixels: 0.01 };
 
-/// Draws the window and compares the picture with the stored picture.
+/// Draws the window and compares the picture with the stored picture of this name.
 fn check(robot: &mut Robot, name: &str) {
     robot.harness.remove_cursor();
     robot.frames(30);

@@ -1,4 +1,4 @@
-//! Tests of the facts about their origin in the files that the window writes, and in the file names.
+//! Tests of the file names, and of the facts (such as scene and settings) that the window writes into its files.
 
 use crate::robot::*;
 use std::collections::BTreeMap;
@@ -13,7 +13,8 @@ fn open(folder: &Path) -> Robot {
     Robot::open_with_gpu(Config::of_scene("pile"), preferences)
 }
 
-/// Presses a key or button that writes one file. Returns the path of the file.
+/// Uses a key or button (the function `ask`) that lets the window write one file. Returns the path of the newest file
+/// with this ending.
 fn written(robot: &mut Robot, ask: impl Fn(&mut Robot), ending: &str) -> PathBuf {
     let folder = robot.state().preferences.folder.clone();
     ask(robot);
@@ -25,7 +26,7 @@ fn written(robot: &mut Robot, ask: impl Fn(&mut Robot), ending: &str) -> PathBuf
     files.pop().expect("a file")
 }
 
-/// Returns the texts in a PNG file, and the size of the picture.
+/// Returns the texts in a PNG file by their keywords, and width and height of the picture, pixels.
 fn texts(path: &Path) -> (BTreeMap<String, String>, [u32; 2]) {
     let file = std::io::BufReader::new(std::fs::File::open(path).expect("a file"));
     let mut reader = png::Decoder::new(file).read_info().expect("a picture");

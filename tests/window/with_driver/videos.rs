@@ -11,7 +11,7 @@ fn film(robot: &mut Robot) -> (PathBuf, String) {
     made(robot, "Save video")
 }
 
-/// Opens a window that writes pictures of this size.
+/// Opens a window that writes pictures of this size (pixels) into a folder.
 pub(crate) fn open(folder: &Path, size: [u32; 2]) -> Robot {
     let preferences = Preferences {
         folder: folder.to_owned(),
@@ -24,7 +24,8 @@ pub(crate) fn open(folder: &Path, size: [u32; 2]) -> Robot {
     robot
 }
 
-/// Presses a button that makes a video or an animation. Returns the path of the file and the notice about it.
+/// Presses a button that lets the window write a video or an animation. Returns the path of the file and the window's
+/// notice about it.
 pub(crate) fn made(robot: &mut Robot, button: &str) -> (PathBuf, String) {
     robot.click(button);
     let told = robot.written();
@@ -47,14 +48,15 @@ fn shown_ms(frame: &Frame) -> f64 {
     f64::from(numerator) / f64::from(denominator)
 }
 
-/// Returns the mean difference of the channels of two pictures, from 0 to 255.
+/// Returns the mean difference of all colour channels of two pictures, from 0 to 255.
 fn difference(one: &RgbaImage, other: &RgbaImage) -> f64 {
     let differences = one.as_raw().iter().zip(other.as_raw());
     let sum: u64 = differences.map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
     sum as f64 / one.as_raw().len() as f64
 }
 
-/// Returns the first comment of a GIF. The file stores it in blocks of at most 255 bytes, each after its length.
+/// Returns the first comment in a GIF file. The file stores a comment in blocks of at most 255 bytes, each preceded by
+/// its length.
 fn comment(gif: &[u8]) -> String {
     let begin = gif.windows(2).position(|two| two == [0x21, 0xfe]).expect("a comment") + 2;
     let (mut rest, mut words) = (&gif[begin..], Vec::new());
@@ -89,8 +91,8 @@ fn the_record_is_an_animation_at_the_pace_of_time() {
     assert!(bytes == std::fs::read(animation(&mut robot)).unwrap());
 }
 
-/// The time between pictures of a GIF is a multiple of 10 ms and at least 20 ms. If the user asks for another rate, the
-/// number of pictures changes, but the pace of time does not.
+/// Checks that an animation shows time at the chosen speed, even if its frame rate is impossible. The duration of a
+/// picture in a GIF is a multiple of 10 ms and at least 20 ms, so another rate needs another number of pictures.
 #[test]
 #[ignore = "needs a graphics driver"]
 fn an_animation_keeps_its_pace_where_it_cannot_have_the_pictures_asked_for() {

@@ -1,5 +1,5 @@
-//! Boundaries (shapes, other than discs, that grains cannot move), divided into features: half-spaces, segments and
-//! convex polygons. A disc touches each feature in at most one point.
+//! Boundaries (walls and other shapes that are not discs), divided into features: half-spaces, segments and convex
+//! polygons. A disc touches each feature in at most one point.
 
 use glam::DVec2;
 use parry2d_f64::query::{PointQuery, PointQueryWithLocation};
@@ -29,14 +29,14 @@ pub(crate) enum Feature {
         before: Option<Segment>,
         /// True if another segment of the polyline follows.
         has_next: bool,
-        /// The ends that this segment shares with other boundaries.
+        /// The end points of this segment that lie on other boundaries.
         seams: Seams,
     },
     /// A solid convex polygon with its corners in anticlockwise order.
     ConvexPolygon {
         /// The sides of the polygon.
         sides: Vec<Segment>,
-        /// The corners that this polygon shares with other boundaries.
+        /// The corners of this polygon that lie on other boundaries.
         seams: Seams,
     },
 }

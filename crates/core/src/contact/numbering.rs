@@ -8,7 +8,7 @@ use crate::world::World;
 pub enum Other {
     /// A grain.
     Grain(usize),
-    /// A fixed disc (a disc that grains cannot move).
+    /// A fixed disc: a disc that is at rest or has a prescribed or force-driven motion.
     FixedDisc(usize),
     /// A feature of a boundary: a half-space, segment or polygon.
     Feature(usize),

@@ -17,7 +17,7 @@ use crate::world::World;
 /// compressed packings the distance is more than 1.8 radii in practice. In the scene `overlap` two discs start at a
 /// distance of 1 radius.
 const LEAST_DISTANCE_IN_RADII: f64 = 0.5;
-/// Largest number of fixed discs (discs that grains cannot move) that may be closer to one fixed disc than
+/// Largest number of fixed discs (discs that are not grains) that may be closer to one fixed disc than
 /// [`LEAST_DISTANCE_IN_RADII`]. Overlapping fixed discs can form a smooth wall, but a grain would touch all of them at
 /// once.
 const MOST_FIXED_TOO_CLOSE: usize = 1000;

@@ -1,7 +1,8 @@
-//! Test that the error bound that a solve reports is not less than the distance of its velocities from the solution.
-//! Solves that meet the tolerance are compared over scenes, steppers, friction, restitution and time steps. The test
-//! also computes the bound a second time, from the data of the contacts. The reported bound must equal this number,
-//! or exceed it if contacts violate their constraint (`solver::problem::velocity_error`).
+//! Test that the error bound that a solve with bounded friction reports is not less than the distance of its
+//! velocities from the solution. The test runs over scenes, steppers, friction, restitution and time steps. It checks
+//! the solves that meet their tolerance. For all solves it computes the bound a second time, from the data of the
+//! contacts: the reported bound must equal this number, or exceed it if contacts violate their constraint
+//! (`solver::problem::velocity_error`).
 
 use crate::contact::ContactList;
 use crate::number::Parts;
@@ -12,20 +13,23 @@ use crate::solver::{
     velocity_distance, velocity_error,
 };
 
-/// Largest number of grains of the tested scenes. Larger scenes take longer and test nothing new.
+/// Largest number of grains of a tested scene. Larger scenes would take longer and show the same.
 const MOST_GRAINS: usize = 250;
 
-/// Number of steps after which walls that are driven by a force have reached the grains.
+/// Number of steps that the test computes before the tested steps, if a scene has walls that are driven by a force. It
+/// is chosen so that these walls have reached the grains.
 const STEPS_TO_TOUCH: u64 = 120;
 
-/// Solver settings for bounded friction.
+/// The default settings of the solver for bounded friction (the friction model `tresca`).
 const BOUNDED: SolverSettings = SolverSettings::BOUNDED;
 
-/// Visitor that solves a contact problem with these solver settings (bounded friction).
+/// Visitor that solves a contact problem with bounded friction by these solver settings, and measures the error of the
+/// solve.
 struct Certified(SolverSettings);
 
-/// Result of one solve, all in m/s: the reported error bound (`told`), the bound computed here from the data of the
-/// contacts (`found`), and the distance from the solution if the solve met its tolerance.
+/// Errors of one solve, in m/s: the error bound that the solve reports (`told`), the bound computed here from the data
+/// of the contacts (`found`), and the distance of the velocities from the solution (`distance`), if the solve met its
+/// tolerance.
 struct Certificate {
     told: f64,
     found: f64,
@@ -53,10 +57,11 @@ impl ProblemVisitor for Certified {
     }
 }
 
-/// Computes the gap between the two energies of a problem with bounded friction, Σ m_ij (σ(w + 2z) + z² + g|v| + λv)
-/// over the contacts, J, and the mass of all grains with contacts, kg. In the sum, m_ij is the effective mass, σ is
-/// the shifted normal and λ the tangential reduced impulse, w and v the normal and tangential velocities (w with its
-/// restitution term), z is the amount by which w is below 0, and g is the friction bound.
+/// Computes the duality gap, J, of a problem with bounded friction (the difference of the primal and the dual energy),
+/// Σ m_ij (σ(w + 2z) + z² + g|v| + λv) over the contacts, and the mass of all grains with contacts, kg. In the sum,
+/// m_ij is the effective mass, σ is the shifted normal and λ the tangential reduced impulse, w and v the normal and
+/// tangential velocities (w with its restitution term), z is the amount by which w is below 0, and g is the friction
+/// bound.
 fn gap<M: Model>(problem: &StepProblem<M>) -> (f64, f64) {
     let spins = f64::from(u8::from(M::ROTATION));
     let coordinates = |grain: u32| M::coordinates(&problem.bodies.now[grain as usize]);
@@ -85,7 +90,8 @@ fn gap<M: Model>(problem: &StepProblem<M>) -> (f64, f64) {
     (gap, masses.filter(|(_, touches)| *touches).map(|(mass, _)| mass).sum())
 }
 
-/// Returns all settings with which each scene is run.
+/// Returns the settings with which the test runs a scene: two steppers, each with four values of friction, restitution
+/// and time step.
 fn variants(settings: Settings) -> impl Iterator<Item = Settings> {
     let steppers = [Stepper::Moreau, Stepper::Range];
     let numbers = [(0.0, 1.0), (0.2, 1.0), (0.9, 1.0), (0.5, 8.0)];
@@ -150,8 +156,8 @@ fn no_certificate_is_wrong() {
     assert!(nearest > 0.5, "{nearest}: bounds that are twice too small would not be seen");
 }
 
-/// Visitor that solves a contact problem to this tolerance on velocities, in units of √(g d) (g: gravity, d: mean
-/// diameter). It returns true if the solve converged, and the residual.
+/// Visitor that solves a contact problem until the velocity error is below this tolerance, in units of √(g d) (g:
+/// gravity, d: mean diameter). It returns whether the solve converged, and the residual.
 struct Pressed(f64);
 
 impl ProblemVisitor for Pressed {

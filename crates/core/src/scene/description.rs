@@ -1,4 +1,4 @@
-//! The data of a scene, as in a scene file, and its checks.
+//! The data of a scene, with the fields of a scene file, and the checks of these data.
 
 use std::fmt::Arguments;
 use std::path::PathBuf;
@@ -24,59 +24,60 @@ use crate::world::{
 pub struct Scene {
     /// Name of the scene.
     pub name: String,
-    /// The mean diameter d, m. It is the unit of length for settings in diameters.
+    /// Mean diameter d that the scene gives, m: the unit of length for settings in diameters.
     pub mean_diameter: f64,
     /// Areal density σ of the discs, kg/m².
     #[serde(default = "one")]
     pub areal_density: f64,
-    /// Tolerance for rounding, m: pairs touch if their gap is below it.
+    /// Gap tolerance for rounding, m: grains touch if their gap is below it.
     #[serde(default)]
     pub gap_tolerance: f64,
     /// Simulated time of a run, s.
     pub duration_secs: f64,
-    /// The effects that the mechanics includes: axes, friction, rotation and cohesion.
+    /// The effects that the mechanics includes: one or two axes, friction, rotation and cohesion.
     pub physics: Physics,
     /// Gravity: the acceleration field of the grains.
     pub gravity: Gravity,
-    /// Rotation of gravity over time, if gravity turns.
+    /// Rotation of the direction of gravity over time. `None` if gravity keeps its direction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity_turn: Option<GravityTurn>,
-    /// Periodic borders, if there are any.
+    /// Periodic borders of the scene. `None` if it has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<Periodic>,
     /// The stepper, which advances the state by one time step with its contact law.
     #[serde(default)]
     pub stepper: Stepper,
-    /// Parameters that may change during a run.
+    /// Parameters of the contact laws, and the time step. They may change during a run.
     pub parameters: Parameters,
-    /// Settings of the solver of each step.
+    /// Settings of the solver, which computes the contact impulses of each step.
     #[serde(default)]
     pub solver: SolverSettings,
-    /// Remedies: optional corrections of known failures of the stepper. None by default.
+    /// Remedies: optional corrections of known errors of the stepper. None are applied by default.
     #[serde(default, skip_serializing_if = "Remedies::is_none")]
     pub remedies: Remedies,
-    /// The rectangle that pictures show. Default: chosen from the initial positions of the grains.
+    /// The rectangle that pictures show. If it is missing, it is computed from the initial positions of the grains.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub view: Option<View>,
-    /// Source from which the grains are read or generated, unless the scene lists them.
+    /// File from which the grains are read, or method by which they are generated. `None` if the scene lists its
+    /// grains.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<GrainSource>,
     /// Settings for recordings of runs of this scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub data: Option<DataSettings>,
-    /// Materials of grains, fixed discs and boundaries.
+    /// Materials of which grains, fixed discs and boundaries consist.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<Material>,
-    /// Contact laws of pairs of materials. Pairs that are not listed have the coefficients of the parameters.
+    /// Contact laws of pairs of materials. A pair that is not listed has the coefficients in `parameters`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pairs: Vec<MaterialPair>,
-    /// Shapes, other than discs, that grains cannot move.
+    /// Walls and other shapes, other than discs, that are at rest or have a prescribed or force-driven motion.
     #[serde(default)]
     pub boundaries: Vec<Boundary>,
-    /// Discs that grains cannot move.
+    /// Fixed discs: discs that are at rest or have a prescribed or force-driven motion.
     #[serde(default)]
     pub fixed_discs: Vec<Disc>,
-    /// Motions of boundaries and fixed discs. Bodies without a motion stay at rest.
+    /// Prescribed or force-driven motions of boundaries and fixed discs. Bodies without a motion stay at rest.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub motions: Vec<Motion>,
     /// The grains: discs that move.
@@ -94,20 +95,20 @@ pub struct View {
     pub max: DVec2,
 }
 
-/// Source of the grains of a scene.
+/// File from which the grains of a scene are read, or method by which they are generated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "from", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum GrainSource {
     /// A CSV file with a list of discs.
     Csv {
-        /// Path of the file. In a scene file it is relative to the scene file.
+        /// Path of the CSV file. In a scene file it is relative to the folder of the scene file.
         path: std::path::PathBuf,
     },
     /// A recording of a run, or a table of discs in one of the formats of recordings.
     Data {
-        /// Path of the recording or the table. In a scene file it is relative to the scene file.
+        /// Path of the recording or the table. In a scene file it is relative to the folder of the scene file.
         path: std::path::PathBuf,
-        /// The step of the recording from which the grains are taken. Default: the last step.
+        /// Number of the recorded step from which the grains are taken. Default: the last step.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         step: Option<u64>,
     },
@@ -124,13 +125,13 @@ fn one() -> f64 {
 /// disc by more than a ten-thousandth of its radius, and a little farther away it moves discs onto each other.
 const FARTHEST_IN_RADII: f64 = 1e15;
 
-/// Largest allowed mean diameter of the grains, in mean diameters d of the scene. Larger values come from an error of
-/// units, such as grains in millimetres. If the limit were smaller, a scene with grains of several sizes could not
-/// choose one of the sizes as its unit of length.
+/// Largest allowed ratio of the mean diameter of the listed grains to the mean diameter d that the scene gives. A
+/// larger ratio comes from an error of units, such as grains in millimetres. If the limit were smaller, a scene with
+/// grains of several sizes could not choose one of these sizes as its unit of length.
 const MOST_DIAMETERS_OF_MEAN: f64 = 100.0;
 
-/// Checks that a value is finite and above 0. The name of the field is formatted only for an error message, because a
-/// study checks each disc of each run.
+/// Checks that a value is finite and above 0. `field` names the value in the error message. It is formatted only for
+/// an error, because a study checks each disc of each run.
 fn positive(field: Arguments<'_>, value: f64, unit: &str) -> Result<()> {
     if value > 0.0 && value.is_finite() {
         Ok(())
@@ -149,8 +150,8 @@ fn within_reach(field: Arguments<'_>, place: DVec2, radius: f64) -> Result<()> {
 }
 
 impl Scene {
-    /// Returns a scene that contains only grains, with all physics, the stepper `moreau` and the default solver.
-    /// Callers change the other fields.
+    /// Returns a scene that contains only grains, with the effects of full mechanics (two axes, friction, rotation,
+    /// cohesion), the stepper `moreau` and the default solver. Callers change the other fields.
     pub(super) fn of(
         name: &str,
         mean_diameter: f64,
@@ -184,20 +185,20 @@ impl Scene {
         }
     }
 
-    /// Returns the stepper, parameters, solver settings and remedies of the scene.
+    /// Returns the settings of the scene: its stepper, parameters, solver settings and remedies.
     pub fn settings(&self) -> Settings {
         let Self { stepper, parameters, solver, remedies, .. } = *self;
         Settings { stepper, parameters, solver, remedies }
     }
 
-    /// Replaces the stepper, parameters, solver settings and remedies of the scene.
+    /// Replaces the settings of the scene: its stepper, parameters, solver settings and remedies.
     pub fn set_settings(&mut self, settings: Settings) {
         let Settings { stepper, parameters, solver, remedies } = settings;
         (self.stepper, self.parameters, self.solver, self.remedies) =
             (stepper, parameters, solver, remedies);
     }
 
-    /// Checks everything except the shapes of the boundaries.
+    /// Checks all data of the scene except the shapes of the boundaries.
     ///
     /// # Errors
     /// If a field is outside its range. The error names the first such field.
@@ -285,7 +286,7 @@ impl Scene {
         self.settings().check_in(&world, self.physics)
     }
 
-    /// Returns the world of the scene at time 0.
+    /// Returns the bodies and fields of the scene at time 0, from which a simulation starts.
     fn world(&self) -> World {
         World {
             fixed_discs: self.fixed_discs.clone(),
@@ -322,8 +323,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Returns the rectangle that pictures show: the `view` of the scene, or the initial positions of the grains with
-    /// margins on both sides that equal the height of the grains.
+    /// Returns the rectangle that pictures show. It is the `view` of the scene or, if that is missing, the bounding
+    /// box of the initial grains with margins to the left and right as wide as the box is high.
     pub fn view(&self) -> View {
         if let Some(view) = self.view {
             return view;
@@ -343,7 +344,7 @@ impl Scene {
         self.with_fixed_discs_beside(View { min: min - room, max: max + room })
     }
 
-    /// Extends a view by the fixed discs above and below it.
+    /// Extends a view downwards and upwards so that it contains the fixed discs below and above it.
     fn with_fixed_discs_beside(&self, View { mut min, mut max }: View) -> View {
         for disc in &self.fixed_discs {
             if (min.x..max.x).contains(&disc.position.x) {
@@ -354,8 +355,8 @@ impl Scene {
         View { min, max }
     }
 
-    /// Removes the mass of each grain whose mass equals, bit by bit, the mass that follows from its material and
-    /// radius.
+    /// Removes the mass that a grain lists, if this mass equals, bit by bit, the mass that follows from the material
+    /// and the radius of the grain.
     pub fn without_implied_masses(mut self) -> Self {
         for grain in &mut self.grains {
             let given = grain.mass.take();
@@ -365,7 +366,8 @@ impl Scene {
         self
     }
 
-    /// Returns this scene with other grains, whose grey levels show their initial layers.
+    /// Returns this scene with `grains` in place of its grains. The grey levels of the new grains show the layers in
+    /// which they start.
     pub fn with_settled(mut self, grains: Vec<Grain>) -> Self {
         self.grains = grains;
         tone_in_layers(&mut self.grains, self.mean_diameter);
@@ -394,11 +396,11 @@ words! {
     }
 }
 
-/// Settings of a recording, in scene files and studies.
+/// Settings of the recording of a run, in scene files and studies.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DataSettings {
-    /// Folder of the recording. In a scene file it is relative to the scene file.
+    /// Folder to which the recording is written. In a scene file it is relative to the folder of the scene file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub folder: Option<PathBuf>,
     /// Simulated time between two frames of the recording, s.

@@ -1,7 +1,7 @@
 //! Test that the velocity error that Slump reports for a step is near the distance of the velocities from a solution
 //! under Coulomb friction. It covers scenes, steppers, friction, restitution, time steps, sizes of piles and solvers.
-//! The distance is measured to the nearest of the solutions that a search finds from several starting points. With
-//! few starting points the search may miss the nearest solution.
+//! A step can have several solutions. The distance is measured to the nearest of the solutions that a search finds
+//! from several starting points. With few starting points the search may miss the nearest solution.
 
 use crate::contact::ContactList;
 use crate::scene::{Deposition, NewPile, SCENES, Scene, built_in, pile_of, settle, stability};
@@ -12,12 +12,12 @@ use crate::solver::{
 };
 use crate::world::Grain;
 
-/// Smallest distance from a solution, in √(g d) (g: gravity, d: mean diameter), of the solves that are tested. For
-/// smaller distances the reported error is known to be too large.
+/// Smallest distance of a solve's velocities from a solution, in √(g d) (g: gravity, d: mean diameter), at which the
+/// test checks the reported error. At smaller distances the reported error is known to be too large.
 const SMALLEST_DISTANCE: f64 = 1e-6;
 
-/// One solve: its description, its reported velocity error (`told`), and its actual distance from a solution (`off`),
-/// both in √(g d) and in the same norm.
+/// Errors of one solve in √(g d) (g: gravity, d: mean diameter): the velocity error that Slump reports (`told`), and
+/// the actual distance from a solution (`off`), in the same norm. `what` describes the scene, step and solver.
 #[derive(Clone, Debug)]
 struct Judged {
     what: String,
@@ -25,19 +25,19 @@ struct Judged {
     off: f64,
 }
 
-/// Visitor that solves a contact problem with several solvers and compares the reported error of each solve with its
-/// distance from a solution.
+/// Visitor that solves a contact problem with several solvers and compares, for each solve, the reported velocity
+/// error with the actual distance from a solution. `what` describes the scene and step.
 struct Judge<'a> {
     what: &'a str,
     how: Search,
 }
 
-/// Settings of the search for reference solutions.
+/// Settings of the search for the solutions of a step to which solves are compared.
 #[derive(Clone, Copy)]
 struct Search {
     starts: u32,
     max_sweeps: u32,
-    /// Largest residual of an accepted reference solution.
+    /// Largest residual of a solution that the search found. Less exact solutions are not used.
     largest_residual: f64,
 }
 
@@ -47,7 +47,8 @@ impl Search {
     }
 }
 
-/// Returns the names and settings of the solvers of the test. Some of them solve a step well and some badly.
+/// Returns the names and settings of the solvers that the test compares. Some of them solve a step well and some
+/// badly.
 fn ways() -> Vec<(&'static str, SolverSettings)> {
     let sweeps = |method, max_sweeps| SolverSettings::to_residual(method, 1e-13, max_sweeps);
     vec![
@@ -96,7 +97,8 @@ impl ProblemVisitor for Judge<'_> {
     }
 }
 
-/// Solves the given steps of a scene with all solvers and returns the comparisons.
+/// Solves the steps with these numbers of a scene with all tested solvers, and returns the reported and actual errors.
+/// `what` describes the scene.
 fn judge(scene: &Scene, what: &str, steps: &[u64], how: Search) -> Vec<Judged> {
     let mut judged = Vec::new();
     // Some steppers do not support the scene. Such a combination is skipped.
@@ -113,8 +115,9 @@ fn judge(scene: &Scene, what: &str, steps: &[u64], how: Search) -> Vec<Judged> {
     judged
 }
 
-/// Prints a summary of the solves whose distance from a solution is larger than rounding. Returns the fraction of
-/// these solves whose reported error is too small, and the median ratio of reported error to distance.
+/// Prints a summary of the solves whose distance from a solution is larger than rounding errors. Returns the fraction
+/// of these solves whose reported error is smaller than the distance, and the median ratio of reported error to
+/// distance.
 fn tell(name: &str, judged: &[Judged]) -> [f64; 2] {
     let off = judged.iter().filter(|it| it.off > SMALLEST_DISTANCE);
     let mut ratios: Vec<(f64, &Judged)> = off.map(|it| (it.told / it.off, it)).collect();
@@ -145,7 +148,8 @@ fn tell(name: &str, judged: &[Judged]) -> [f64; 2] {
     [share, at(0.5)]
 }
 
-/// Returns the built-in scenes of at most 250 grains, with the tested values of friction, restitution and time step.
+/// Returns the built-in scenes of at most 250 grains, each with all tested values of friction, restitution and time
+/// step, and their names.
 fn small_scenes() -> Vec<(String, Scene)> {
     let mut scenes = Vec::new();
     for info in SCENES {
@@ -175,7 +179,7 @@ fn small_scenes() -> Vec<(String, Scene)> {
     scenes
 }
 
-/// Returns scenes in which one contact carries a large load.
+/// Returns scenes that are hard to solve, because one contact carries a much larger load than others, and their names.
 fn hard_scenes() -> Vec<(String, Scene)> {
     let mut scenes = Vec::new();
     for (radius, friction) in [(1e-3, 0.0), (1.6e-5, 0.0), (1e-3, 0.5)] {
@@ -200,7 +204,7 @@ fn hard_scenes() -> Vec<(String, Scene)> {
     scenes
 }
 
-/// Returns a pile that collapses or stays at rest, depending on its Bond number.
+/// Returns the scene of a pile without side walls, which collapses or stays at rest, depending on its Bond number.
 fn pile(grains: usize, bond: f64, time_step_secs: f64) -> Scene {
     let width = 16.0 * (grains as f64 / 138.0).sqrt();
     let deposition = Deposition::DropAndRoll;
@@ -217,7 +221,8 @@ fn pile(grains: usize, bond: f64, time_step_secs: f64) -> Scene {
     scene
 }
 
-/// Checks the reported errors of all solves together, and prints a summary for each solver.
+/// Checks that reported errors are rarely smaller than the actual errors (in at most 5 % of the solves), and that
+/// their median ratio is at most `largest_median`. Also prints a summary for each solver.
 #[track_caller]
 fn check(name: &str, judged: &[Judged], largest_median: f64) {
     let [share, median] = tell(name, judged);

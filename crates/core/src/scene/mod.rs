@@ -1,4 +1,5 @@
-//! Scenes: bodies, physics, parameters and solver settings of a simulation. [`SCENES`] lists the built-in scenes.
+//! Scenes: the bodies, physics, parameters and solver settings with which a simulation starts. [`SCENES`] lists the
+//! built-in scenes.
 
 #[cfg(test)]
 mod certificates;

@@ -1,4 +1,4 @@
-//! Parameters of a new pile: number of grains, box, seed, deposition and sizes.
+//! Parameters of a new pile: number of grains, width of the box, seed, deposition and sizes.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,11 +6,11 @@ use crate::error::{Error, Result};
 use crate::scene::sizes::Sizes;
 use crate::setting::words;
 
-/// Room for a random displacement of the largest disc on the lattice from which the grains rain, in diameters.
+/// Room for a random displacement of the largest disc on the initial lattice from which the grains rain, in diameters.
 const JITTER: f64 = 0.1;
 
 words! {
-    /// Method of placing the grains of a new pile.
+    /// Method by which the grains of a new pile are placed: rain, or drop and roll.
     #[derive(Default)]
     pub enum Deposition {
         #[default]
@@ -26,26 +26,27 @@ words! {
 pub struct NewPile {
     /// Number of grains.
     pub grains: usize,
-    /// Width of the box, in diameters.
+    /// Width of the box in which the pile settles, in diameters.
     pub box_width_in_diameters: f64,
     /// Seed of the random numbers for diameters and positions.
     pub seed: u64,
-    /// Method by which the grains are placed.
+    /// Method by which the grains are placed: rain, or drop and roll.
     #[serde(skip_serializing_if = "is_default")]
     pub deposition: Deposition,
-    /// Distribution of the diameters.
+    /// Distribution of the diameters of the grains.
     #[serde(skip_serializing_if = "is_default")]
     pub sizes: Sizes,
 }
 
-/// True if a value is the default. Defaults are not written to files, because older files do not have the field.
+/// True if the value of a field is its default. Such a field is not written to files, because older versions of the
+/// file do not have it.
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
 impl Default for NewPile {
-    /// The 138 grains of the paper. The seed is one of nine that were tried. With this seed, single runs of the
-    /// paper's Fig. 4 show the same effects as means over many initial states.
+    /// Returns the parameters of the paper's pile of 138 grains. The seed is one of nine that were tried. With this
+    /// seed, single runs of the paper's Fig. 4 show the same effects as means over many initial states.
     fn default() -> Self {
         Self {
             grains: 138,
@@ -74,13 +75,13 @@ impl NewPile {
         Ok(())
     }
 
-    /// Spacing of the lattice from which the grains rain, in diameters: the largest diameter plus room for a random
-    /// displacement.
+    /// Returns the spacing of the initial lattice from which the grains rain, in diameters: the largest diameter plus
+    /// room for a random displacement.
     pub(super) fn spacing(&self) -> f64 {
         self.sizes.largest() + JITTER
     }
 
-    /// Number of discs in a row of the lattice from which the grains rain.
+    /// Returns the number of discs in a row of the initial lattice from which the grains rain.
     pub(super) fn columns(&self) -> usize {
         (self.box_width_in_diameters / self.spacing()).floor() as usize
     }

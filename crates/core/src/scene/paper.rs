@@ -15,21 +15,21 @@ pub(super) const DIAMETER: f64 = 5e-3;
 /// Gravity g of the pile, m/s².
 pub(super) const GRAVITY: f64 = 9.8;
 const NAME: &str = "pile";
-/// Allowed widths of a rough base, in diameters.
+/// Allowed widths of a rough base (a row of fixed discs on which a pile lies), in diameters.
 const BASE_WIDTHS_IN_DIAMETERS: RangeInclusive<f64> = 1.0..=1e5;
-/// Width of the rough base beyond the box on either side, in heights of the pile. No grain of a collapsing pile moves
-/// farther in the one second of the paper's runs.
+/// Width of the rough base on either side of the box, divided by the height of the pile. In the paper's runs of one
+/// second, no grain of a collapsing pile leaves this base.
 const BASE_MARGIN_IN_HEIGHTS: f64 = 5.0;
-/// Allowed height of a grain above the base, in diameters. Two diameters per grain are added to it. The loosest
-/// initial lattice of a pile is a column with 1.3 diameters per grain, which is below this limit.
+/// Largest allowed height of a grain above the base, in diameters, to which two diameters per grain are added. The
+/// loosest initial lattice of a pile is a column with 1.3 diameters per grain, which is below this limit.
 const LEAST_ROOM_IN_DIAMETERS: f64 = 1000.0;
 
 const INITIAL_STATE: &str = include_str!("../../assets/pile_138.csv");
 
-/// Returns the paper's pile of 138 grains, in the initial state that is shipped with the program.
+/// Returns the scene of the paper's pile of 138 grains, with the initial state that is shipped with Slump.
 ///
 /// # Errors
-/// Never in a released program. If the file of the initial state has been modified, the error names the wrong line.
+/// If the file of the initial state has been modified and is not valid. The error names the wrong line.
 pub fn paper_pile() -> Result<Scene> {
     let lines = INITIAL_STATE.lines().filter(|line| !line.starts_with('#')).skip(1);
     let disc = |line: &str| {
@@ -43,12 +43,12 @@ pub fn paper_pile() -> Result<Scene> {
     pile_of(grains, NewPile::default().box_width_in_diameters)
 }
 
-/// Returns a pile of the given grains, which have come to rest in a box `box_width_in_diameters` wide. The box itself
-/// is not part of the scene.
+/// Returns the scene of a pile of the given grains, which have come to rest in a box `box_width_in_diameters` wide.
+/// The box itself is not part of the scene.
 ///
 /// # Errors
-/// If a grain is too high. The base is as wide as the grains may spread, so it would have far more discs than the
-/// pile.
+/// If a grain is higher than any grain of a pile can be. The base is widened in proportion to the height of the pile,
+/// so with such a grain it would have far more discs than the pile.
 pub fn pile_of(mut grains: Vec<Grain>, box_width_in_diameters: f64) -> Result<Scene> {
     let highest = DIAMETER * (LEAST_ROOM_IN_DIAMETERS + 2.0 * grains.len() as f64);
     if let Some(index) = grains.iter().position(|grain| grain.position.y > highest) {
@@ -95,7 +95,7 @@ pub fn put_on_base(scene: &mut Scene, width_in_diameters: f64) -> Result<()> {
 const LINE_DIAMETER: f64 = 0.3;
 const ON_LINE: Physics = Physics { axes: 1, friction: false, rotation: false, cohesion: true };
 
-/// Returns the view of the collision or of the cradle. The corners are given in diameters.
+/// Returns a view of the scene `collision` or `cradle`. The corners are given in diameters.
 fn view_on_line(min: DVec2, max: DVec2) -> Option<View> {
     Some(View { min: LINE_DIAMETER * min, max: LINE_DIAMETER * max })
 }
@@ -121,16 +121,17 @@ pub fn collision() -> Scene {
     }
 }
 
-/// Initial distance from disc k to disc i on its right, in diameters, in the cradle. With this distance the cradle
-/// shows the paper's pattern of open and closed bonds over the time step. The paper does not state the distance. This
-/// value was found by a search.
+/// Initial distance between the centres of disc k and disc i on its right in the scene `cradle`, in diameters. With
+/// this distance the scene shows the paper's pattern: which time steps open the bond of i and j, and which do not. The
+/// paper does not state the distance. This value was found by a search.
 const START_IN_DIAMETERS: f64 = 7.865;
 
-/// Returns the scene of the cradle (paper §4): three discs on a line, with an attraction towards the first.
+/// Returns the scene of the cradle (paper §4): three discs on a line, with an attraction towards a point.
 ///
 /// Disc i is at the centre of attraction, and disc j touches it on the right. Disc k starts at rest on the left and
-/// falls onto disc i. The time step decides if the shock separates i and j. At small time steps the remaining error
-/// of the solver matters, too: in an exactly solved step the relative velocity of i and j after the shock is 0.
+/// falls onto disc i. Whether this shock separates i and j depends on the time step. At small time steps it also
+/// depends on the remaining error of the solver: in an exactly solved step the relative velocity of i and j after the
+/// shock is 0.
 pub fn cradle() -> Scene {
     cradle_from(START_IN_DIAMETERS)
 }

@@ -1,22 +1,22 @@
-//! Presets: groups of settings that are used together.
+//! Presets: groups of settings that are set together.
 
 use super::Scene;
 use crate::setting::{Group, words};
 use crate::sim::{REMEDIES, Remedies, Settings};
 use crate::solver::{Method, SolverSettings, StopTest};
 
-/// Touch tolerance (largest gap at which grains touch) of the preset `robust`, in mean diameters. Contacts that the
-/// errors of a step open by less than this still touch.
+/// Touch tolerance (largest gap at which grains touch) of the preset `robust`, in mean diameters. If the errors of a
+/// step open a contact by less than this, the two grains still touch.
 const TOUCH_TOLERANCE: f64 = 1e-3;
-/// Restitution threshold of the preset `robust`: contacts that close slower than this many g·Δt (gravity times time
-/// step) do not bounce. With this threshold nearly every step has a solution.
+/// Restitution threshold of the preset `robust`, in units of g·Δt (gravity times time step): contacts that close
+/// slower than this do not bounce. With the value 2 nearly every step has a solution.
 const RESTITUTION_THRESHOLD: f64 = 2.0;
-/// Tolerance on the residual of each step in the preset `robust`.
+/// Tolerance of the solver in the preset `robust`: largest residual of a solved step.
 const TOLERANCE: f64 = 1e-8;
 const MAX_SWEEPS: u32 = 5_000;
 
 words! {
-    /// A group of settings that are used together.
+    /// A group of settings that are set together.
     pub enum Preset {
         Paper = "paper", "The scheme of the paper's figures: Gauss-Seidel to a relative change of 1e-7, touch tolerance 0";
         Robust = "robust", "Newton's method and remedies together: most hard scenes pass, and the paper's effect of \
@@ -25,14 +25,14 @@ words! {
 }
 
 impl Preset {
-    /// Changes the settings of a scene to those of the preset.
+    /// Sets the settings of a scene to those of the preset.
     pub fn apply(self, scene: &mut Scene) {
         let mut settings = scene.settings();
         self.apply_to_settings(&mut settings);
         scene.set_settings(settings);
     }
 
-    /// Changes those settings that can change during a run to the settings of the preset.
+    /// Sets those settings that can change during a run to the values of the preset.
     pub fn apply_to_settings(self, settings: &mut Settings) {
         match self {
             Self::Paper => {

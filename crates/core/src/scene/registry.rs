@@ -1,11 +1,11 @@
-//! The list of the built-in scenes, and access to a scene by its name.
+//! The list of the built-in scenes, and functions that find a scene by its name.
 
 use super::{Scene, collision, cradle, experiments, paper_pile, stability};
 use crate::error::{Error, Result};
 use crate::setting::words;
 
 words! {
-    /// Purpose of a scene, with its heading in lists.
+    /// Purpose of a scene. Lists of scenes show it as a heading.
     pub enum SceneGroup {
         Paper = "paper", "Scenes";
         Experiments = "experiments", "Experiments";
@@ -13,30 +13,31 @@ words! {
     }
 }
 
-/// Name, group and constructor of a built-in scene.
+/// Entry in the list of built-in scenes: name, purpose, description and constructor.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneInfo {
-    /// Name on the command line.
+    /// Name of the scene on the command line.
     pub name: &'static str,
-    /// Further names: the names of the stability tests that use this scene.
+    /// Further names of the scene: the names of the stability tests that use it.
     pub also: &'static [&'static str],
-    /// Group under which the scene is listed.
+    /// Purpose of the scene, under which lists show it.
     pub group: SceneGroup,
-    /// Description of one line.
+    /// Description of the scene in one line.
     pub summary: &'static str,
     /// Creates the scene.
     pub make: fn() -> Result<Scene>,
 }
 
 impl SceneInfo {
-    /// Returns the built-in scene with this name, in upper or lower case.
+    /// Returns the built-in scene with this name, whether it is written in upper or lower case. `None` if there is no
+    /// such scene.
     pub fn named(name: &str) -> Option<&'static Self> {
         let is_it = |known: &&str| known.eq_ignore_ascii_case(name);
         SCENES.iter().find(|scene| is_it(&scene.name) || scene.also.iter().any(is_it))
     }
 }
 
-/// Declares the built-in scenes by group, each with its names, summary and constructor.
+/// Declares the built-in scenes, grouped by purpose, each with its names, description and constructor.
 macro_rules! scenes {
     ($($Group:ident { $($name:literal $(| $also:literal)*, $summary:literal => $make:expr;)* })*) => {
         /// All built-in scenes.

@@ -7,10 +7,10 @@ use rand::RngExt;
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
-/// Number of standard deviations at which normal and log-normal distributions are cut off. With a larger number, a
-/// few extreme grains would decide how wide the lattice is from which the grains rain.
+/// Number of standard deviations from the mean at which normal and log-normal distributions of diameters are cut off.
+/// With a larger number, a few very large grains would determine the width of the lattice from which the grains rain.
 const CUT: f64 = 2.5;
-/// Allowed forms of a distribution, for error messages.
+/// Description of the allowed forms of a distribution of diameters, for error messages.
 const FORM: &str = "uniform:S (0 ≤ S ≤ 0.8), normal:S (0 < S ≤ 0.3), lognormal:S (0 < S ≤ 0.5), \
     bidisperse:RATIO,FRACTION (1 < RATIO ≤ 5, 0 < FRACTION < 1) or sieves:DIAMETER=FRACTION,… (2 to 50 sieves; \
     diameters > 0 that rise by at most a factor 20, mass fractions that rise from 0 to 1)";
@@ -42,14 +42,14 @@ enum Kind {
 }
 
 impl Default for Sizes {
-    /// The distribution of the diameters in the pile that is shipped with Slump.
+    /// Returns the distribution of the diameters in the pile that is shipped with Slump.
     fn default() -> Self {
         Self { kind: Kind::Uniform(0.2), text: "uniform:0.2".into() }
     }
 }
 
 impl Sizes {
-    /// Returns the largest diameter, in mean diameters.
+    /// Returns the largest diameter that the distribution can give, in mean diameters.
     pub(super) fn largest(&self) -> f64 {
         let largest = match &self.kind {
             Kind::Uniform(spread) => 1.0 + spread,
@@ -61,7 +61,7 @@ impl Sizes {
         largest / self.mean()
     }
 
-    /// Draws a random diameter, in mean diameters.
+    /// Draws a random diameter from the distribution, in mean diameters.
     pub(super) fn draw(&self, random: &mut Pcg64) -> f64 {
         let diameter = match &self.kind {
             Kind::Uniform(spread) => random.random_range(1.0 - spread..=1.0 + spread),
@@ -87,7 +87,8 @@ impl Sizes {
         diameter / self.mean()
     }
 
-    /// Returns the mean diameter of the distribution before it is scaled to the mean diameter of the scene.
+    /// Returns the mean of the diameters as given, before they are scaled so that their mean is the mean diameter of
+    /// the scene.
     fn mean(&self) -> f64 {
         match &self.kind {
             Kind::Uniform(_) | Kind::Normal(_) => 1.0,
@@ -118,8 +119,8 @@ fn cut_normal(random: &mut Pcg64) -> f64 {
     }
 }
 
-/// Returns the number of grains between the first and the last sieve, ∫ dM/D² over the passing mass M. The unit of
-/// mass is a disc of diameter 1.
+/// Returns the number of grains, ∫ dM/D², between the first and the last sieve, where M is the mass fraction that
+/// passes a sieve of diameter D. The unit of mass is a disc of diameter 1.
 fn count(sieves: &[[f64; 2]]) -> f64 {
     let count = |class: &[[f64; 2]]| (class[1][1] - class[0][1]) / (class[0][0] * class[1][0]);
     sieves.windows(2).map(count).sum()
@@ -132,7 +133,7 @@ impl fmt::Display for Sizes {
 }
 
 impl FromStr for Sizes {
-    /// The allowed forms of a distribution.
+    /// Description of the allowed forms of a distribution of diameters.
     type Err = &'static str;
 
     fn from_str(text: &str) -> Result<Self, &'static str> {

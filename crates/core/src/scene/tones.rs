@@ -1,8 +1,8 @@
-//! Grey levels of the grains of a pile.
+//! Grey levels with which pictures show the grains of a pile.
 
 use crate::world::Grain;
 
-/// Height of the layers with different grey levels, in diameters.
+/// Height of the layers of a pile that have different grey levels, in diameters.
 const LAYER_IN_DIAMETERS: f64 = 2.0;
 const LAYER_TONES: [u8; 2] = [222, 168];
 

@@ -51,7 +51,7 @@ words! {
     }
 }
 
-/// Warning that a run has failed in some way.
+/// Warning of a failure in a run: the kind of failure, its first step, and advice.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Alarm {
     /// Kind of failure.
@@ -154,7 +154,7 @@ pub(super) struct Watch {
 struct ContactEnergy {
     /// Work of all contacts since the start, J, except the work of moving walls and of bonds.
     work: f64,
-    /// Smallest value of `work` so far, J.
+    /// Smallest value of `work` so far, J. Contacts have created `work` minus this value.
     least_work: f64,
     /// Largest kinetic energy so far, J.
     largest_kinetic_energy: f64,

@@ -144,8 +144,9 @@ impl Simulation {
     /// Adds a grain with the given velocity (m/s) at the end of the list of grains.
     ///
     /// # Errors
-    /// Fails if there is no room for the grain, if its size does not suit the scene, or if a number is not finite. The
-    /// simulation is then unchanged.
+    /// Fails if there is no room for the grain, if its size is outside [`NEW_GRAIN_DIAMETERS`] or does not suit the
+    /// settings, if its position or velocity is not finite, or if its velocity is not along x in a scene with one axis.
+    /// The simulation is then unchanged.
     pub fn add_grain(&mut self, disc: Disc, velocity: DVec2) -> Result<()> {
         let Disc { mut position, radius } = disc;
         let world = &self.state.world;

@@ -34,7 +34,8 @@ pub struct ForceSums {
     come_to: Option<(u64, usize)>,
     /// Total duration of the summed steps, s.
     pub secs: f64,
-    /// Sums for each pair of bodies with an impulse in at least one step, sorted by grain i and then by body j.
+    /// Sums for each pair of bodies with an impulse other than 0 in at least one step, sorted by grain i and then by
+    /// body j.
     pub pairs: Vec<PairSum>,
     /// Stress sum of each grain, J·s: Σ P ⊗ ℓ over its contacts, with the impulse P and the vector ℓ from the contact
     /// point to the centre of the grain.

@@ -41,7 +41,7 @@ pub(super) struct Losses {
     /// True in a scene with one axis, which has no slump.
     on_line: bool,
     /// True after all grains have been examined once. A grain that is inside a wall in this first examination was
-    /// placed there.
+    /// placed there, and has not passed through the wall.
     begun: bool,
     /// Two points of each wall at the last examination, m. They show how the wall has moved since, so that paths can be
     /// measured relative to it. Empty unless the scene has motions or the user drags a wall.
@@ -60,7 +60,7 @@ struct Edges {
     bottom: Option<(DVec2, f64)>,
 }
 
-/// Losses found in one examination of all grains: which kinds of loss occurred.
+/// Result of one examination of all grains: the kinds of loss that have occurred since the previous examination.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct NewLosses {
     /// True if a grain went through a wall.

@@ -39,7 +39,7 @@ pub struct Moment {
     pub grains: Vec<GrainState>,
     /// The contacts of the last step, sorted by the index of the grain and then by the other body.
     pub contacts: Vec<ContactState>,
-    /// Boundaries and fixed discs at their present places.
+    /// Boundaries, fixed discs and other parts of a picture that are not grains, at their positions at this time.
     pub surroundings: Arc<Surroundings>,
     /// Identifier of the first fixed disc. Fixed discs have the identifiers after those of the grains of the initial
     /// state.
@@ -251,7 +251,7 @@ impl<'a> Laws<'a> {
         }
     }
 
-    /// True if bonds can pull, or if the contact law has no bonds.
+    /// True unless the contact law has bonds that cannot pull, because the Bond number is 0 or cohesion is off.
     fn has_strength(&self) -> bool {
         !self.has_bonds || (self.has_cohesion && self.parameters.bond > 0.0)
     }

@@ -211,7 +211,7 @@ impl Simulation {
         // A state whose kinetic energy overflows counts as not finite, too, because nothing can be measured of it.
         let finite = self.state.is_finite() && self.observables.kinetic_energy.is_finite();
         let Self { state, settings, watch, observables, .. } = self;
-        // Not for `dem`, whose springs return stored energy, nor for `avbd`, whose works do not balance its energy.
+        // Does not count `dem`, whose springs return stored energy, nor `avbd`, whose works do not balance its energy.
         let is_balanced = |stepper| !matches!(stepper, Stepper::Dem | Stepper::Avbd);
         if finite && self.last_stepper.is_some_and(is_balanced) {
             watch.count_work(state, settings, observables);
@@ -252,7 +252,7 @@ impl Simulation {
         with_model!(parts, M => visitor.visit::<M>(&mut M::slot(&mut slots).problem, &contacts))
     }
 
-    /// Prepares the next step in a copy. Returns the compiled model of its physics, the memory that contains its contact
+    /// Prepares the next step in a copy. Returns the compiled model of its physics, the memory with its contact
     /// problem, and its contacts. This function is not generic, so that it is compiled only in this crate.
     fn prepared(&self) -> (ModelParts, Slots, ContactList) {
         let Self { mut state, settings, mut slots, mut memory, .. } = self.clone();

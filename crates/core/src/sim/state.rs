@@ -112,13 +112,14 @@ impl State {
         });
     }
 
-    /// Returns the speed of the fastest grain or wall, m/s, in a step that has begun.
+    /// Returns the speed of the fastest grain or wall in the present step, m/s. Call this after [`Self::begin`], which
+    /// sets the velocities of walls.
     pub(crate) fn fastest(&self) -> f64 {
         self.fastest_with(self.walls.fastest(&self.world, &self.candidates))
     }
 
-    /// Returns the speed of the fastest grain or wall, m/s, in the next step if that step has the length
-    /// `time_step_secs`.
+    /// Returns the speed of the fastest grain or wall in the next step, m/s, if that step has the length
+    /// `time_step_secs`, s.
     pub(crate) fn fastest_in(&self, time_step_secs: f64) -> f64 {
         self.fastest_with(Walls::fastest_in(&self.world, &self.candidates, time_step_secs))
     }

@@ -17,9 +17,9 @@ pub struct StepResult {
     pub report: SolveReport,
     /// Residual of the step, numbers of contacts, and works of the contact forces.
     pub measures: Measures,
-    /// Work of gravity, of body forces and of the spring with which the user pulls a grain, J.
+    /// Work of gravity, of body forces and of the spring with which the user pulls a grain, in the step, J.
     pub gravity_work: f64,
-    /// Work of the forces that drive walls, minus the loss in the walls' damping, J.
+    /// Work in the step of the forces that drive walls, minus the loss in the walls' damping, J.
     pub drive_work: f64,
     /// Energies of bonds; `None` under a contact law without bonds.
     pub bonds: Option<BondEnergies>,

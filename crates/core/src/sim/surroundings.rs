@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::world::{Boundary, Disc, Gravity, Material, Periodic, World};
 
-/// All parts of a picture other than grains: fixed shapes and their motions, periodic borders, gravity and materials.
+/// All parts of a picture other than grains: fixed discs and boundaries with their motions, periodic borders, gravity
+/// and materials.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Surroundings {

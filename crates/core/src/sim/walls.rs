@@ -21,9 +21,9 @@
 //!
 //! > V_n = n·V(c) − u tan ½α.
 //!
-//! This V_n is the velocity of q along n if the grain stays at its place. If the grain moves, the error is as large as
-//! at a fixed disc that does not turn, because normals stay as they were at the beginning of the step. A surface speed
-//! also moves the grain around the disc. With the disc's radius ρ, the distance L = |c − q|, the angle β = (ω + surface
+//! This V_n is the velocity of q along n if the grain does not move. If the grain moves, the error is as large as at a
+//! fixed disc that does not turn, because normals stay as they were at the beginning of the step. A surface speed also
+//! moves the grain around the disc. With the disc's radius ρ, the distance L = |c − q|, the angle β = (ω + surface
 //! speed/ρ)Δt, and the sliding speed relative to q, w = u + L sin α/Δt,
 //!
 //! > V_n = n·V(q) − w tan ½β = n·V(c) − u tan ½β − (tan ½β − tan ½α) L sin α/Δt.
@@ -161,7 +161,8 @@ impl Walls {
         self.secs /= f64::from(substeps);
     }
 
-    /// Returns the speed of the fastest wall, m/s. The speed of a turning half-space is taken at the farthest grain.
+    /// Returns the speed of the fastest wall, m/s. A half-space is endless; if it turns, its speed at the farthest
+    /// grain counts.
     pub(crate) fn fastest(&self, world: &World, candidates: &Candidates) -> f64 {
         let turns = |number: u32| {
             self.moving.get(number as usize).map(|wall| wall.velocity).filter(|it| it.spin != 0.0)

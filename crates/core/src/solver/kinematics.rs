@@ -36,7 +36,7 @@ use crate::world::World;
 /// friction and rolling resistance and grains rotate. All of this is fixed at compile time, so a simpler variant has no
 /// branches for the mechanics that it leaves out.
 ///
-/// Cohesion and the friction cone are not part of the model, because they only change numbers of the contact law
+/// Cohesion and the friction cone are not part of the model, because they change only coefficients of the contact law
 /// (`contact::law`).
 pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     /// The velocity of a body in the form that the solver stores; with several SIMD lanes, the velocities of one body
@@ -65,7 +65,7 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     /// is ½: ½Iω² = ½(m/2)s².
     const INERTIA_OVER_MASS: [f64; 3];
 
-    /// Returns the velocity of grain `index` of a world.
+    /// Returns the velocity of grain `index` of a world (the grains and boundaries of a scene).
     fn body(world: &World, index: usize) -> Self::Body<f64>;
     /// Writes a body's velocity back to grain `index` of a world.
     fn store(body: &Self::Body<f64>, world: &mut World, index: usize);

@@ -85,10 +85,11 @@ impl MethodOrder {
     }
 }
 
-/// Text that describes the contact laws at a zero of the natural map, the measure of error that all methods share.
+/// Text that names the contact laws that impulses satisfy at a zero of the natural map, the measure of error of all
+/// methods.
 const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
-/// Text that describes the contact laws at a fixed point of an iteration that recomputes the friction bounds from its
-/// own impulses.
+/// Text that names the contact laws that impulses satisfy at a fixed point of an iteration that recomputes the friction
+/// bounds from its own impulses.
 const BOUND_BY_BOUND: &str = "the same, the bound of friction taken anew every iteration";
 
 /// Returns the properties of a method that supports periodic borders that shear and pairs of materials with their own
@@ -115,7 +116,7 @@ const fn known(
     }
 }
 
-/// The properties of all methods, in the order of [`Method`], in which they are also shown.
+/// The properties of all methods, in the order of [`Method`], which is also the order in which the program lists them.
 pub const METHODS: [MethodInfo; Method::ALL.len()] = {
     use MethodOrder::{AllAtOnce, Always, OfSettings};
     [

@@ -76,7 +76,7 @@ pub(crate) fn cone_of(physics: Physics, parameters: &Parameters) -> FrictionCone
 /// The contact problem of a scene's present step under one model, and the memory of the methods that solve it.
 #[derive(Clone, Debug, Default)]
 pub struct Slot<M: Model> {
-    /// The contact problem.
+    /// The contact problem, including its impulses and velocities.
     pub problem: StepProblem<M>,
     /// Work memory for a smaller problem that has some of the contacts of `problem` and is solved separately.
     pub part: StepProblem<M>,
@@ -95,9 +95,9 @@ pub struct Slots {
     sheared_plane: Slot<ShearedPlane>,
 }
 
-/// A model that has its own [`Slot`] in [`Slots`].
+/// A model whose contact problem and work memory are stored in [`Slots`].
 pub trait Slotted: Model {
-    /// Returns the slot of this model.
+    /// Returns the contact problem and the work memory of this model.
     fn slot(slots: &mut Slots) -> &mut Slot<Self>;
 }
 

@@ -134,8 +134,8 @@ settings! {
     }
 }
 
-/// Returns true if a setting has its default value. Settings that are newer than the first scene files are written to a
-/// file only if they differ from their defaults.
+/// Returns true if a setting has its default value. Settings that were added after the first version of scene files are
+/// written to a file only if they differ from their defaults.
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }

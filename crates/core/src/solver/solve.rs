@@ -1,4 +1,4 @@
-//! Solves the contact problem of a step.
+//! Solves the contact problem of a step with the method that the settings name.
 
 use super::kinematics::Model;
 use super::methods::{Memory, SolveReport, solve_by_method};

@@ -1,5 +1,5 @@
-//! Shapes that grains cannot move: their geometry, motion and outline. `contact::features` computes how a disc
-//! touches these shapes.
+//! Bodies that are not grains: fixed discs, walls and other boundaries, with their geometry, outline and own motion
+//! (pistons). `contact::features` computes how a disc touches boundaries.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::motion::{Carry, RigidVelocity, within};
 use crate::number::Parts;
 
-/// A disc that grains cannot move.
+/// Position and radius of a disc. As a body of a world it is a fixed disc: it is at rest, or has a prescribed or
+/// force-driven motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Disc {
@@ -17,25 +18,26 @@ pub struct Disc {
     pub radius: f64,
 }
 
-/// A shape, other than a disc, that grains cannot move. All lengths are in m.
+/// A wall or another shape, other than a disc, that is at rest or has a prescribed or force-driven motion. All lengths
+/// are in m.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "shape", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Boundary {
     /// A half-space: all points p with (p − point)·normal < 0.
     HalfSpace {
-        /// A point of the surface.
+        /// A point of the surface of the half-space.
         point: DVec2,
         /// Normal that points out of the solid. It need not have length 1.
         normal: DVec2,
     },
     /// A half-space that moves along its normal with a given speed and then stops. Forces of grains do not slow it
-    /// down. It is an abbreviation for a half-space with a straight [`Motion`](super::Motion).
+    /// down. It is a short form for a half-space with a straight [`Motion`](super::Motion).
     Piston {
-        /// A point of the surface.
+        /// A point of the surface of the piston.
         point: DVec2,
         /// Normal that points out of the solid. It need not have length 1.
         normal: DVec2,
-        /// Speed, m/s; positive towards the grains.
+        /// Speed of the piston, m/s; positive towards the grains.
         speed: f64,
         /// Remaining distance before the piston stops, m.
         travel: f64,
@@ -49,20 +51,20 @@ pub enum Boundary {
     },
     /// A chain of thin walls, end to end. Grains can touch it from both sides.
     Polyline {
-        /// The corners in order, at least two points.
+        /// The corners of the chain in order, at least two points.
         points: Vec<DVec2>,
     },
     /// A solid convex polygon.
     ConvexPolygon {
-        /// At least three corners, in anticlockwise order.
+        /// The corners of the polygon, at least three, in anticlockwise order.
         points: Vec<DVec2>,
     },
 }
 
-/// A part of the outline of a boundary, for drawing. All lengths are in m.
+/// A line or line segment of the outline of a boundary, for drawing. All lengths are in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Edge {
-    /// An infinite line.
+    /// An infinite line, the surface of a half-space.
     Endless {
         /// A point of the line.
         point: DVec2,
@@ -77,7 +79,7 @@ pub enum Edge {
 
 // The matches below have no `_` arm, so that a new shape must be considered in each.
 impl Boundary {
-    /// Returns the parts of the outline.
+    /// Returns the lines and line segments of the outline of this boundary, for drawing.
     pub fn edges(&self) -> Vec<Edge> {
         match self {
             Self::HalfSpace { point, normal } | Self::Piston { point, normal, .. } => {
@@ -94,7 +96,7 @@ impl Boundary {
         }
     }
 
-    /// Returns the name of the shape in scene files.
+    /// Returns the name of this kind of shape in scene files.
     pub const fn word(&self) -> &'static str {
         match self {
             Self::HalfSpace { .. } => "half-space",
@@ -105,7 +107,8 @@ impl Boundary {
         }
     }
 
-    /// True if the surface is perpendicular to the x axis, which scenes on a line require.
+    /// True if the shape is a half-space whose surface is perpendicular to the x axis. Scenes on a line allow only
+    /// such boundaries.
     pub fn is_across_line(&self) -> bool {
         match self {
             Self::HalfSpace { normal, .. } | Self::Piston { normal, .. } => normal.y == 0.0,
@@ -118,8 +121,8 @@ impl Boundary {
         matches!(self, Self::Piston { .. })
     }
 
-    /// Returns the mean velocity, in the next `secs` seconds, of a shape that moves by itself. `None` for other
-    /// shapes.
+    /// Returns the mean velocity, in the next `secs` seconds, of a shape that moves without a
+    /// [`Motion`](super::Motion) in the scene, as a piston does. `None` for other shapes.
     pub(crate) fn velocity_in(&self, secs: f64) -> Option<RigidVelocity> {
         match *self {
             Self::Piston { normal, speed, travel, .. } => {
@@ -153,7 +156,8 @@ impl Boundary {
         }
     }
 
-    /// True if a motion in `direction` is along the surface normal, so that the surface does not rub against grains.
+    /// True if a displacement in `direction` moves the surface only along its normal, so that the surface does not rub
+    /// against grains.
     pub(crate) fn is_pushed_along(&self, direction: DVec2) -> bool {
         match self {
             Self::HalfSpace { normal, .. } | Self::Piston { normal, .. } => {
@@ -163,7 +167,7 @@ impl Boundary {
         }
     }
 
-    /// True if the surface is an infinite line.
+    /// True if the shape is a half-space, whose surface is an infinite line.
     pub(crate) fn is_half_space(&self) -> bool {
         matches!(self, Self::HalfSpace { .. } | Self::Piston { .. })
     }

@@ -1,4 +1,4 @@
-//! The grains: discs that move.
+//! The grains: discs that move under gravity and contact forces.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::materials::{Material, number_of};
 use crate::error::{self, Error, Result};
 
-/// One disc of a scene. The fields are public, and their values are checked together with the scene.
+/// One grain (a moving disc) of a scene. The fields are public, and their values are checked together with the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Grain {
@@ -20,7 +20,7 @@ pub struct Grain {
     /// Angular velocity, rad/s, positive anticlockwise.
     #[serde(default)]
     pub angular_velocity: f64,
-    /// True if gravity acts on this disc.
+    /// True if gravity accelerates this disc.
     #[serde(default = "yes")]
     pub feels_gravity: bool,
     /// Grey level of the disc in pictures in the style of the paper: 0 is black, 255 is white.
@@ -43,7 +43,7 @@ fn light_grey() -> u8 {
 }
 
 impl Grain {
-    /// Grey level of a grain whose scene gives no grey level.
+    /// Grey level of a grain for which the scene does not give a grey level: 0 is black, 255 is white.
     pub(crate) const DEFAULT_TONE: u8 = 205;
 
     /// Returns a disc at rest on which gravity acts. `position` and `radius` in m.
@@ -60,9 +60,9 @@ impl Grain {
         }
     }
 
-    /// Returns the index of the material and the mass (kg) of the disc. The mass is the value given for the disc, or
-    /// else the area πr² times the areal density (kg/m²). The areal density is that of the material if the material
-    /// has one, and otherwise `density`.
+    /// Returns the index of the material and the mass (kg) of the disc. The mass is that given for the disc. If none
+    /// is given, it is the area πr² (r: radius) times the areal density (kg/m²). The areal density is that of the
+    /// material if the material has one, and otherwise `density`.
     pub(crate) fn material_and_mass(&self, density: f64, materials: &[Material]) -> (usize, f64) {
         let number = self.material.as_ref().and_then(|name| number_of(materials, name));
         let number = number.unwrap_or(0);
@@ -94,7 +94,7 @@ pub struct Grains {
     pub angular_velocities: Vec<f64>,
     /// Radii, m.
     pub radii: Vec<f64>,
-    /// Masses, kg. Default: areal density times the area πr² (r: radius).
+    /// Masses, kg. A grain without a given mass has the areal density times the area πr² (r: radius).
     pub masses: Vec<f64>,
     /// For each disc, true if gravity acts on it.
     pub feels_gravity: Vec<bool>,
@@ -103,11 +103,11 @@ pub struct Grains {
     /// Index of the material of each disc. Empty in a world without materials.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<u8>,
-    /// For each disc, the displacement that periodic borders have subtracted from its centre since the start, m. The
-    /// centre plus this displacement is the unwrapped position.
+    /// For each disc, the total displacement, m, by which it has been moved back into the periodic cell since the
+    /// start. The centre plus this displacement is the position without such jumps.
     pub brought_back: Vec<DVec2>,
-    /// Permanent number of each grain: its index in the scene. Grains that are added later have numbers above the
-    /// numbers of all other bodies.
+    /// Permanent number of each grain, which stays the same if other grains are removed: the index of the grain in the
+    /// scene. Grains that are added later have numbers above the numbers of all other bodies.
     pub ids: Vec<u32>,
     /// Number of grains at the start.
     pub count_at_start: u32,
@@ -116,13 +116,14 @@ pub struct Grains {
 }
 
 impl Grains {
-    /// Builds the lists from `grains`. `areal_density` (kg/m²) determines the masses that are not given.
+    /// Builds the lists from `grains`. A grain without a given mass gets the mass `areal_density` (kg/m²) times its
+    /// area.
     pub fn new(grains: &[Grain], areal_density: f64) -> Self {
         Self::of_materials(grains, areal_density, &[])
     }
 
-    /// Builds the lists from `grains` with these materials. `density` (kg/m²) is the areal density of materials that
-    /// do not have a density.
+    /// Builds the lists from `grains`, which consist of `materials`. `density` (kg/m²) is the areal density of
+    /// materials that do not give their own.
     pub(crate) fn of_materials(grains: &[Grain], density: f64, materials: &[Material]) -> Self {
         let mut lists = Self::default();
         let ids = grains.iter().zip(0..);
@@ -131,8 +132,8 @@ impl Grains {
         lists
     }
 
-    /// Appends a grain with the permanent number `id`. `density` (kg/m²) is the areal density if its material does
-    /// not have a density.
+    /// Appends a grain with the permanent number `id`. `density` (kg/m²) is the areal density of materials that do not
+    /// give their own.
     pub(crate) fn push(&mut self, grain: &Grain, density: f64, materials: &[Material], id: u32) {
         let (material, mass) = grain.material_and_mass(density, materials);
         if !materials.is_empty() {
@@ -174,7 +175,7 @@ impl Grains {
         }
     }
 
-    /// Removes the grain at `index`. The grains after it get an index that is smaller by one.
+    /// Removes the grain at `index`. The indices of the grains after it decrease by one.
     pub(crate) fn remove(&mut self, index: usize) {
         self.positions.remove(index);
         self.velocities.remove(index);
@@ -206,12 +207,12 @@ impl Grains {
         self.positions.is_empty()
     }
 
-    /// Returns the moment of inertia of a solid disc, ½mr², kg·m² (m: mass, r: radius).
+    /// Returns the moment of inertia of the grain `index`, kg·m²: ½mr² for a solid disc (m: mass, r: radius).
     pub fn inertia(&self, index: usize) -> f64 {
         0.5 * self.masses[index] * self.radii[index] * self.radii[index]
     }
 
-    /// Returns the present data of the grain `index` in the form of a scene, without material and mass.
+    /// Returns the present data of the grain `index` as a disc of a scene, without material and mass.
     pub fn grain(&self, index: usize) -> Grain {
         Grain {
             position: self.positions[index],

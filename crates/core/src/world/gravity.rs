@@ -1,4 +1,5 @@
-//! The gravity of a scene (the acceleration field of the grains), and its rotation in time, as in a tilted box.
+//! Gravity in a scene (the acceleration field of the grains), and the rotation of its direction over time, as in a
+//! tilted box.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -9,17 +10,17 @@ use crate::world::motion::{at_time, direction};
 use crate::world::motion_check::check_table;
 use crate::world::{Physics, World};
 
-/// Gravity: an acceleration field. Single grains can ignore it
-/// ([`Grain::feels_gravity`](super::Grain::feels_gravity)).
+/// Gravity: an acceleration field for all grains, except those for which
+/// [`Grain::feels_gravity`](super::Grain::feels_gravity) is false.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Gravity {
-    /// The same acceleration everywhere.
+    /// Uniform gravity: the same acceleration everywhere.
     Uniform {
         /// Acceleration, m/s².
         acceleration: DVec2,
     },
-    /// Acceleration of constant magnitude towards a point (paper §4). It is zero at the point itself.
+    /// Attraction: an acceleration of constant magnitude towards a point (paper §4). It is zero at the point itself.
     Attraction {
         /// The centre of attraction, m.
         centre: DVec2,
@@ -29,7 +30,7 @@ pub enum Gravity {
 }
 
 impl Gravity {
-    /// Returns the acceleration at a position (m), m/s².
+    /// Returns the acceleration by gravity at a position (m), m/s².
     pub fn acceleration(&self, position: DVec2) -> DVec2 {
         match *self {
             Self::Uniform { acceleration } => acceleration,
@@ -39,7 +40,7 @@ impl Gravity {
         }
     }
 
-    /// Returns the x component of the acceleration, m/s², in a scene on a line (x axis only).
+    /// Returns the x component of the acceleration by gravity, m/s², at `x` (m) in a scene on a line (x axis only).
     pub(crate) fn acceleration_on_line(&self, x: f64) -> f64 {
         match *self {
             Self::Uniform { acceleration } => acceleration.x,
@@ -50,7 +51,7 @@ impl Gravity {
         }
     }
 
-    /// Returns the potential energy per mass at a position (m), J/kg.
+    /// Returns the potential energy per mass in this gravity at a position (m), J/kg.
     pub(crate) fn potential(&self, position: DVec2) -> f64 {
         match *self {
             Self::Uniform { acceleration } => -acceleration.dot(position),
@@ -58,7 +59,7 @@ impl Gravity {
         }
     }
 
-    /// Magnitude g of the acceleration, m/s². The Bond number refers to it.
+    /// Magnitude g of the acceleration by gravity, m/s². The Bond number refers to it.
     pub fn magnitude(&self) -> f64 {
         match *self {
             Self::Uniform { acceleration } => acceleration.length(),
@@ -67,27 +68,29 @@ impl Gravity {
     }
 }
 
-/// Rotation of uniform gravity over time. At the angle 0 gravity has the direction given in the scene.
+/// Rotation of the direction of uniform gravity over time. At the angle 0 gravity has the direction that the scene
+/// gives.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GravityTurn {
-    /// The angle of rotation over time.
+    /// Angle of rotation of gravity as a function of time.
     pub course: TurnCourse,
-    /// Time since the rotation began, s.
+    /// Time since the rotation of gravity began, s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub elapsed_secs: f64,
 }
 
-/// An angle over time, positive anticlockwise.
+/// Angle of rotation of gravity as a function of time, positive anticlockwise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum TurnCourse {
-    /// Rotation at a constant rate.
+    /// Rotation of gravity at constant angular velocity.
     Rate {
-        /// Angular velocity, rad/s.
+        /// Angular velocity of the direction of gravity, rad/s.
         rate: f64,
     },
-    /// Angles from a table, linear between its rows. The angle is constant before the first and after the last row.
+    /// Angle of gravity from a table of times and angles, linear between its rows. The angle is constant before the
+    /// first and after the last row.
     Table {
         /// Times in increasing order, s.
         times_secs: Vec<f64>,
@@ -96,22 +99,23 @@ pub enum TurnCourse {
     },
 }
 
-/// Gravity of a world whose direction changes. [`World::gravity`](super::World::gravity) is its value in the last
-/// step.
+/// Uniform gravity whose direction can change, by a rotation over time and by a setting.
+/// [`World::gravity`](super::World::gravity) is its value in the last step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TurningGravity {
-    /// The acceleration at an angle of 0, m/s², as given in the scene.
+    /// Acceleration by gravity at an angle of 0, m/s², as the scene gives it.
     pub listed: DVec2,
-    /// Rotation over time, starting from the direction of `listed`.
+    /// Rotation of gravity over time, which starts from the direction of `listed`.
     pub turn: GravityTurn,
-    /// Additional angle by which gravity is turned, rad. It stays constant until a setting changes it.
+    /// Angle by which a setting turns gravity, rad, in addition to the rotation over time. It stays constant until the
+    /// setting changes.
     pub tilt: f64,
 }
 
 impl TurningGravity {
-    /// Creates turning gravity from `gravity` and `turn`. Returns `None` without `turn`, or if `gravity` is not
-    /// uniform.
+    /// Combines uniform gravity with its rotation `turn` over time. Returns `None` without `turn`, or if `gravity` is
+    /// not uniform.
     pub(crate) fn of(gravity: Gravity, turn: Option<&GravityTurn>) -> Option<Self> {
         match gravity {
             Gravity::Uniform { acceleration } => {
@@ -121,8 +125,8 @@ impl TurningGravity {
         }
     }
 
-    /// Returns the gravity for the next `secs` seconds. The angle is taken at the middle of this time, so the error
-    /// of the impulse of one step is of order Δt³ (Δt: time step).
+    /// Returns gravity for a step that covers the next `secs` seconds. The angle is taken at the middle of the step,
+    /// so the error of the impulse of one step is of order Δt³ (Δt: time step).
     pub(crate) fn in_next(&self, secs: f64) -> Gravity {
         let angle = self.turn.angle(self.turn.elapsed_secs + 0.5 * secs) + self.tilt;
         Gravity::Uniform { acceleration: direction(angle).rotate(self.listed) }
@@ -133,7 +137,7 @@ impl GravityTurn {
     pub(super) const NONE: Self =
         Self { course: TurnCourse::Rate { rate: 0.0 }, elapsed_secs: 0.0 };
 
-    /// True if gravity does not turn by itself (its rotation rate is 0).
+    /// True if gravity does not rotate over time (the rotation rate is 0).
     pub fn is_none(&self) -> bool {
         self.course == Self::NONE.course
     }
@@ -169,8 +173,8 @@ impl GravityTurn {
 }
 
 impl World {
-    /// Tilts uniform gravity by an angle (rad, positive anticlockwise), in addition to its rotation over time. The
-    /// angle is measured from the direction given in the scene.
+    /// Sets the angle (rad, positive anticlockwise) by which uniform gravity is turned, in addition to its
+    /// rotation over time. The angle is measured from the direction that the scene gives.
     pub(crate) fn tilt(&mut self, angle: f64) {
         if angle != 0.0
             && self.gravity_turn.is_none()
@@ -187,8 +191,9 @@ impl World {
         }
     }
 
-    /// Returns the direction, as a unit vector, of the gravity given in the scene. Grains that leave the scene in
-    /// this direction count as lost. `None` if gravity turns by itself, is not uniform, or is zero.
+    /// Returns the downward direction, as a unit vector: the direction of the gravity that the scene gives. Grains
+    /// that move far away in this direction count as having left the scene. `None` if gravity rotates over time, is
+    /// not uniform, or is zero.
     pub(crate) fn listed_down(&self) -> Option<DVec2> {
         let listed = match (&self.gravity_turn, self.gravity) {
             (Some(turning), _) if turning.turn.is_none() => turning.listed,

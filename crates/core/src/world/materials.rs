@@ -5,17 +5,19 @@ use serde::{Deserialize, Serialize};
 use super::{Parameters, Physics};
 use crate::error::{self, Error, Result};
 
-/// Largest allowed number of materials. The index of a material is stored in one byte per grain.
+/// Largest allowed number of materials. It must be below 256, because the index of a material is stored in one byte
+/// per grain.
 const MOST_MATERIALS: usize = 100;
 
-/// A material of a scene. Grains, fixed discs and boundaries for which no material is given consist of the first
+/// A material of a scene. If no material is given for a grain, fixed disc or boundary, the body consists of the first
 /// material.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
     /// Name of the material.
     pub name: String,
-    /// Areal density of the grains of this material, kg/m². Default: the areal density of the scene.
+    /// Areal density of the grains of this material, kg/m². If it is missing, they have the areal density of the
+    /// scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub areal_density: Option<f64>,
     /// Indices of the boundaries that consist of this material.
@@ -75,8 +77,9 @@ pub(crate) struct PairNumbers {
 }
 
 impl PairNumbers {
-    /// Returns the coefficients of `pair`. Coefficients that the pair does not give are taken from the parameters.
-    /// Friction, rolling friction and cohesion are 0 if `physics` excludes friction, rotation or cohesion.
+    /// Returns the coefficients of the contact law `pair`. A coefficient that this law does not give is taken from
+    /// `parameters`. Friction is 0 if `physics` excludes friction, rolling friction is 0 if it excludes rotation, and
+    /// cohesion is 0 if it excludes cohesion.
     pub(crate) fn new(
         pair: Option<&MaterialPair>,
         parameters: &Parameters,
@@ -103,13 +106,13 @@ impl PairNumbers {
     }
 }
 
-/// Returns the index of the material with this name.
+/// Returns the index of the material with this name. `None` if there is no such material.
 pub(super) fn number_of(materials: &[Material], name: &str) -> Option<usize> {
     materials.iter().position(|material| material.name == name)
 }
 
-/// Returns the index of the material of each of `count` bodies: of the boundaries or of the fixed discs, depending on
-/// which list of a material `listed` returns. Bodies that no material lists have the index 0.
+/// Returns, for each of `count` bodies, the index of its material. `listed` selects from a material the list of its
+/// boundaries or of its fixed discs. Bodies that no material lists have the index 0.
 pub fn materials_of(
     materials: &[Material],
     listed: fn(&Material) -> &Vec<usize>,
@@ -122,8 +125,8 @@ pub fn materials_of(
     numbers
 }
 
-/// Checks that the scene lists the material that a body or a pair names. `field` returns the name of the setting in
-/// error messages.
+/// Checks that a material with the name `name`, which a grain or a contact law uses, exists. `field` returns the name
+/// of the setting for error messages.
 pub(crate) fn check_name(
     field: impl FnOnce() -> String,
     name: &str,
@@ -140,7 +143,8 @@ pub(crate) fn check_name(
     Err(Error::value(field(), name, allowed))
 }
 
-/// Checks the materials and the pairs of materials of a world with this many boundaries and fixed discs.
+/// Checks the materials of a world with this many boundaries and fixed discs, and the contact laws of pairs of
+/// materials.
 pub(super) fn check_materials(
     materials: &[Material],
     pairs: &[MaterialPair],
@@ -173,8 +177,8 @@ pub(super) fn check_materials(
     Ok(())
 }
 
-/// Checks that each body that a material lists is one of the `count` existing bodies, and that no body is listed
-/// twice.
+/// Checks that each boundary or fixed disc that a material lists is one of the `count` existing ones, and that none is
+/// listed twice.
 fn check_bodies(
     list: &str,
     materials: &[Material],
@@ -194,7 +198,7 @@ fn check_bodies(
 }
 
 impl MaterialPair {
-    /// True if this is the pair of these two materials, in either order.
+    /// True if this is the contact law between the materials with these two names, in either order.
     pub(crate) fn is_between(&self, [one, other]: &[String; 2]) -> bool {
         let [first, second] = &self.between;
         (first, second) == (one, other) || (first, second) == (other, one)

@@ -30,33 +30,34 @@ use self::materials::check_materials;
 use self::motion_check::check_motions;
 use crate::error::{Error, Result};
 
-/// The world: all data that a step reads and moves. The fields are public, and a simulation checks them when it takes
-/// over the world. The data of a running simulation can be read but not changed.
+/// The world: the bodies and fields of a simulation that a step reads and moves. The fields are public, and a
+/// simulation checks them when it takes over the world. The data of a running simulation can be read but not changed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct World {
     /// The grains: discs that move.
     pub grains: Grains,
-    /// Discs that grains cannot move, such as the rough base of the pile.
+    /// Fixed discs, such as the rough base of the pile: they are at rest, or have a prescribed or force-driven motion.
     pub fixed_discs: Vec<Disc>,
-    /// Shapes, other than discs, that grains cannot move.
+    /// Walls and other shapes, other than discs, that are at rest or have a prescribed or force-driven motion.
     pub boundaries: Vec<Boundary>,
-    /// Motions of fixed discs and boundaries. Bodies without a motion stay at rest.
+    /// Prescribed or force-driven motions of fixed discs and boundaries. Bodies without a motion stay at rest.
     pub motions: Vec<Motion>,
     /// Gravity: the acceleration field of the grains.
     pub gravity: Gravity,
-    /// Rotation of gravity over time, if gravity turns. Then `gravity` is the value in the last step.
+    /// Rotation of the direction of gravity. `None` if gravity keeps its direction. Otherwise `gravity` is the value
+    /// in the last step.
     pub gravity_turn: Option<TurningGravity>,
-    /// Periodic borders, if there are any.
+    /// Periodic borders of the world. `None` if it has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<Periodic>,
-    /// The materials of grains, fixed discs and boundaries.
+    /// The materials of which grains, fixed discs and boundaries consist.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<Material>,
-    /// Contact laws of pairs of materials. Pairs that are not listed have the coefficients of the parameters.
+    /// Contact laws of pairs of materials. A pair that is not listed has the coefficients of the run's parameters.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pairs: Vec<MaterialPair>,
-    /// The mean diameter d, m. It is the unit of length for settings in diameters.
+    /// Mean diameter d that the scene gives, m: the unit of length for settings in diameters.
     pub mean_diameter: f64,
 }
 
@@ -77,7 +78,7 @@ impl World {
         }
     }
 
-    /// Checks the grains, materials and motions, the rotation of gravity, and the periodic borders.
+    /// Checks that the grains, materials, motions, rotation of gravity and periodic borders are valid.
     pub(crate) fn validate(&self, physics: Physics) -> Result<()> {
         self.grains.validate()?;
         if let Some(TurningGravity { turn, .. }) = &self.gravity_turn {
@@ -100,13 +101,13 @@ impl World {
         periodic.check(boundaries, fixed_discs, motions, gravity, physics, lengths)
     }
 
-    /// True if any fixed disc or boundary can move.
+    /// True if any fixed disc or boundary has a motion, prescribed or driven by a force.
     pub fn has_motion(&self) -> bool {
         !self.motions.is_empty() || self.boundaries.iter().any(Boundary::moves_by_itself)
     }
 
-    /// Returns the shortest vector between two points that is equivalent to their `offset` (m), possibly across
-    /// periodic borders.
+    /// Returns the shortest vector (m) from any periodic image of one point to another point, if `offset` is the
+    /// vector between the two points. Without periodic borders it is `offset` itself.
     #[inline(always)]
     pub(crate) fn shortest(&self, offset: DVec2) -> DVec2 {
         match self.periodic {
@@ -123,8 +124,8 @@ impl World {
         self.periodic.map_or(0.0, |periodic| periodic.speed_of_image(places[i] - places[j]))
     }
 
-    /// Moves all discs that have left the periodic cell back into it. Returns the work done on the grains, J, because
-    /// crossing a sheared border changes the velocity of a grain.
+    /// Moves all discs that have left the periodic cell back into it, on the opposite side. Returns the work done on
+    /// the grains, J, because crossing a sheared border changes the velocity of a grain.
     pub(crate) fn wrap(&mut self) -> f64 {
         let Some(periodic) = self.periodic else { return 0.0 };
         let mut work = 0.0;

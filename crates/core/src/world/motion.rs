@@ -1,4 +1,6 @@
-//! Prescribed and force-driven motion of fixed discs and boundaries, and surface speeds, as of a conveyor belt.
+//! Prescribed and force-driven motion of fixed discs and boundaries, and speeds of surfaces that move along
+//! themselves, as of a conveyor belt. Contact forces of grains act only on bodies that a force drives, not on
+//! prescribed motions.
 
 use std::f64::consts::TAU;
 
@@ -9,20 +11,21 @@ use crate::number::Parts;
 use crate::number::is_zero;
 use crate::world::Periodic;
 
-/// A motion: boundaries and fixed discs that move together as one rigid body.
+/// A motion of some boundaries and fixed discs, which move together as one rigid body.
 ///
 /// The motion stores its own progress: as the bodies move, `elapsed_secs` grows and the remaining `travel` of the
 /// course shrinks.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Motion {
-    /// Indices of the boundaries that move, counted from 0.
+    /// Indices of the boundaries that have this motion, counted from 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub boundaries: Vec<usize>,
-    /// Indices of the fixed discs that move, counted from 0.
+    /// Indices of the fixed discs that have this motion, counted from 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fixed_discs: Vec<usize>,
-    /// Prescribed course. Without a course only the drive, if there is one, moves the bodies.
+    /// Prescribed position of the bodies over time (course). Without a course only the drive, if there is one, moves
+    /// the bodies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub course: Option<MotionCourse>,
     /// Force or pressure that moves the bodies, in addition to the course.
@@ -35,12 +38,12 @@ pub struct Motion {
     /// Time since the motion began, s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub elapsed_secs: f64,
-    /// Angle of rotation since the motion began, rad, positive anticlockwise.
+    /// Angle by which the bodies have rotated since the motion began, rad, positive anticlockwise.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub turned: f64,
 }
 
-/// Prescribed course over time, relative to the positions given in the scene.
+/// Prescribed displacement or rotation of bodies over time, relative to the positions that the scene gives.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum MotionCourse {
@@ -50,7 +53,7 @@ pub enum MotionCourse {
         direction: DVec2,
         /// Speed along the given direction, m/s.
         speed: f64,
-        /// Remaining distance, m. Unlimited if it is missing.
+        /// Remaining distance until the motion stops, m. The motion does not stop if this is missing.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         travel: Option<f64>,
     },
@@ -60,7 +63,7 @@ pub enum MotionCourse {
         pivot: DVec2,
         /// Angular velocity, rad/s, positive anticlockwise.
         rate: f64,
-        /// Remaining angle, rad. Unlimited if it is missing.
+        /// Remaining angle until the rotation stops, rad. The rotation does not stop if this is missing.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         travel: Option<f64>,
     },
@@ -87,15 +90,15 @@ pub enum MotionCourse {
         #[serde(default, skip_serializing_if = "is_zero")]
         phase: f64,
     },
-    /// Displacements from a table, linear between its rows. The displacement is constant before the first and after
-    /// the last row.
+    /// Displacement from a table of times and displacements, linear between its rows. The displacement is constant
+    /// before the first and after the last row.
     Table {
         /// Times in increasing order, s.
         times_secs: Vec<f64>,
         /// Displacement at each time, m. Only the differences between displacements matter.
         offsets: Vec<DVec2>,
     },
-    /// Rotation about a pivot, with angles from a table, linear between its rows.
+    /// Rotation about a pivot, with angles from a table of times and angles, linear between its rows.
     AngleTable {
         /// Position of the pivot, m.
         pivot: DVec2,
@@ -107,16 +110,16 @@ pub enum MotionCourse {
 }
 
 impl Motion {
-    /// Returns the mean velocity that the course prescribes for the next `secs` seconds.
+    /// Returns the mean velocity of the bodies that the course prescribes for the next `secs` seconds.
     pub(crate) fn velocity_in(&self, secs: f64) -> RigidVelocity {
         let course = self.course.as_ref();
         course.map_or(RigidVelocity::NONE, |course| course.velocity_in(self.elapsed_secs, secs))
     }
 
-    /// Returns the velocity that the bodies have just before a step of `secs` seconds. A sine or a swing moves
-    /// smoothly, so for these courses it is the mean velocity over the `secs` seconds before the step. The velocity
-    /// of other courses changes only by jumps, and after a jump the wall must strike the grains with its new
-    /// velocity. So for these courses it is the velocity of the step itself.
+    /// Returns the velocity that the bodies have just before a step of `secs` seconds. If the course is a sine or a
+    /// swing, which are smooth, this is the mean velocity over the `secs` seconds before the step. Under other courses
+    /// the velocity changes only by jumps, and after a jump the wall must strike the grains with its new velocity. So
+    /// for these courses the mean velocity during the step is returned.
     pub(crate) fn velocity_before(&self, secs: f64) -> RigidVelocity {
         match &self.course {
             Some(course @ (MotionCourse::Sine { .. } | MotionCourse::Swing { .. })) => {
@@ -126,8 +129,8 @@ impl Motion {
         }
     }
 
-    /// Returns a vector of any length along which the bodies move in a step, or `None` if they do not move along a
-    /// line. `velocity` is the velocity of the step.
+    /// Returns a vector of any length along which the bodies move in a step with the velocity `velocity`. `None` if
+    /// they do not move along a line.
     pub(crate) fn direction(&self, velocity: &RigidVelocity) -> Option<DVec2> {
         match (&self.course, &self.drive) {
             (None, Some(drive)) => Some(drive.direction),
@@ -140,13 +143,13 @@ impl Motion {
         }
     }
 
-    /// True if the course turns the bodies about a pivot.
+    /// True if the prescribed course rotates the bodies about a pivot.
     pub(super) fn turns(&self) -> bool {
         self.course.as_ref().is_some_and(|course| course.pivot().is_some())
     }
 
-    /// True if a straight course or a drive moves the bodies along an axis. The index of the axis is 0 for x and 1
-    /// for y.
+    /// True if a prescribed translation or a drive moves the bodies in a direction with a component along an axis. The
+    /// index of the axis is 0 for x and 1 for y.
     pub(super) fn goes_along(&self, axis: usize) -> bool {
         self.drive.as_ref().is_some_and(|drive| drive.direction[axis] != 0.0)
             || match &self.course {
@@ -159,7 +162,8 @@ impl Motion {
             }
     }
 
-    /// Advances the stored progress by `secs` seconds, in which the bodies moved by the displacement `carry`.
+    /// Updates the stored progress of the motion (time, angle and remaining travel) after `secs` seconds, in which the
+    /// bodies moved by the displacement `carry`.
     pub(crate) fn advance(&mut self, secs: f64, carry: &Carry) {
         self.elapsed_secs += secs;
         self.turned += carry.angle;
@@ -177,7 +181,7 @@ impl Motion {
 }
 
 impl MotionCourse {
-    /// Returns the pivot of a course that turns, m. `None` for other courses.
+    /// Returns the pivot of a course that rotates the bodies, m. `None` for other courses.
     pub(super) fn pivot(&self) -> Option<DVec2> {
         match self {
             Self::Rotation { pivot, .. }
@@ -187,7 +191,8 @@ impl MotionCourse {
         }
     }
 
-    /// Returns the mean velocity during the `secs` seconds that follow the time `elapsed` (s).
+    /// Returns the mean velocity of the bodies during the `secs` seconds that follow the time `elapsed` (s) of the
+    /// course.
     fn velocity_in(&self, elapsed: f64, secs: f64) -> RigidVelocity {
         let times = [elapsed, elapsed + secs];
         match self {
@@ -217,13 +222,13 @@ impl MotionCourse {
     }
 }
 
-/// Returns the speed, reduced so that in `secs` seconds it covers at most the remaining travel `left`. The travel is
-/// in m for a speed in m/s, and in rad for a speed in rad/s.
+/// Returns the speed `speed`, reduced if necessary so that in `secs` seconds the body moves at most by the remaining
+/// travel `left`. The travel is in m for a speed in m/s, and in rad for a speed in rad/s.
 pub(super) fn within(speed: f64, left: Option<f64>, secs: f64) -> f64 {
     left.map_or(speed, |left| speed.signum() * speed.abs().min(left / secs))
 }
 
-/// Returns the unit vector at an angle (rad), with the same bits on every machine.
+/// Returns the unit vector at an angle (rad) from the x axis, with the same bits on every machine.
 pub(crate) fn direction(angle: f64) -> DVec2 {
     let (sin, cos) = libm::sincos(angle);
     DVec2::new(cos, sin)
@@ -237,7 +242,7 @@ fn sine_rate(frequency_hz: f64, phase: f64, times: [f64; 2], secs: f64) -> f64 {
 }
 
 /// Returns the value of a table at a time (s): linear between the rows, constant before the first and after the last
-/// row. The times increase, and there is at least one row.
+/// row. `times_secs` increases, and the table has at least one row.
 pub(super) fn at_time<T>(times_secs: &[f64], values: &[T], time: f64) -> T
 where
     T: Copy + std::ops::Add<Output = T> + std::ops::Sub<Output = T>,
@@ -260,21 +265,23 @@ where
 pub struct Drive {
     /// Direction in which the force acts. Its length does not matter.
     pub direction: DVec2,
-    /// Force along the direction of the drive, N.
+    /// Force on the bodies along the direction of the drive, N.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force: Option<f64>,
-    /// Pressure, N/m: force along the direction per metre of `width`. An alternative to `force`.
+    /// Pressure on the bodies, N/m: force along the direction of the drive per metre of `width`. An alternative to
+    /// `force`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure: Option<f64>,
-    /// Width on which the pressure acts, m. Default: the size of the periodic cell across the direction.
+    /// Width on which the pressure acts, m. Default: the size of the periodic cell perpendicular to the direction of
+    /// the drive.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub width: Option<f64>,
-    /// Total mass of the bodies of the motion, kg.
+    /// Total mass of the bodies that this drive moves, kg.
     pub mass: f64,
-    /// Damping force per speed, kg/s.
+    /// Damping coefficient of the driven bodies, kg/s: the force that opposes their motion, divided by their speed.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub damping: f64,
-    /// Speed along the direction of the drive, m/s.
+    /// Speed of the driven bodies along the direction of the drive, m/s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub speed: f64,
 }
@@ -285,15 +292,15 @@ impl Drive {
         self.direction.normalize_or_zero()
     }
 
-    /// Returns the force of the drive along its direction, N. If the drive has a pressure without a `width`, the
-    /// force depends on the periodic cell.
+    /// Returns the force of the drive along its direction, N. If a pressure is given without a `width`, the force
+    /// depends on the size of the periodic cell.
     pub fn force_in(&self, periodic: Option<Periodic>) -> f64 {
         let width = self.width.or_else(|| self.period_across(periodic));
         self.force.unwrap_or_else(|| self.pressure.unwrap_or(0.0) * width.unwrap_or(0.0))
     }
 
-    /// Returns the period of the cell perpendicular to the direction of the drive, m. `None` if the borders there are
-    /// not periodic or if the direction is not along the x or y axis.
+    /// Returns the size of the periodic cell perpendicular to the direction of the drive, m. `None` if the cell is not
+    /// periodic in this direction or if the drive is not along the x or y axis.
     pub(super) fn period_across(&self, periodic: Option<Periodic>) -> Option<f64> {
         let [width, height] = periodic?.periods();
         let DVec2 { x, y } = self.direction;
@@ -347,28 +354,29 @@ impl RigidVelocity {
         Self { spin, pivot, ..Self::NONE }
     }
 
-    /// Returns the velocity of the point of the body at `place`, m/s.
+    /// Returns the velocity, m/s, of the point of the rigid body at `place` (m).
     #[inline]
     pub(crate) fn at(&self, place: DVec2) -> DVec2 {
         if self.spin == 0.0 { self.velocity } else { self.spin * (place - self.pivot).perp() }
     }
 
-    /// Returns the mean velocity, m/s, in the next `secs` seconds, of the point c of the body that is now at `place`:
-    /// (R − 1)(c − p)/Δt, with the pivot p, the time Δt = `secs` and the rotation R during this time.
+    /// Returns the mean velocity, m/s, in the next `secs` seconds, of the point of the rigid body that is now at c =
+    /// `place`: (R − 1)(c − p)/Δt, with the pivot p, the time Δt = `secs` and the rotation R during this time.
     #[inline]
     pub(crate) fn mean_from(&self, place: DVec2, secs: f64) -> DVec2 {
         self.mean(place, secs, -1.0)
     }
 
-    /// Returns the mean velocity, m/s, in the last `secs` seconds, of the point c of the body that is now at `place`:
-    /// (1 − R⁻¹)(c − p)/Δt, with the pivot p, the time Δt = `secs` and the rotation R during this time.
+    /// Returns the mean velocity, m/s, in the last `secs` seconds, of the point of the rigid body that is now at c =
+    /// `place`: (1 − R⁻¹)(c − p)/Δt, with the pivot p, the time Δt = `secs` and the rotation R during this time.
     #[inline]
     pub(crate) fn mean_until(&self, place: DVec2, secs: f64) -> DVec2 {
         self.mean(place, secs, 1.0)
     }
 
-    /// Returns the mean velocity of a point, m/s. `sign` is −1 for the next and +1 for the last `secs` seconds. It
-    /// determines if the component along the radius points towards the pivot or away from it.
+    /// Returns the mean velocity of the point of the rigid body that is now at `place`, m/s: over the next `secs`
+    /// seconds if `sign` is −1, and over the last `secs` seconds if `sign` is +1. The sign determines if the component
+    /// along the radius points towards the pivot or away from it.
     fn mean(&self, place: DVec2, secs: f64, sign: f64) -> DVec2 {
         if self.spin == 0.0 {
             return self.velocity;
@@ -390,7 +398,7 @@ impl RigidVelocity {
 }
 
 impl Carry {
-    /// Returns the new position (m) of the point of the body that was at `place`.
+    /// Returns the new position (m) of the point of the rigid body that was at `place` before this displacement.
     pub(crate) fn place(&self, place: DVec2) -> DVec2 {
         if self.angle == 0.0 {
             place + self.by
@@ -399,12 +407,12 @@ impl Carry {
         }
     }
 
-    /// Returns the new direction of a vector that is fixed to the body.
+    /// Returns the direction, after this displacement, of a vector that rotates with the rigid body.
     pub(crate) fn turned(&self, direction: DVec2) -> DVec2 {
         if self.angle == 0.0 { direction } else { self.turn.rotate(direction) }
     }
 
-    /// Returns an upper bound for the displacement, m, of any point within `reach` (m) of the pivot.
+    /// Returns an upper bound for the displacement, m, of any point of the rigid body within `reach` (m) of the pivot.
     pub(crate) fn longest_way(&self, reach: f64) -> f64 {
         self.by.length() + self.angle.abs() * reach
     }
@@ -429,7 +437,8 @@ mod tests {
         assert_eq!(at_time(&[1.0], &[7.0], 2.0), 7.0);
     }
 
-    /// Checks that the displacements of steps of different lengths add up to the displacement of the course.
+    /// Checks that the displacements of steps of different lengths add up to the displacement that the course
+    /// prescribes for the whole time.
     #[test]
     fn steps_add_up_to_the_course() {
         let pivot = DVec2::new(1.0, -2.0);

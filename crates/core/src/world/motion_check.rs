@@ -1,4 +1,5 @@
-//! Checks of the motions and drives of a scene. A drive is a force or pressure that moves boundaries.
+//! Checks of the motions of boundaries and fixed discs in a scene, and of the drives (forces or pressures) that move
+//! them.
 
 use std::fmt::Display;
 
@@ -7,8 +8,8 @@ use glam::DVec2;
 use super::{Boundary, Drive, Motion, MotionCourse, Periodic};
 use crate::error::{self, Error, Result};
 
-/// Checks motions against the boundaries of a scene, its number of fixed discs, its number of axes and its periodic
-/// borders.
+/// Checks that the numbers of all motions are valid and that the motions are compatible with the boundaries, the
+/// number of fixed discs, the number of axes and the periodic borders of a scene.
 pub(super) fn check_motions(
     motions: &[Motion],
     boundaries: &[Boundary],
@@ -51,9 +52,11 @@ pub(super) fn check_motions(
     Ok(())
 }
 
-/// Checks that a motion's force (drive) is compatible with its prescribed course.
+/// Checks that the drive of a motion (a force or pressure) is valid and compatible with the prescribed course of the
+/// motion.
 fn check_drive(motion: &Motion, field: &str, periodic: Option<Periodic>) -> Result<()> {
-    /// Largest cosine of the angle between two directions that count as perpendicular. It allows for rounding.
+    /// Largest absolute cosine of the angle between two directions that count as perpendicular. It allows for
+    /// rounding.
     const PERPENDICULAR: f64 = 1e-9;
     let Some(drive) = &motion.drive else { return Ok(()) };
     drive.check(&format!("{field}.drive"), periodic)?;
@@ -124,7 +127,7 @@ fn check_numbers(motion: &Motion, field: &str) -> Result<()> {
     }
 }
 
-/// Checks the times of a table and the finiteness of its values.
+/// Checks that a table has valid times in increasing order and finite values.
 pub(super) fn check_table(
     field: &str,
     times_secs: &[f64],

@@ -1,4 +1,4 @@
-//! The parameters of the contact laws, and the time step. They may change between any two steps.
+//! The parameters of the contact laws, and the time step. All of them may change between any two steps.
 
 use crate::error::{Error, Result};
 use crate::number::is_zero;
@@ -18,21 +18,24 @@ words! {
 pub const DEBONDING_DISTANCE: f64 = 0.01;
 
 /// Default of the touch tolerance (largest gap at which grains touch), in mean diameters. With a smaller tolerance,
-/// discs that a scene file places in contact would not touch because of rounding, and a pyramid of logs in
-/// equilibrium would not stand.
+/// rounding would separate discs that a scene file places in contact, and a pyramid of logs in equilibrium would
+/// collapse.
 const TOUCH_TOLERANCE: f64 = 1e-5;
 
-/// Largest allowed number of substeps per step. With more, a single step of a pile would take many seconds.
+/// Largest allowed number of substeps per step. With a larger number, a single step of a pile would take many seconds
+/// of computing time.
 pub(crate) const MAX_SUBSTEPS: u32 = 100_000;
 
-/// Largest allowed number of steps of a run. More steps take months even in the smallest scene.
+/// Largest allowed number of steps of a run. Even in the smallest scene more steps would take months of computing
+/// time.
 const MOST_STEPS: f64 = 1e12;
-/// If a run has too many steps, the error message names the time step as the cause if it is below this value.
+/// Time step, s, below which it counts as unusually small. If a run with such a time step has too many steps, the
+/// error message names the time step as the cause.
 const SMALL_TIME_STEP_SECS: f64 = 1e-7;
 
 settings! {
-    /// Parameters that may change between any two steps. The fields are public, and a simulation checks them when it
-    /// takes them over.
+    /// Parameters of the contact laws, and the time step. They may change between any two steps. The fields are
+    /// public, and a simulation checks them when it takes them over.
     ///
     /// The default is the paper's scheme at a time step of 1e-3 s, without cohesion, restitution or friction.
     pub struct Parameters, changes ParameterChanges, heading "Physics" {
@@ -74,7 +77,7 @@ settings! {
                 logarithmic: true,
             }),
         }
-        /// Restitution ρ, from 0 to 1.
+        /// Coefficient of restitution ρ, from 0 to 1: speed after a bounce divided by the speed before.
         restitution: f64 = 0.0, "rho" ("RHO"), "Restitution, 0 to 1; pairs of materials may have \
             their own", {
             allowed: "between 0 and 1",
@@ -126,8 +129,8 @@ settings! {
                 ..Control::PLAIN
             }),
         }
-        /// Contacts do not bounce if their closing speed |v_n| at the beginning of the step is below this many g·Δt
-        /// (gravity times time step). 0 in the paper's scheme.
+        /// Restitution threshold, in units of g·Δt (gravity times time step): contacts do not bounce if their closing
+        /// speed |v_n| at the beginning of the step is below it. 0 in the paper's scheme.
         ///
         /// The restitution term ρ v_n of a contact that is wedged between others can contradict the terms of its
         /// neighbours, and then the step has no solution. Bounces slower than about 2 g·Δt are too small to be seen.
@@ -247,21 +250,21 @@ fn default_debonding_distance() -> f64 {
 }
 
 impl Parameters {
-    /// Returns these parameters with another time step, s.
+    /// Returns a copy of these parameters with another time step, s.
     pub fn over(self, time_step_secs: f64) -> Self {
         Self { time_step_secs, ..self }
     }
 
-    /// Returns the number of steps in a simulated time (s).
+    /// Returns the number of steps into which a simulated time (s) is divided.
     pub fn steps_in(&self, secs: f64) -> u64 {
         (secs / self.time_step_secs).round() as u64
     }
 
-    /// Checks that a simulated time (s) does not take more steps than a run may have.
+    /// Checks that a simulated time (s) does not need more steps than a run may have.
     ///
     /// # Errors
-    /// If it takes too many steps. The error names `field`, the option that sets the time, or the time step if that
-    /// is unusually small.
+    /// If it needs too many steps. The error names `field`, the option that sets the simulated time, or the time step
+    /// if that is unusually small.
     pub fn check_steps(&self, field: &str, secs: f64) -> Result<()> {
         let steps = secs / self.time_step_secs;
         if steps <= MOST_STEPS {
@@ -279,7 +282,7 @@ impl Parameters {
     }
 
     /// Returns the restitution term ρ v_n of a contact, m/s, from its normal velocity v_n (m/s) at the beginning of
-    /// the step. 0 if the contact is so slow that it does not bounce.
+    /// the step. 0 if the contact closes so slowly that it does not bounce.
     pub fn restitution_velocity(&self, normal_velocity: f64, gravity_magnitude: f64) -> f64 {
         let least = self.restitution_threshold * gravity_magnitude * self.time_step_secs;
         if normal_velocity.abs() < least { 0.0 } else { self.restitution * normal_velocity }
@@ -294,8 +297,8 @@ impl Parameters {
         }
     }
 
-    /// Returns the acceleration that relates lengths and speeds, m/s²: the gravity of the scene, or
-    /// `bond_acceleration` in a scene without gravity.
+    /// Returns the acceleration a, m/s², that sets the scale of speeds, √(a·d) for the mean diameter d: the gravity of
+    /// the scene, or `bond_acceleration` in a scene without gravity.
     pub fn accelerating(&self, gravity_magnitude: f64) -> f64 {
         match gravity_magnitude {
             0.0 => self.bond_acceleration,

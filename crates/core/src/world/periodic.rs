@@ -32,11 +32,12 @@ pub struct Periodic {
     /// y of the lower and the upper border, m. `None` if the cell is not periodic along y.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub y: Option<[f64; 2]>,
-    /// Shear rate γ̇, 1/s. The image of the cell directly above moves along x at γ̇ times the height of the cell.
+    /// Shear rate γ̇ of sheared borders, 1/s. The periodic image of the cell directly above moves along x at γ̇ times
+    /// the height of the cell. 0 if the borders are not sheared.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub shear_rate: f64,
-    /// Present shift along x of the image of the cell directly above, m. At the start at most one width to either
-    /// side.
+    /// Present shift along x of the periodic image of the cell directly above, m. In a scene it is at most one width
+    /// of the cell to either side.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub shift: f64,
 }
@@ -57,21 +58,21 @@ impl Periodic {
         [self.x, self.y].map(|borders| borders.map(period))
     }
 
-    /// Returns 1 for each axis with periodic borders, and 0 for each other axis.
+    /// Returns a vector whose component is 1 along each axis with periodic borders, and 0 along each other axis.
     pub(crate) fn axes(self) -> DVec2 {
         DVec2::from(self.periods().map(|period| if period.is_some() { 1.0 } else { 0.0 }))
     }
 
-    /// Returns the lower left and the upper right corner of a box, m. On periodic axes the borders replace the sides
-    /// of the given box.
+    /// Returns the lower left and the upper right corner of the box with the given corners, m, extended or reduced
+    /// along each periodic axis to the borders of the cell.
     pub fn borders_or(self, [low, high]: [DVec2; 2]) -> [DVec2; 2] {
         let [left, right] = self.x.unwrap_or([low.x, high.x]);
         let [below, above] = self.y.unwrap_or([low.y, high.y]);
         [DVec2::new(left, below), DVec2::new(right, above)]
     }
 
-    /// Returns the image of a point that is in the cell, m. The left and the lower border belong to the cell. A point
-    /// that is already in the cell is returned unchanged, bit for bit.
+    /// Returns the one periodic image of a point that is inside the cell, m. The left and the lower border belong to
+    /// the cell. A point that is already in the cell is returned unchanged, bit for bit.
     pub fn wrap(self, place: DVec2) -> DVec2 {
         let x = match self.is_sheared() {
             true => place.x - self.lean(self.cells_above(place.y)),
@@ -80,24 +81,24 @@ impl Periodic {
         DVec2::new(wrapped(self.x, x), wrapped(self.y, place.y))
     }
 
-    /// Returns the shortest vector that equals `offset` except for whole periods, m. An offset below half a period is
-    /// returned unchanged, bit for bit.
+    /// Returns the shortest of the vectors that differ from `offset` by whole periods, m. An offset below half a
+    /// period is returned unchanged, bit for bit.
     #[inline]
     pub fn shortest(self, offset: DVec2) -> DVec2 {
         let offset = if self.is_sheared() { self.upright(offset) } else { offset };
         DVec2::new(shortest(self.x, offset.x), shortest(self.y, offset.y))
     }
 
-    /// Returns the number of whole periods along each axis by which `offset` (m) exceeds the shortest equivalent
+    /// Returns the number of whole periods along each axis by which `offset` (m) differs from the shortest equivalent
     /// vector. 0 along axes without periodic borders.
     pub(crate) fn whole(self, offset: DVec2) -> DVec2 {
         let offset = if self.is_sheared() { self.upright(offset) } else { offset };
         DVec2::new(periods_in(self.x, offset.x), periods_in(self.y, offset.y))
     }
 
-    /// Returns the displacements (m) from a shape to those of its images that reach into the cell. The arguments are
-    /// the corners of the bounding box of the shape. A shape inside the cell, except for rounding, has no such
-    /// images.
+    /// Returns the displacements (m) from a shape to those of its periodic images, other than the shape itself, that
+    /// extend into the cell. The arguments are the corners of the bounding box of the shape. A shape that is inside
+    /// the cell, except for rounding, has no such images.
     pub fn images(self, [low, high]: [DVec2; 2]) -> impl Iterator<Item = DVec2> {
         let middle = 0.5 * (low.x + high.x);
         let along_y = reaching(self.y, [low.y, high.y]).into_iter().flatten();
@@ -109,8 +110,8 @@ impl Periodic {
         all.filter(|by| *by != DVec2::ZERO)
     }
 
-    /// Returns the displacements (m) from a point to itself and to its images one period to either side along each
-    /// axis.
+    /// Returns the displacements (m) from a point to itself and to its periodic images one period to either side along
+    /// each axis.
     pub fn around(self) -> impl Iterator<Item = DVec2> {
         let [along_x, along_y] =
             self.periods().map(|period| [Some(0.0), period, period.map(|by| -by)]);
@@ -120,7 +121,7 @@ impl Periodic {
         })
     }
 
-    /// Returns the image of `place` that is nearest to `other`, m.
+    /// Returns the periodic image of the point `place` that is nearest to the point `other`, m.
     pub fn near(self, place: DVec2, other: DVec2) -> DVec2 {
         if self.is_sheared() {
             return other - self.shortest(other - place);
@@ -164,8 +165,8 @@ pub(super) fn shortest(borders: Option<[f64; 2]>, offset: f64) -> f64 {
     })
 }
 
-/// Returns the displacements (m) along one axis to those images of an interval that overlap the cell. The first
-/// displacement is 0, for the interval itself.
+/// Returns the displacements (m) along one axis from an interval to those of its periodic images that overlap the
+/// cell. The first displacement is 0, for the interval itself.
 fn reaching(borders: Option<[f64; 2]>, [from, to]: [f64; 2]) -> [Option<f64>; 3] {
     let over = borders.map_or([None; 2], |[low, high]| {
         let period = high - low;
@@ -176,13 +177,13 @@ fn reaching(borders: Option<[f64; 2]>, [from, to]: [f64; 2]) -> [Option<f64>; 3]
 }
 
 impl Periodic {
-    /// True if the images of the cell above and below are shifted or move (sheared borders).
+    /// True if the cell has sheared borders: its periodic images above and below move along x or are shifted along x.
     #[inline(always)]
     pub fn is_sheared(self) -> bool {
         self.shear_rate != 0.0 || self.shift != 0.0
     }
 
-    /// Returns the speed U of the image of the cell directly above, m/s.
+    /// Returns the speed U along x of the periodic image of the cell directly above, m/s.
     pub fn border_speed(self) -> f64 {
         self.shear_rate * self.y.map_or(0.0, period)
     }
@@ -194,39 +195,38 @@ impl Periodic {
         self.border_speed() * periods_in(self.y, offset.y)
     }
 
-    /// Advances the shift of the images of the cell by `secs` seconds.
+    /// Updates the shift of the periodic images above and below, which move along x, after `secs` seconds.
     pub(crate) fn slide(&mut self, secs: f64) {
         if self.shear_rate != 0.0 {
             self.shift = shortest(self.x, self.shift + secs * self.border_speed());
         }
     }
 
-    /// Returns an offset (m) between two points minus the shift of sheared cells in it: the shift along x from one
-    /// cell to the next, times the number of whole cell heights in the offset.
+    /// Returns `offset` (m) minus the shift along x that sheared borders contribute to it: the shift from one cell to
+    /// the next, times the number of whole cell heights in the offset.
     #[inline]
     pub(super) fn upright(self, offset: DVec2) -> DVec2 {
         DVec2::new(offset.x - self.lean(periods_in(self.y, offset.y)), offset.y)
     }
 
-    /// Returns the number of cell heights by which the cell that contains the height `y` (m) is above the cell of the
-    /// simulation.
+    /// Returns how many cell heights the cell that contains the height `y` (m) is above the cell of the simulation.
     pub(super) fn cells_above(self, y: f64) -> f64 {
         periods_in(self.y, y - wrapped(self.y, y))
     }
 
-    /// Returns the shift along x of the image of the cell that is `cells` heights higher, m.
+    /// Returns the shift along x, m, of the periodic image of the cell that is `cells` cell heights higher.
     #[inline]
     pub(super) fn lean(self, cells: f64) -> f64 {
         cells * self.shift
     }
 
-    /// Returns the shift along x of the image of the cell that is `height` (m) higher, m.
+    /// Returns the shift along x, m, of the periodic image of the cell that is `height` (m) higher.
     pub(super) fn lean_of(self, height: f64) -> f64 {
         self.lean(periods_in(self.y, height))
     }
 
-    /// Returns the shift along x of the image of the cell that is `height` (m) higher, m. It is reduced by whole cell
-    /// widths so that a point at `x` (m) is in the cell after the shift.
+    /// Returns the shift along x, m, of the periodic image of the cell that is `height` (m) higher. It is reduced by
+    /// whole cell widths so that a point at `x` (m) is in the cell after the shift.
     pub(crate) fn lean_into_cell(self, x: f64, height: f64) -> f64 {
         let lean = self.lean_of(height);
         if lean == 0.0 { 0.0 } else { wrapped(self.x, x + lean) - x }

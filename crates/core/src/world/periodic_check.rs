@@ -5,17 +5,17 @@ use glam::DVec2;
 use super::{Boundary, Gravity, Motion, Periodic, Physics};
 use crate::error::{Error, Result};
 
-/// Smallest allowed width or height of a periodic cell, in diameters of its largest disc. In a narrower cell nothing
-/// can pass between a disc and its own images.
+/// Smallest allowed width or height of a periodic cell, in diameters of its largest disc. In a narrower cell no grain
+/// could pass between a disc and the periodic image of this disc.
 const LEAST_DIAMETERS: f64 = 3.0;
-/// Largest gap between interacting discs, in mean diameters. It is larger than the longest bond
-/// ([`Parameters::debonding_distance`](super::Parameters)).
+/// Largest gap between two discs that can affect each other, in mean diameters. It is larger than the longest possible
+/// bond ([`Parameters::debonding_distance`](super::Parameters)).
 const FELT_IN_DIAMETERS: f64 = 0.2;
 
 /// An axis with periodic borders.
 #[derive(Clone, Copy)]
 struct Wrapping {
-    /// Name of the borders in error messages.
+    /// Name of the periodic borders in scene files and error messages: `periodic.x` or `periodic.y`.
     field: &'static str,
     /// Index of the axis: 0 for x, 1 for y.
     axis: usize,
@@ -23,8 +23,8 @@ struct Wrapping {
 }
 
 impl Periodic {
-    /// Checks the borders against the bodies of the world. `lengths` are the radius of the largest disc and the mean
-    /// diameter d, both in m.
+    /// Checks that the periodic borders are compatible with the bodies, motions and gravity of a world. `lengths` are
+    /// the radius of the largest disc and the mean diameter d, both in m.
     pub(crate) fn check(
         self,
         boundaries: &[Boundary],
@@ -55,8 +55,8 @@ impl Periodic {
         Ok(())
     }
 
-    /// Checks sheared borders: their rates must be finite, both axes must be periodic, the physics must include
-    /// friction and rotation, and there must be no fixed bodies.
+    /// Checks sheared borders: the shear rate and the shift must be finite, both axes must be periodic, the physics
+    /// must include friction and rotation, and there must be no boundaries or fixed discs.
     fn check_shear(self, fixed_bodies: usize, physics: Physics) -> Result<()> {
         let Self { shear_rate, shift, .. } = self;
         let numbers = [("periodic.shear_rate", shear_rate), ("periodic.shift", shift)];

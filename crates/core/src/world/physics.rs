@@ -1,15 +1,15 @@
-//! The effects (axes, friction, rotation, cohesion) that the mechanics of a scene includes.
+//! The effects that the mechanics of a scene includes: the number of axes, friction, rotation and cohesion.
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 
-/// The effects that the mechanics of a scene includes. The code of a step is compiled separately for each
-/// combination.
+/// The effects that the mechanics of a scene includes: axes, friction, rotation and cohesion. The code of a step is
+/// compiled separately for each combination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Physics {
-    /// Number of axes: 1 (all bodies are on the x axis) or 2.
+    /// Number of axes: 1 (all centres are on the x axis, and bodies move only along it) or 2.
     pub axes: u8,
     /// True if contacts transmit tangential impulses.
     pub friction: bool,

@@ -1,4 +1,4 @@
-//! Collects facts about a recorded run, for the metadata of its files: all values of the scene, and all changes of
+//! Collects the metadata that are written into the files of a recorded run: all values of the scene, and all changes of
 //! settings during the run.
 
 use serde::Serialize;
@@ -9,13 +9,15 @@ use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::sim::Settings;
 
-/// Names of values of a scene that are not written as facts: they are in the tables, or concern the recording itself.
+/// Names of the fields of a scene that are not written as metadata of a recording: the discs are in the tables, and the
+/// other fields concern the file of the grains and the recording itself.
 const LEFT_OUT: [&str; 4] = ["grains", "fixed_discs", "source", "data"];
 
-/// Name of the fact that lists the changes of settings during the run.
+/// Name of the metadata entry that lists the changes of settings during the run.
 const CHANGES: &str = "changes";
 
-/// Returns all values of a scene except its discs, as facts about a recording. The first fact is the program's version.
+/// Returns the metadata of a recording: the program's name and version, followed by all values of the scene except its
+/// discs.
 ///
 /// # Errors
 /// If a value cannot be written as JSON.
@@ -36,9 +38,9 @@ pub fn scene_facts(scene: &Scene) -> Result<RunFacts> {
     Ok(RunFacts { facts })
 }
 
-/// Returns the facts about a scene and the changes of its settings during the run. Each element of `changes` has the
-/// number of the step after which the settings changed, its simulated time in seconds, and the new settings. Settings
-/// that did not change are not written.
+/// Returns the metadata of a recorded run: the values of its scene, and the changes of its settings during the run.
+/// Each element of `changes` has the number of the step after which the settings changed, the simulated time of that
+/// step in seconds, and the new settings. Settings that did not change are not written.
 ///
 /// # Errors
 /// As [`scene_facts`].
@@ -63,7 +65,8 @@ pub fn run_facts(scene: &Scene, changes: &[(u64, f64, Settings)]) -> Result<RunF
     Ok(run)
 }
 
-/// Returns the values of serialisable data of a scene, by their dotted names, without the values in [`LEFT_OUT`].
+/// Converts `something`, serialisable data of a scene, to values with dotted names such as `parameters.bond`. Fields in
+/// [`LEFT_OUT`] are omitted. The scene itself only serves for error messages.
 fn values_of(scene: &Scene, something: &impl Serialize) -> Result<Map<String, Json>> {
     let said = serde_json::to_value(something)
         .map_err(|error| Error::value("scene", &scene.name, error.to_string()))?;
@@ -76,14 +79,14 @@ fn values_of(scene: &Scene, something: &impl Serialize) -> Result<Map<String, Js
     Ok(values)
 }
 
-/// Returns all settings as JSON, including settings that are switched off, which scene files leave out.
+/// Returns all settings as JSON, including settings that are switched off (scene files omit these).
 fn all_settings(settings: &Settings) -> Json {
     let Settings { stepper, parameters, solver, remedies } = settings;
     json!({ "stepper": stepper, "parameters": parameters, "solver": solver, "remedies": remedies })
 }
 
-/// Adds a value to `values` under its name. For a table, adds each value of the table under a dotted name such as
-/// `parameters.bond`.
+/// Adds a JSON value to `values` under its name. If the value is a JSON object, adds each of its members under a dotted
+/// name such as `parameters.bond`.
 fn flatten(name: &str, value: &Json, values: &mut Map<String, Json>) {
     match value {
         Json::Object(table) => {

@@ -1,4 +1,5 @@
-//! Reads and writes requests for runs: options of the command line, scene files, lines of a study, and saved runs.
+//! Reads and writes configurations of runs. A configuration comes from options of the command line, from a scene file,
+//! from a line of a study (a list of runs), or from a saved run.
 
 mod facts;
 mod option_words;

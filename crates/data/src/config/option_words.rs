@@ -1,10 +1,11 @@
-//! Creates parsers for command-line options whose value is a word of a list.
+//! Creates parsers for command-line options whose value is one word from a list.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 
 use crate::setting::{Kind, Settable, Value, Word};
 
-/// Returns the parser of a word that stands for a value of the type `T`, for options that are not settings.
+/// Returns the command-line parser that accepts the words of the type `T` and converts each word to the value that it
+/// stands for. It serves options that are not settings, such as `--preset`.
 pub fn parser_of<T: Settable + Send + Sync + 'static>() -> ValueParser {
     let words = if let Kind::Word(words) = T::KIND { words } else { &[] };
     let said = |said: String| {
@@ -14,7 +15,7 @@ pub fn parser_of<T: Settable + Send + Sync + 'static>() -> ValueParser {
     possible(words).try_map(said).into()
 }
 
-/// Returns the parser that accepts the words of a list. Each word has its own help text.
+/// Returns a command-line parser that accepts only the words of a list. The help shows the text of each word.
 pub(super) fn possible(words: &'static [Word]) -> PossibleValuesParser {
     let word = |word: &Word| PossibleValue::new(word.name).help(word.hint);
     PossibleValuesParser::new(words.iter().map(word))

@@ -1,5 +1,6 @@
-//! Converts a [`Config`], the request for a run, to and from options of the command line, and to and from a flat table
-//! with the same names in studies and journals. Also turns errors in a command line into messages of one sentence.
+//! Converts the configuration of a run ([`Config`]) to and from options of the command line, and to and from the flat
+//! table with the same names that studies and their journals contain. Also rewrites errors in a command line as
+//! messages of one sentence.
 
 use std::error::Error as _;
 use std::fmt;
@@ -18,14 +19,12 @@ use crate::setting::{About, Changes, Kind, Value};
 use crate::sim::Settings;
 
 impl Config {
-    /// Returns the names of all options with which a run can be requested, as they appear on the command line and in
-    /// study files.
+    /// Returns the names of all options that configure a run, as they appear on the command line and in study files.
     pub fn names() -> Vec<String> {
         Self::options().into_iter().map(|(name, _)| name).collect()
     }
 
-    /// Returns the names of all options with which a run can be requested, each with its line in the help of the
-    /// command line.
+    /// Returns the names of all options that configure a run, each with its text in the help of the command line.
     pub fn options() -> Vec<(String, String)> {
         let command = Self::augment_args(Command::new("config"));
         let help = |option: &Arg| option.get_help().map(ToString::to_string).unwrap_or_default();
@@ -33,7 +32,7 @@ impl Config {
         command.get_arguments().filter_map(named).collect()
     }
 
-    /// Parses options, each given as (name, value), as the command line does.
+    /// Creates a configuration from options, each given as (name, value). Values are parsed as on the command line.
     ///
     /// ```
     /// use slump_data::config::Config;
@@ -46,7 +45,7 @@ impl Config {
     /// ```
     ///
     /// # Errors
-    /// If an option is not accepted, alone or together with the other options. The message is the same as on the
+    /// If an option or its value is not allowed, or if options contradict each other. The message is the same as on the
     /// command line.
     pub fn of_options<'a>(options: impl IntoIterator<Item = (&'a str, &'a str)>) -> Result<Self> {
         let command = Self::augment_args(Command::new("slump").no_binary_name(true));
@@ -69,7 +68,7 @@ impl Args for Config {
     }
 }
 
-/// Creates the command-line option for a setting.
+/// Creates the command-line option for a setting from the description of the setting.
 fn option(about: &About) -> Arg {
     let parser: ValueParser = match about.kind {
         Kind::Number => clap::value_parser!(f64).into(),
@@ -94,11 +93,11 @@ fn option(about: &About) -> Arg {
     }
 }
 
-/// Second names of some settings, as (name, longer name), because their usual names are short.
+/// Aliases of settings whose names are very short, as (name, longer alias).
 const ALIASES: [(&str, &str); 4] =
     [("dt", "time-step"), ("rho", "restitution"), ("mu", "friction"), ("solver", "method")];
 
-/// Returns the value that the command line gives for a setting, if any.
+/// Returns the value of a setting on the command line; `None` if the setting is not given.
 fn given(about: &About, matches: &ArgMatches) -> Option<Value> {
     let name = about.name;
     match about.kind {
@@ -151,7 +150,8 @@ impl Serialize for Config {
     }
 }
 
-/// A request to be written without the source of its scene. Only the settings that the request gives are written.
+/// Serialises the settings of a configuration, without the source of its scene. Settings that the configuration does
+/// not give are not written.
 struct GivenSettings<'a>(&'a Config);
 
 impl Serialize for GivenSettings<'_> {
@@ -205,8 +205,8 @@ impl<'de> Visitor<'de> for ConfigVisitor {
     }
 }
 
-/// Describes an error in a command line in one sentence that says which values are allowed. The message of clap, the
-/// parser of `command`, is not enough, because it adds usage and hints and leaves out the allowed values.
+/// Describes an error in a command line in one sentence that says which values are allowed. The command line is parsed
+/// by the library clap. Its own message is not used, because it adds usage and hints and leaves out the allowed values.
 pub fn refusal_of(error: &clap::Error, mut command: Command) -> String {
     // The parser clap can display arguments only after this call.
     command.build();
@@ -277,8 +277,8 @@ fn without_value_name(argument: &str) -> &str {
     argument.split_once(" <").map_or(argument, |(name, _)| name)
 }
 
-/// Describes the values that an option allows if it does not take a word of a list. The kind of value comes from the
-/// parser's error, and the range comes from the option's help.
+/// Describes the allowed values of an option that does not take a word from a list, such as `a number (…)`. The type of
+/// the value comes from the parser's error, and the range comes from the option's help text in parentheses.
 fn kind_of_value(error: &clap::Error, command: &Command, argument: &str) -> String {
     let source = error.source();
     let kind = if source.is_some_and(|source| source.is::<ParseFloatError>()) {
@@ -304,7 +304,8 @@ fn find<'a>(command: &'a Command, argument: &str) -> Option<&'a Arg> {
     own.or_else(|| command.get_subcommands().find_map(|below| find(below, argument)))
 }
 
-/// Returns the names of all commands. The names of subcommands follow each command in parentheses.
+/// Returns the names of all subcommands of `command`. Each name is followed by its own subcommands in parentheses, if
+/// any.
 fn commands(command: &Command) -> String {
     let name = |command: &Command| match commands(command) {
         none if none.is_empty() => command.get_name().to_owned(),
@@ -314,7 +315,7 @@ fn commands(command: &Command) -> String {
     own.map(name).collect::<Vec<_>>().join(", ")
 }
 
-/// Returns the message of a parser as one line, without usage and hints.
+/// Shortens an error message of the command-line parser to one line without usage and hints.
 fn first_sentence(message: &str) -> String {
     let message = message.trim_start_matches("error: ");
     let lines = message.lines().take_while(|line| !line.is_empty() && !line.starts_with("Usage"));

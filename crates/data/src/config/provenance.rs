@@ -1,4 +1,4 @@
-//! Describes a run by the words of a command line that repeats it, and by texts to be stored in files.
+//! Describes the origin of a result: the command line that repeats its run, and the texts that are stored in its files.
 
 use serde_json::Value as Json;
 
@@ -8,11 +8,11 @@ use crate::output::Texts;
 use crate::sim::Settings;
 
 impl Config {
-    /// Returns the command-line options that ask for this scene with these settings: the options for the source of the
-    /// scene, and an option for each setting that differs from the scene's own value.
+    /// Returns the command-line options for a run of this configuration's scene with the given settings: the options
+    /// for the source of the scene, and one option for each setting that differs from the scene's own value.
     ///
     /// # Errors
-    /// If the scene no longer exists.
+    /// If the scene can no longer be made, for example because its file was removed.
     pub fn words(&self, settings: &Settings) -> Result<Vec<String>> {
         let unchanged = Self { source: self.source.clone(), ..Self::default() };
         let before = unchanged.without_settling()?.settings();
@@ -21,7 +21,7 @@ impl Config {
         Ok(words)
     }
 
-    /// Returns the command-line options for the source of the scene.
+    /// Returns the command-line options that define the scene, such as `--scene pile --seed 3`.
     fn source_words(&self) -> Vec<String> {
         // Writing fails only for a path that is not Unicode. Such a path is refused when it is read.
         let Ok(Json::Object(fields)) = serde_json::to_value(&self.source) else {
@@ -35,7 +35,7 @@ impl Config {
     }
 }
 
-/// Returns settings as command-line options: all settings, or only the settings that differ from `others`.
+/// Returns settings as command-line options: all settings, or only those that differ from `others`, if that is given.
 pub fn words_of(settings: &Settings, others: Option<&Settings>) -> Vec<String> {
     let differs = |name| others.is_none_or(|others| settings.get(name) != others.get(name));
     let names = Settings::about().map(|about| about.name).filter(|&name| differs(name));
@@ -63,8 +63,8 @@ pub struct Provenance {
 
 impl Provenance {
     /// Returns the texts to be stored in a file that shows this run: title, scene, settings and command line.
-    /// `time_secs` is the simulated time (s) if the file shows a single moment. `further` are more options for that
-    /// command line.
+    /// `time_secs` is the simulated time (s) that the file shows; `None` if it shows more than one time. `further` are
+    /// more options for the stored command line.
     pub fn texts(&self, time_secs: Option<f64>, further: &[String]) -> Texts {
         let Self { scene, settings, words } = self;
         let mut texts = Texts::default();
@@ -92,8 +92,8 @@ pub fn words_up_to(time_secs: f64) -> Vec<String> {
     words
 }
 
-/// Rounds a simulated time (s) to twelve decimals, as a user would write it. This removes the rounding error of a sum
-/// over many steps.
+/// Rounds a simulated time (s) to twelve decimals, so that it is the number that a user would write. This removes the
+/// rounding error of a sum over many time steps.
 pub fn asked_time_secs(time_secs: f64) -> f64 {
     format!("{time_secs:.12}").parse().unwrap_or(time_secs)
 }

@@ -1,5 +1,5 @@
-//! Checks recordings whose grains become the initial state of a pile. A pile has its own walls, gravity and sizes,
-//! which may differ from those of the recorded scene.
+//! Checks whether the grains of a recording can become the initial state of the scene `pile`. That scene has its own
+//! walls, gravity and mean diameter, which may differ from those of the recorded scene.
 
 use std::path::Path;
 
@@ -8,8 +8,9 @@ use crate::data::facts_of_recording;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 
-/// Beginnings of the names of facts about a recorded scene that a pile does not take over. Settings are not in the
-/// list, because every run asks for its own settings.
+/// Properties of a recorded scene that a pile does not take over if it starts from the grains of that scene, because
+/// the pile has its own. Each text is the beginning of a property's name in the recording's metadata. Settings are not
+/// in the list, because every run has its own settings.
 const OF_THE_PILE: [&str; 10] = [
     "areal_density",
     "boundaries",
@@ -24,8 +25,8 @@ const OF_THE_PILE: [&str; 10] = [
 ];
 
 /// Checks that the scene `pile` can start from the grains in the file or folder `path`. Fails if the grains are from a
-/// recording of a scene with periodic borders. Also fails if the recorded scene has another property that the pile
-/// lacks, unless the user has asked for a pile by name (`is_asked_for`).
+/// recording of a scene with periodic borders. Also fails if the recorded scene differs from the pile in a property of
+/// [`OF_THE_PILE`], unless the user has named the pile as scene (`is_asked_for`).
 pub(super) fn check_starts_pile(path: &Path, pile: &Scene, is_asked_for: bool) -> Result<()> {
     let Some(recorded) = facts_of_recording(path) else { return Ok(()) };
     if recorded.keys().any(|name| name.starts_with("periodic.")) {

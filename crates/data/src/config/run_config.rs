@@ -1,5 +1,5 @@
-//! Defines the request for a run: the source of the scene, and changes to the scene. The same structure describes the
-//! options of the command line, a run of a study, and the request that is written with results.
+//! Defines the configuration of a run: the source of the scene, and changes to the scene. The same structure is used
+//! for the options of the command line, for a run of a study, and for the configuration that is stored with results.
 
 use std::path::{Path, PathBuf};
 
@@ -21,26 +21,26 @@ use crate::sim::{RemedyChanges, Settings, Stepper};
 use crate::solver::SolverChanges;
 use crate::world::{Grain, ParameterChanges};
 
-/// Request for a run: a scene and changes to it. Values that are not given are those of the scene. A request may
-/// contain wrong values: they are checked when the scene is made ([`Config::scene`]).
+/// Configuration of a run: a scene and changes to it. Values that are not given are those of the scene. Wrong values
+/// are possible here: they are found when the scene is made ([`Config::scene`]).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Config {
-    /// The source of the scene.
+    /// Source of the scene: its name or file, and the options of a new pile.
     pub source: SceneSource,
-    /// The stepper: the rule that advances the state by Δt.
+    /// Stepper, the rule that advances the simulation by one time step Δt; `None` for the scene's own stepper.
     pub stepper: Option<Stepper>,
     /// Changes to the parameters of the contact laws and to the time step Δt.
     pub parameters: ParameterChanges,
     /// Changes to the settings of the solver.
     pub solver: SolverChanges,
-    /// Changes to the remedies: optional corrections for known failures of a stepper, such as overlap.
+    /// Changes to the remedies, which are optional corrections for known failures of a stepper, such as overlap.
     pub remedies: RemedyChanges,
-    /// The folder to which relative paths refer; empty for the working directory. It is not a part of the request: a
-    /// study asks for the same runs in any folder.
+    /// Folder to which relative paths in the configuration refer; empty for the working directory. It is not stored
+    /// with the configuration, because a study defines the same runs in any folder.
     pub folder: PathBuf,
 }
 
-/// Source of a scene: the request apart from its settings.
+/// Source of a scene: the configuration of a run apart from its settings.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, clap::Args)]
 #[serde(rename_all = "kebab-case")]
 pub struct SceneSource {
@@ -95,7 +95,7 @@ pub struct SceneSource {
 }
 
 impl SceneSource {
-    /// Reads the value of the field `name` from a file. Returns false if there is no such field.
+    /// Reads the value of the field `name` from serialised data. Returns false if no field has this name.
     pub(super) fn read<'de, A: MapAccess<'de>>(
         &mut self,
         name: &str,
@@ -119,8 +119,8 @@ impl SceneSource {
         Ok(true)
     }
 
-    /// Returns the description of the new pile that `grains`, `box_width`, `seed`, `deposition` and `sizes` ask for.
-    /// Missing options have their defaults.
+    /// Returns the new pile that `grains`, `box_width`, `seed`, `deposition` and `sizes` describe. Options that are not
+    /// given have their defaults.
     pub fn new_pile(&self) -> NewPile {
         let default = NewPile::default();
         NewPile {
@@ -140,7 +140,7 @@ impl SceneSource {
         self.sizes = (sizes != Sizes::default()).then_some(sizes);
     }
 
-    /// True if the request asks for a new pile, whose grains must settle first.
+    /// True if one of the options describes a new pile, whose grains must settle before the run.
     pub fn makes_new_pile(&self) -> bool {
         self.grains.is_some()
             || self.box_width.is_some()
@@ -150,7 +150,7 @@ impl SceneSource {
     }
 }
 
-/// A scene before a request has changed it.
+/// A scene to which the changes of a [`Config`] have not been applied yet.
 #[derive(Clone, Debug)]
 pub struct BaseScene {
     scene: Scene,
@@ -171,34 +171,34 @@ impl BaseScene {
 }
 
 impl Config {
-    /// Name of the scene that is used if a request names no scene.
+    /// Name of the scene for a configuration that names no scene.
     pub const DEFAULT_SCENE: &str = "pile";
-    /// Name of the only scene that has the option `start`.
+    /// Name of Newton's cradle, the only scene that has the option `start`.
     const CRADLE: &str = "cradle";
 
-    /// Creates a request for a scene, given by its name or file, without changes.
+    /// Creates a configuration for a scene, given by its name or file, without changes.
     pub fn of_scene(name: impl Into<String>) -> Self {
         let source = SceneSource { scene: Some(name.into()), ..SceneSource::default() };
         Self { source, ..Self::default() }
     }
 
-    /// True if the request is empty: it neither names a scene nor changes anything.
+    /// True if the configuration is empty: it neither names a scene nor changes anything.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Returns the names of the settings that the request gives but the stepper does not use. Remedies are not listed,
-    /// because a remedy that the stepper lacks is an error.
+    /// Returns the names of the settings that the configuration gives but the stepper does not use. Remedies are not
+    /// listed, because giving a remedy that the stepper lacks is an error.
     pub fn unread_by(&self, stepper: Stepper) -> Vec<String> {
         let (source, remedies) = (SceneSource::default(), RemedyChanges::default());
         let given = Self { source, stepper: None, remedies, ..self.clone() };
-        // A request has only named values, which can always be written as JSON.
+        // A configuration has only named values, which can always be written as JSON.
         let given = serde_json::to_value(&given).unwrap_or_default();
         let names = given.as_object().into_iter().flat_map(|given| given.keys());
         names.filter(|name| !stepper.reads(name)).cloned().collect()
     }
 
-    /// Returns this request with all settings given explicitly, as in `settings`.
+    /// Returns this configuration with every setting given explicitly, with its value in `settings`.
     pub fn with_settings(self, settings: &Settings) -> Self {
         Self {
             stepper: Some(settings.stepper),
@@ -209,7 +209,7 @@ impl Config {
         }
     }
 
-    /// Sets the setting `name`. Returns false if there is no such setting or the value is not of its kind.
+    /// Sets the setting `name`. Returns false if no setting has this name or the value has the wrong type.
     pub fn set(&mut self, name: &str, value: Value) -> bool {
         let Self { stepper, parameters, solver, remedies, .. } = self;
         if name == Settings::STEPPER.name {
@@ -219,9 +219,10 @@ impl Config {
         parameters.set(name, value) || solver.set(name, value) || remedies.set(name, value)
     }
 
-    /// Makes the requested scene with the requested changes and checks it, but does not let a new pile settle: the
-    /// scene has the grains of the built-in scene, or the grains of the new pile at their initial positions. This takes
-    /// little time, so that a wrong value is reported before long work begins.
+    /// Makes the scene of this configuration with all changes and checks it, but does not let the grains of a new pile
+    /// settle. The scene then has the grains of the built-in scene instead or, if a scene file describes the pile, the
+    /// new grains at their initial positions. This takes little time, so that a wrong value is reported before long
+    /// work begins.
     ///
     /// # Errors
     /// The error names the first field that is unknown or outside its range, or the file that cannot be read.
@@ -229,8 +230,8 @@ impl Config {
         self.change(&self.base_scene()?)
     }
 
-    /// Makes the requested scene with the requested changes and checks it. If a new pile must settle, this takes a
-    /// while: `progress` is called repeatedly and stops the work by returning false.
+    /// Makes the scene of this configuration with all changes and checks it. If the grains of a new pile must settle,
+    /// this takes a while: `progress` is called repeatedly and stops the work by returning false.
     ///
     /// # Errors
     /// The error names the first field that is unknown or outside its range, or the file that cannot be read. Making
@@ -239,7 +240,7 @@ impl Config {
         self.scene_on(self.base_scene()?, progress)
     }
 
-    /// Like [`Config::scene`], but changes the scene `base` instead of the scene that the request names.
+    /// Like [`Config::scene`], but changes the scene `base` instead of the scene that the configuration names.
     ///
     /// # Errors
     /// As [`Config::scene`].
@@ -255,8 +256,8 @@ impl Config {
         }
     }
 
-    /// Makes the requested scene with the requested changes and checks it. The new pile of the scene has the grains
-    /// `settled`, which have already settled.
+    /// Makes the scene of this configuration with all changes and checks it. `settled` are the grains of its new pile,
+    /// which have already settled.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
@@ -264,8 +265,8 @@ impl Config {
         self.settled_on(self.base_scene()?, settled)
     }
 
-    /// Makes a pile with the requested changes and checks it. Its initial state is `discs`, as if the option `initial`
-    /// named a file with these discs.
+    /// Makes a pile from `discs` with all changes of this configuration and checks it. The result is the same as if the
+    /// option `initial` named a file with these discs.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
@@ -275,7 +276,7 @@ impl Config {
         self.change(&BaseScene { scene, new_pile: None })
     }
 
-    /// Returns the description of the new pile that must settle for this scene, if any.
+    /// Returns the description of the new pile whose grains must settle before this run, if there is a new pile.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
@@ -286,8 +287,8 @@ impl Config {
         Ok(self.base_scene()?.new_pile)
     }
 
-    /// Makes the scene that the request names, or the scene that starts from the initial grains of the request, without
-    /// the other requested changes.
+    /// Makes the scene that the configuration names, or the scene that starts from the grains in its option `initial`,
+    /// without any of the other changes.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
@@ -314,7 +315,8 @@ impl Config {
         Ok(BaseScene { scene, new_pile })
     }
 
-    /// Returns a key by which scenes can be reused: requests with the same key have the same [`Config::base_scene`].
+    /// Returns a key by which scenes can be reused: configurations with the same key have the same
+    /// [`Config::base_scene`].
     pub fn base_scene_key(&self) -> String {
         let SceneSource { scene, initial, initial_step, box_width, start, .. } = &self.source;
         let box_width = box_width.filter(|_| initial.is_some());
@@ -322,7 +324,7 @@ impl Config {
         format!("{:?}", (self.named(), is_named, initial, initial_step, box_width, start))
     }
 
-    /// Like [`Config::without_settling`], but changes the scene `base`, which was already made.
+    /// Like [`Config::without_settling`], but changes the scene `base`, which the caller has already made.
     ///
     /// # Errors
     /// As [`Config::without_settling`].
@@ -333,14 +335,14 @@ impl Config {
         Ok(scene)
     }
 
-    /// Returns the canonical name of the built-in scene that the request names. For a scene file, returns the name of
-    /// the file as given.
+    /// Returns the canonical name of the built-in scene that the configuration names, perhaps by an alias or in other
+    /// capitals. For a scene file, returns the name of the file as given.
     pub fn named(&self) -> &str {
         let asked = self.source.scene.as_deref().unwrap_or(Self::DEFAULT_SCENE);
         SceneInfo::named(asked).map_or(asked, |info| info.name)
     }
 
-    /// Fails if the options for the scene's source contradict each other.
+    /// Fails if the options for the source of the scene contradict each other or are outside their ranges.
     fn check_source(&self) -> Result<()> {
         let name = self.named();
         if let (None, Some(step)) = (&self.source.initial, self.source.initial_step) {
@@ -400,7 +402,7 @@ impl Config {
         Ok(scene)
     }
 
-    /// Returns this request with every missing value filled in from `scene`.
+    /// Returns this configuration with every missing value filled in from `scene`.
     pub fn resolved(&self, scene: &Scene) -> Self {
         // An initial state that is a saved run contains its own scene.
         let name = if self.source.initial.is_some() { &scene.name } else { self.named() };
@@ -412,7 +414,7 @@ impl Config {
         Self { source, ..self.clone() }.with_settings(&scene.settings())
     }
 
-    /// Changes `settings` to the values that the request gives. The preset of the request is not applied.
+    /// Changes `settings` to the values that the configuration gives. Its preset (a group of settings) is not applied.
     pub fn change_settings(&self, settings: &mut Settings) {
         settings.stepper = self.stepper.unwrap_or(settings.stepper);
         self.parameters.apply(&mut settings.parameters);
@@ -436,7 +438,8 @@ impl Config {
         scene.validate()
     }
 
-    /// Reads the scene of a saved run from a file. The scene starts from the present grains of that run.
+    /// Makes a scene from the file of a saved run. The scene starts from the grains as they were when the run was
+    /// saved.
     fn scene_of_state(&self, path: &Path) -> Result<Scene> {
         if let Some(step) = self.source.initial_step {
             let allowed =
@@ -456,11 +459,11 @@ impl Config {
         }
     }
 
-    /// Applies the requested changes to a resumed run. They take effect from its next step on.
+    /// Applies the changes of this configuration to a resumed run. They take effect from its next step on.
     ///
     /// # Errors
-    /// The error names the first setting that is outside its range or contradicts the other settings, or says that the
-    /// request asks for another initial state.
+    /// The error names the first setting that is outside its range or contradicts the other settings, or says that
+    /// options for another scene or initial state are not allowed.
     pub fn change_state(&self, state: &mut SavedState) -> Result<()> {
         let kept = SceneSource { duration: self.source.duration, ..SceneSource::default() };
         if self.source != kept {

@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::sim::{Simulation, Tally};
 use crate::world::{Grain, Gravity};
 
-/// Header of the files with saved runs.
+/// Header of files with saved runs, and the words for such files in error messages.
 const SEAL: Seal = Seal {
     magic: "slump-state ",
     format: 7,
@@ -19,7 +19,7 @@ const SEAL: Seal = Seal {
     form: "a state that --save or --checkpoint-every wrote",
 };
 
-/// Saved run: the state of a run at one moment, from which the run can resume.
+/// Saved run: the complete state of a run after one of its steps, from which the run can resume.
 ///
 /// ```
 /// use slump_core::scene::built_in;
@@ -38,20 +38,21 @@ const SEAL: Seal = Seal {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SavedState {
-    /// The scene with which the run began, but with the present settings.
+    /// The scene with which the run began, but with the settings that the run had when it was saved.
     pub scene: Scene,
     /// The simulation, including everything that affects later steps.
     pub simulation: Simulation,
-    /// Sums over the steps of the run so far.
+    /// Statistics over the steps of the run so far, such as the numbers of steps and sweeps.
     pub tally: Tally,
-    /// Additional data of a run that resumes in its own output folder. Only that run reads these data.
+    /// Additional data about the output of a run that resumes in its own output folder. Only the code of such runs
+    /// reads these bytes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub of_run: Vec<u8>,
 }
 
 impl SavedState {
-    /// Creates the saved state of a run of `scene` at the present moment of `simulation`. `tally` has the sums over the
-    /// run's steps; it may be empty if the sums are not needed.
+    /// Creates the saved state of a run of `scene`, which is now in the state `simulation`. `tally` has the statistics
+    /// over the run's steps so far; it may be empty if they are not needed.
     pub fn new(mut scene: Scene, simulation: Simulation, tally: Tally) -> Self {
         scene.set_settings(*simulation.settings());
         Self { scene, simulation, tally, of_run: Vec::new() }
@@ -81,7 +82,7 @@ impl SavedState {
         SEAL.written(self)
     }
 
-    /// Reads a saved run from the bytes of a file; `path` is used only in messages.
+    /// Reads a saved run from the bytes of a file; `path` is used only in error messages.
     ///
     /// # Errors
     /// As [`SavedState::open`].
@@ -89,13 +90,13 @@ impl SavedState {
         SEAL.read(bytes, path.as_ref())
     }
 
-    /// True if a file is a saved run of any version of Slump.
+    /// True if a file contains a saved run, written by any version of Slump.
     pub fn is_in(path: &Path) -> bool {
         SEAL.is_on(path)
     }
 
-    /// Returns a scene that starts at time 0 from the present state: with the present positions and velocities of the
-    /// grains, and with walls, fixed discs and periodic borders at their present positions.
+    /// Returns a scene that starts at time 0 from the saved state: with its positions and velocities of the grains, and
+    /// its positions of walls, fixed discs and periodic borders.
     pub fn as_start(&self) -> Scene {
         let world = self.simulation.world();
         let grains = &world.grains;

@@ -11,11 +11,11 @@ use crate::input::{MOST_OF_TOML, read_text};
 use crate::scene::{GrainSource, NewPile, Scene, settle, start_of};
 use crate::world::Grain;
 
-/// Description of a valid scene file, for messages.
+/// Description of a valid scene file, for error messages.
 const FORM: &str = "a scene file in TOML, such as `slump scene` prints";
 
 /// Reads a scene from a TOML file. If the scene names a file of grains, reads the grains from that file. If the scene
-/// asks for a new pile, makes the pile and lets it settle.
+/// describes a new pile, makes the pile and lets its grains settle.
 ///
 /// # Errors
 /// If the file cannot be read, is not TOML or contains something unknown (the message names the line), or contains a
@@ -27,8 +27,8 @@ pub fn read_scene(path: &Path) -> Result<Scene> {
     }
 }
 
-/// Like [`read_scene`], but quick, because a new pile is not settled. The scene then has the grains of the new pile at
-/// their initial positions, and the description of the pile is returned, too.
+/// Like [`read_scene`], but fast, because the grains of a new pile do not settle. The scene then has these grains at
+/// their initial positions, and the description of the pile is also returned, so that its grains can settle later.
 pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<NewPile>)> {
     let text = read_text(path, FORM, MOST_OF_TOML)?;
     let scene = toml::from_str(&text).map_err(|error| {
@@ -40,7 +40,7 @@ pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<NewPile>)> {
 }
 
 /// Reads the grains of a scene from the file that the scene names, or adds the grains of a new pile at their initial
-/// positions and returns the description of that pile. Relative paths in the scene refer to `folder`.
+/// positions and returns the description of that pile. Relative paths in the scene start from `folder`.
 pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Option<NewPile>)> {
     let mut new_pile = None;
     if let Some(source) = scene.source.take() {
@@ -67,8 +67,8 @@ pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Optio
     Ok((scene, new_pile))
 }
 
-/// Reads the grains for a scene from a file. If the scene lists no fixed discs, the fixed discs of the file are added
-/// to the scene.
+/// Reads the grains for a scene from a file, at the step `step` or at the last step. If the scene lists no fixed discs,
+/// the fixed discs of the file are added to the scene.
 fn discs_of(scene: &mut Scene, path: &Path, step: Option<u64>) -> Result<Vec<Grain>> {
     let mut discs = read_grains(path, step)?;
     let grains = std::mem::take(&mut discs.grains);
@@ -95,7 +95,7 @@ pub fn scene_to_toml(scene: &Scene) -> Result<String> {
 }
 
 /// Reads discs from the text of a CSV file in SI units, with the header `x,y,radius` and optionally `vx,vy,omega`,
-/// `mass` or `density`, and `material`. Lines that start with `#` are comments. `path` is for messages.
+/// `mass` or `density`, and `material`. Lines that start with `#` are comments. `path` is for error messages.
 ///
 /// # Errors
 /// If a line is not a disc; the message names the line.
@@ -103,8 +103,8 @@ pub fn parse_discs(text: &str, path: &Path) -> Result<Vec<Grain>> {
     Ok(parse_grains(text, path)?.grains)
 }
 
-/// Returns the text of a CSV file of discs, without their materials and masses. The numbers read back bit for bit. The
-/// text begins with the lines of `comment`, each after `# `.
+/// Returns the text of a CSV file of discs, without their materials and masses. Reading the numbers back gives exactly
+/// the same values. The text begins with the lines of `comment`, each after `# `.
 pub fn write_discs(grains: &[Grain], comment: &str) -> String {
     let mut text = String::new();
     for line in comment.lines() {

@@ -10,7 +10,8 @@ use crate::column_spec::{ColumnSpec, column};
 use crate::granular::{GrainMeasures, Histogram, PileMeasures, histograms};
 use crate::sim::{ContactState, ContactStatus, GrainState, Moment, Observables, Stepper};
 
-/// Returns empty tables with the columns of the tables to which each recorded frame adds rows.
+/// Returns the six tables of a recording to which every frame adds rows (grains, contacts, pairs, walls, measures and
+/// histograms), with their columns but without rows.
 pub(super) fn empty_tables_of_frames() -> [Table; 6] {
     let histograms = histogram_table(&Observables::default(), &[]);
     let contacts = Table::new(CONTACTS, CONTACT_COLUMNS, &[], &[]);
@@ -19,46 +20,46 @@ pub(super) fn empty_tables_of_frames() -> [Table; 6] {
     [empty_grains(), contacts, means::no_pairs(), walls, measures, histograms]
 }
 
-/// Returns empty tables with the columns of all tables of a recording.
+/// Returns all tables of a recording, including the table of steps, with their columns but without rows.
 pub(super) fn empty_tables() -> impl Iterator<Item = Table> {
     empty_tables_of_frames().into_iter().chain([Table::of_steps(&[])])
 }
 
-/// Single tables of a recording, for callers that do not need a whole frame.
+/// Makes single tables of a recording, for callers that do not need a whole frame.
 impl Table {
-    /// Makes the table of grains: one row per grain, then one row per fixed disc.
+    /// Makes the table of grains of a snapshot: one row per grain, then one row per fixed disc.
     pub fn of_grains(moment: &Moment) -> Self {
         grains(moment, &GrainMeasures::of_each(moment))
     }
 
-    /// Makes the table of contacts: one row per contact.
+    /// Makes the table of contacts of a snapshot: one row per contact.
     pub fn of_contacts(moment: &Moment) -> Self {
         contacts(moment)
     }
 
-    /// Makes the table of measures: one row for the whole pile.
+    /// Makes the table of measures of a snapshot, such as stress and solid fraction: one row for the whole pile.
     pub fn of_measures(moment: &Moment) -> Self {
         measures(Some((&moment.observables, &PileMeasures::of(moment))))
     }
 
-    /// Makes the table of histograms: one row per bin of each histogram.
+    /// Makes the table of histograms of a snapshot: one row per bin of each histogram.
     pub fn of_histograms(moment: &Moment) -> Self {
         histogram_table(&moment.observables, &histograms(moment))
     }
 
-    /// Makes the table of steps: one row per step.
+    /// Makes the table of the quantities that are measured in every time step: one row per step.
     pub fn of_steps(rows: &[Observables]) -> Self {
         Self::new("steps", STEP_COLUMNS, rows, &[])
     }
 }
 
-/// Words of the column `kind`, the kind of a disc.
+/// Words of the column `kind` of the table of grains: grain, fixed disc, or lost grain.
 pub(super) const KINDS: &[&str] = &["grain", "fixed", "lost"];
-/// Index in [`KINDS`] of the word for a moving disc.
+/// Index in [`KINDS`] of the word for a grain, a disc that can move freely.
 pub(super) const GRAIN: usize = 0;
-/// Index in [`KINDS`] of the word for a fixed disc.
+/// Index in [`KINDS`] of the word for a fixed disc, which is at rest or has a prescribed motion.
 pub(super) const FIXED: usize = 1;
-/// Index in [`KINDS`] of the word for a disc that went through a wall or left the world.
+/// Index in [`KINDS`] of the word for a lost grain, which went through a wall or left the scene.
 pub(super) const LOST: usize = 2;
 
 struct GrainTableRow {
@@ -136,8 +137,8 @@ pub(super) fn grains(moment: &Moment, measures: &[GrainMeasures]) -> Table {
     grains_of(&rows, measures, &names)
 }
 
-/// Makes the table of grains from rows of discs, the measures of the grains, and the names of materials. Fixed discs
-/// are in the last rows and have no measures.
+/// Makes the table of grains from rows of discs, the measures of the grains, and the names of materials. The last rows
+/// are those of fixed discs; they have no measures.
 fn grains_of(rows: &[GrainTableRow], measures: &[GrainMeasures], materials: &[String]) -> Table {
     let measures = Table::new("grains", GrainMeasures::COLUMNS, measures, &[]);
     Table::new("grains", GRAIN_COLUMNS, rows, materials).beside(measures)
@@ -154,7 +155,7 @@ struct ContactTableRow {
     id: u32,
     other_id: u64,
     kind: u32,
-    /// Index of body j's name in the list of names.
+    /// Index of the name of body j (the body that grain i touches) in the table's list of names.
     name: u32,
     has_bonds: bool,
     state: ContactState,
@@ -246,7 +247,7 @@ pub(super) fn contacts(moment: &Moment) -> Table {
     Table::new(CONTACTS, CONTACT_COLUMNS, &rows, &others.names)
 }
 
-/// Makes the table of measures of the whole pile, with one row for a step, or without rows.
+/// Makes the table of measures of the whole pile: one row for the given step, or no rows if `row` is `None`.
 pub(super) fn measures(row: Option<(&Observables, &PileMeasures)>) -> Table {
     let (now, pile): (Vec<_>, Vec<_>) = row.into_iter().map(|(now, pile)| (*now, *pile)).unzip();
     let of_step =
@@ -290,7 +291,7 @@ pub(super) fn histogram_table(now: &Observables, histograms: &[Histogram]) -> Ta
     Table::new("histograms", BIN_COLUMNS, &bins, &words)
 }
 
-/// Row of the list of frames: a frame that has been written in every format.
+/// Row of the file `frames.csv`, which lists the frames that have been written in every file format.
 pub(super) struct FrameRow {
     pub step: u64,
     pub time_secs: f64,
@@ -307,16 +308,16 @@ pub(super) fn frames(rows: &[FrameRow]) -> Table {
     Table::new("frames", FRAME_COLUMNS, rows, &[])
 }
 
-/// A quantity that is measured in each step, and its column in the table of steps.
+/// A quantity that is measured in every time step, with its column in the table of steps.
 pub struct Observed(&'static ColumnSpec<Observables>);
 
 impl Observed {
-    /// Returns all quantities that are measured in each step.
+    /// Returns all quantities that are measured in every time step.
     pub fn all() -> impl Iterator<Item = Self> {
         STEP_COLUMNS.iter().map(Self)
     }
 
-    /// Returns the quantity whose column has the given name.
+    /// Returns the measured quantity whose column has the given name; `None` if there is no such column.
     pub fn named(name: &str) -> Option<Self> {
         Self::all().find(|observed| observed.0.name == name)
     }
@@ -340,7 +341,8 @@ impl Observed {
         self.0.about
     }
 
-    /// Returns the value of the quantity in a row (true is 1 and false is 0); `None` if the row has no value.
+    /// Returns the value of the quantity in a row of the table of steps (true is 1 and false is 0); `None` if the row
+    /// has no value.
     pub fn of(&self, row: &Observables) -> Option<f64> {
         self.0.value.number(row)
     }

@@ -1,4 +1,4 @@
-//! Writes recordings as CSV text: one growing file for each table, such as `csv/grains.csv`.
+//! Writes recordings as CSV text: one file for each table, such as `csv/grains.csv`, which grows during the run.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind::NotFound, Write};
@@ -78,17 +78,17 @@ pub(super) struct TextTable {
     rows: Vec<u8>,
 }
 
-/// Number of the rows that remain in a table, and the step of the last row.
+/// Rows that remain in a table when a run resumes: their number, and the step of the last row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct KeptRows {
     pub rows: u64,
-    /// Step of the last row; `None` without rows.
+    /// Number of the time step of the last row; `None` without rows.
     pub step: Option<u64>,
 }
 
 impl TextTable {
-    /// Prepares a file with the columns of `table`. The first call of [`TextTable::add`] creates the file, even if that
-    /// call adds no rows. [`TextTable::roll_back`] opens an existing file to continue it.
+    /// Prepares a CSV file with the columns of `table`. The first call of [`TextTable::add`] creates the file, even if
+    /// that call adds no rows. [`TextTable::roll_back`] opens an existing file to continue it.
     pub(super) fn new(path: PathBuf, run: &RunFacts, table: &Table) -> Self {
         let names: Vec<_> = table.columns.iter().map(|column| column.name).collect();
         let names = names.join(",");
@@ -109,7 +109,7 @@ impl TextTable {
         Ok(())
     }
 
-    /// Returns the file. If the file is new, its head is written first.
+    /// Returns the open file. If the file is new, creates it and writes its head.
     fn begun(&mut self) -> Result<&mut GrowingFile> {
         match &mut self.file {
             Some(file) => Ok(file),
@@ -121,13 +121,13 @@ impl TextTable {
         }
     }
 
-    /// Makes sure that the file is on the disk. A file without rows has at least its head.
+    /// Waits until all data of the file are on the disk. If no rows were added, creates the file with its head.
     pub(super) fn finish(&mut self) -> Result<()> {
         self.begun()?.sync()
     }
 
-    /// Removes the rows after the step `step` (all rows if `step` is `None`), and an incomplete row at the end. Returns
-    /// the rows that remain.
+    /// Removes the rows of all time steps after `step` (all rows if `step` is `None`), and an incomplete row at the
+    /// end. Returns the number of the rows that remain.
     pub(super) fn roll_back(&mut self, step: Option<u64>) -> Result<KeptRows> {
         self.file = None;
         let (kept, whole) = self.rows_there(step, u64::MAX)?;
@@ -139,8 +139,8 @@ impl TextTable {
         Ok(kept)
     }
 
-    /// Counts the rows of the file up to the step `step`, at most `most` rows. Also returns the length of the head and
-    /// these rows, bytes. If the file does not exist, both numbers are 0.
+    /// Counts the rows of the file up to the time step `step`, but no more than `most` rows. Also returns the length of
+    /// the head and these rows, bytes. If the file does not exist, the number of rows and the length are 0.
     pub(super) fn rows_there(&self, step: Option<u64>, most: u64) -> Result<(KeptRows, u64)> {
         let mut file = match File::open(&self.path) {
             Ok(file) => BufReader::new(file),

@@ -6,16 +6,16 @@ use std::path::{Path, PathBuf};
 use crate::error::{Error, Result};
 use crate::output::final_name;
 
-/// Name of the file that lists the frames that have been written in every format.
+/// Name of the file that lists the frames of a recording that have been written in every file format.
 pub(super) const FRAMES: &str = "frames.csv";
-/// Beginning of the name of a Parquet file. The number of the file follows.
+/// Beginning of the name of a table's Parquet file. The number of the file follows.
 const BEGINNING_OF_PART: &str = "part-";
-/// Ending of the name of a Parquet file.
+/// Ending of the name of a table's Parquet file.
 const ENDING_OF_PART: &str = ".parquet";
 
-/// Returns the plain files in a folder whose names are accepted by `is_ours`, sorted. This includes drafts (incomplete
-/// files) of such names that a killed process left. Links and pipes are left out. If the folder does not exist, the
-/// list is empty.
+/// Returns the regular files in a folder whose names are accepted by `is_ours`, sorted. This includes drafts
+/// (incomplete files) of such names that a killed process left. Links and pipes are left out. If the folder does not
+/// exist, the list is empty.
 pub(super) fn files_named(folder: &Path, is_ours: impl Fn(&str) -> bool) -> Result<Vec<PathBuf>> {
     let refuse = |error| Error::file(folder, error);
     let entries = match std::fs::read_dir(folder) {

@@ -1,4 +1,4 @@
-//! Defines the interface of all file formats of recordings, and the data that they write.
+//! Defines the interface of all file formats of recordings, and the data that are written in these formats.
 
 use std::path::Path;
 
@@ -11,37 +11,37 @@ use crate::error::{Error, Result};
 use crate::granular::{MomentMeasures, measure};
 use crate::sim::{ForceSums, Moment, Observables};
 
-/// Facts about a recorded run in addition to its tables, for the metadata of its files.
+/// Metadata of a recorded run, which are written into its files in addition to the tables.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RunFacts {
-    /// Facts as (name, value), without line breaks: program, command, and all values of the scene.
+    /// Entries (name, value) without line breaks: program, command, and all values of the scene.
     pub facts: Vec<(String, String)>,
 }
 
-/// One recorded moment of a run, as tables.
+/// Frame of a recording: a snapshot of the simulation, and the tables made from it.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// Number of earlier frames in the recording.
+    /// Number of the frame in the recording, from 0.
     pub number: u64,
-    /// The moment from which the tables were made. All data that are written to files are in the tables.
+    /// Snapshot of the simulation from which the tables were made.
     pub moment: Moment,
     /// Table of grains: one row per grain, then one row per fixed disc.
     pub grains: Table,
     /// Table of contacts: one row per contact.
     pub contacts: Table,
-    /// Table of pairs: one row per pair of bodies that transmitted a force since the previous frame.
+    /// Table of pairs: one row per pair of bodies between which a contact force acted since the previous frame.
     pub pairs: Table,
     /// Table of walls: one row per wall. A wall is a rigid body made of boundaries and fixed discs.
     pub walls: Table,
-    /// Table of measures: one row for the whole pile.
+    /// Table of measures, such as stress and solid fraction: one row for the whole pile.
     pub measures: Table,
     /// Table of histograms: one row per bin of each histogram.
     pub histograms: Table,
 }
 
 impl Frame {
-    /// Makes the tables of a moment. `number` is the number of earlier frames, and `sums` are the sums of the contact
-    /// forces of each pair of bodies since the previous frame.
+    /// Makes the tables of the snapshot `moment`. `number` is the number of earlier frames, and `sums` are the sums of
+    /// the contact forces of each pair of bodies since the previous frame.
     pub fn new(number: u64, moment: Moment, sums: &ForceSums) -> Self {
         let MomentMeasures { pile, grains, histograms } = measure(&moment);
         let now = &moment.observables;
@@ -64,12 +64,12 @@ impl Frame {
     }
 }
 
-/// Extent of a recording at one moment of its run: numbers of frames and rows. All of them must still exist when the
-/// run is resumed from that moment.
+/// Size of a recording when its run was saved: numbers of frames and rows. All of them must still be in the files when
+/// the run resumes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecordingMark {
-    /// Number of frames.
+    /// Number of frames in the recording.
     pub frames: u64,
     /// Number of rows in the table of steps.
     pub steps: u64,
@@ -102,21 +102,21 @@ pub(super) fn check_count(path: &Path, things: &str, found: u64, marked: u64) ->
     Err(Error::file(path, reason))
 }
 
-/// A file format of recordings. Only one thread uses a format, and this is not the solver's thread.
+/// Writer of a recording in one file format. Only one thread uses it, which is not the thread of the solver.
 ///
-/// If the program is killed, all data written before remain readable. A format starts in a folder that has no files of
-/// this format. If the folder has such files, [`Format::roll_back`] must be called before anything is written.
+/// If the program is killed, all data written before remain readable. A writer starts in a folder without files of its
+/// format. If the folder has such files, [`Format::roll_back`] must be called before anything is written.
 pub(super) trait Format: Send {
     /// Writes the next frame. The used memory must not grow with the number of frames.
     fn add(&mut self, frame: &Frame) -> Result<()>;
 
-    /// Writes the measurements of some steps. These steps follow the steps written before.
+    /// Writes the measurements of some time steps. These steps follow the steps written before.
     fn add_steps(&mut self, _steps: &[Observables]) -> Result<()> {
         Ok(())
     }
 
-    /// Makes all added data visible to readers of the files. It is called after each frame, or after several frames if
-    /// the run is faster than the disk.
+    /// Makes all added data visible to programs that read the files. It is called after each frame, or after several
+    /// frames if the run is faster than the disk.
     fn flush(&mut self) -> Result<()> {
         Ok(())
     }
@@ -125,8 +125,8 @@ pub(super) trait Format: Send {
         self.flush()
     }
 
-    /// Checks that all measurements of steps up to `step`, and all frames up to the frame of the step `last_frame`,
-    /// still exist as counted by `mark`. Changes no file.
+    /// Checks that the files still have the measurements of all steps up to `step`, and all frames up to the frame of
+    /// the step `last_frame`, in the numbers stated by `mark`. Changes no file.
     ///
     /// # Errors
     /// The error names a file that has lost data.

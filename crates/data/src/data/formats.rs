@@ -1,4 +1,4 @@
-//! Lists the file formats of recordings that this build can write, and starts them.
+//! Lists the file formats of recordings that this build of the program can write, and creates their writers.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use super::vtk::{self, Vtk};
 use crate::error::{Error, Result};
 use crate::scene::{DataSettings, FormatName};
 
-/// Format of a recording if the user does not ask for a format.
+/// File format of a recording if the user does not ask for a format.
 pub const DEFAULT_FORMAT: FormatName =
     if cfg!(feature = "data") { FormatName::Parquet } else { FormatName::Csv };
 
@@ -27,10 +27,10 @@ pub fn formats_of(settings: &DataSettings) -> Result<Vec<FormatName>> {
     formats.map(|format| check_format(format).map(|()| format)).collect()
 }
 
-/// Fails if this build cannot write a format.
+/// Fails if this build of the program cannot write a format.
 ///
 /// # Errors
-/// The error names the formats that this build can write, and the missing feature.
+/// The error names the formats that this build can write, and the Cargo feature that is missing.
 pub fn check_format(format: FormatName) -> Result<()> {
     if cfg!(feature = "data") || format != FormatName::Parquet {
         return Ok(());

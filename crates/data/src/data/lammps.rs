@@ -1,13 +1,13 @@
 //! Writes recordings as LAMMPS dumps for OVITO and other readers. `ovito/grains.dump` is a text dump with one row per
-//! grain. `ovito/contacts.dump` is a `dump local` with one row per contact between two discs, as bonds.
-//! `ovito/walls.dump` has one row per wall. Contacts with boundaries are left out, because OVITO draws bonds only
-//! between particles and otherwise refuses the frame.
+//! grain. `ovito/contacts.dump` is a `dump local` with one row per contact between two discs, which readers show as
+//! bonds. `ovito/walls.dump` has one row per wall. Contacts with boundaries (walls that are not discs) are left out,
+//! because OVITO draws bonds only between particles and otherwise refuses the frame.
 //!
-//! Columns have the names that readers know. MDAnalysis finds the lines of a frame of grains by counting lines, and
-//! neither MDAnalysis nor ASE accepts grains without z or with unknown elements. The frames of grains therefore contain
-//! only the items that every dump has. The description of the run is at the beginning of the file of contacts, and the
-//! times of frames are in the files of contacts and walls. Numbers are written in the shortest form that reads back as
-//! the same number.
+//! Columns have the names that these readers expect. MDAnalysis finds the lines of a frame of grains by counting lines,
+//! and neither MDAnalysis nor ASE accepts grains without z or with unknown elements. The frames of grains therefore
+//! contain only the items that every dump has. The description of the run is at the beginning of the file of contacts,
+//! and the times of frames are in the files of contacts and walls. Numbers are written in the shortest form that reads
+//! back as the same number.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -25,19 +25,20 @@ use crate::sim::{GrainState, Moment, OtherBody};
 use slump_core::number::Parts;
 
 pub(super) const FOLDER: &str = "ovito";
-/// File names of grains, contacts and walls.
+/// File names of the dumps of grains, contacts and walls.
 pub(super) const FILES: [&str; 3] = ["grains.dump", "contacts.dump", "walls.dump"];
 
 /// First line of an incomplete frame. No reader knows this item, and every reader skips this item at the end of a file.
 const DRAFT: &str = "ITEM: DRAFT";
 /// Beginning of a line that identifies an incomplete frame, even if the line was cut because the program was killed.
 const OF_A_DRAFT: &str = "ITEM: D";
-/// Header line above the simulated time of a frame, which is written ahead of the step. Frames of grains have no time.
+/// Header line above the simulated time of a frame. The time is written ahead of the step. Frames of grains have no
+/// time.
 const TIME: &str = "ITEM: TIME";
 /// Header line above the step of a frame.
 const STEP: &str = "ITEM: TIMESTEP";
-/// First columns of the dump of grains, as (name in the dump, name in Slump). All other columns follow with their own
-/// names.
+/// First columns of the dump of grains, as (name in the dump, name in Slump's tables). All other columns follow with
+/// their own names.
 const GRAIN_COLUMNS: [(&str, &str); 10] = [
     ("id", "id"),
     ("type", "kind"),
@@ -51,15 +52,16 @@ const GRAIN_COLUMNS: [(&str, &str); 10] = [
     // Not `coordination`: OVITO expects whole numbers in a column of this name, but fixed discs have no value.
     ("coordination_number", "coordination"),
 ];
-/// First columns of the dump of contacts, as (name in the dump, name in Slump). All other columns follow with their own
-/// names.
+/// First columns of the dump of contacts, as (name in the dump, name in Slump's tables). All other columns follow with
+/// their own names.
 const CONTACT_COLUMNS: [(&str, &str); 2] = [("batom1", "id_i"), ("batom2", "id_j")];
-/// Columns that dumps do not have: they are in the head of a frame, or do not concern contacts between discs.
+/// Columns of Slump's tables that dumps leave out: step and time are in the head of each frame, and `name_j` is the
+/// name of a boundary, which does not concern contacts between discs.
 const LEFT_OUT: [&str; 3] = ["step", "time", "name_j"];
-/// The only column of the dump of grains that contains words, the names of chemical elements. Readers know no other
+/// The only column of the dump of grains with words: `element`, the name of a chemical element. Readers know no other
 /// words, so all other columns have numbers instead of words.
 const IN_WORDS: &str = "element";
-/// Chemical elements that stand for grains, fixed discs and lost grains.
+/// Chemical elements that stand for grains, fixed discs and lost grains (which went through a wall or left the scene).
 const ELEMENTS: [&str; 3] = ["H", "He", "Li"];
 /// Beginning of the header line above the number of rows of a frame.
 const COUNT: &str = "ITEM: NUMBER OF ";
@@ -67,7 +69,7 @@ const COUNT: &str = "ITEM: NUMBER OF ";
 const ATOMS: &str = LABELS[0];
 /// The words for rows of grains, contacts and walls in the header lines of a dump.
 const LABELS: [&str; 3] = ["ATOMS", "BONDS", "ENTRIES"];
-/// The lowest number of a particle type in LAMMPS.
+/// The lowest number that LAMMPS accepts for a particle type.
 const FIRST_TYPE: u32 = 1;
 
 pub(super) struct Lammps {
@@ -144,8 +146,8 @@ impl GrowingDump {
     }
 }
 
-/// Returns the length of all frames up to the step `step` in a dump that Slump wrote, bytes; 0 if `step` is `None`.
-/// Returns `None` if there is no file.
+/// Returns the length, in bytes, of all frames up to the time step `step` in a dump that Slump wrote; 0 if `step` is
+/// `None`. Returns `None` if there is no file.
 fn length_until(path: &Path, step: Option<u64>) -> Result<Option<u64>> {
     let file = match File::open(path) {
         Ok(file) => file,
@@ -182,7 +184,7 @@ fn length_until(path: &Path, step: Option<u64>) -> Result<Option<u64>> {
     }
 }
 
-/// Counts the complete frames up to the step `step` in a dump that Slump wrote; 0 without a file.
+/// Counts the complete frames up to the time step `step` in a dump that Slump wrote; 0 without a file.
 fn whole_frames(path: &Path, step: Option<u64>) -> Result<u64> {
     let mut lines = match File::open(path) {
         Ok(file) => BufReader::new(file),
@@ -218,27 +220,27 @@ fn whole_frames(path: &Path, step: Option<u64>) -> Result<u64> {
 
 /// The text of a frame in a dump.
 struct FrameText {
-    /// Text ahead of the first frame of a file: units, and facts about the run. Readers skip unknown items only ahead
-    /// of the first frame.
+    /// Text ahead of the first frame of a file: units, and the description of the run. Readers skip unknown items only
+    /// ahead of the first frame.
     pub front: String,
     /// Text of the frame from its first line to the names of the columns.
     pub head: String,
     pub rows: String,
 }
 
-/// Writes a frame of grains: one row per grain, then one row per fixed disc.
+/// Returns the text of a frame of grains: one row per grain, then one row per fixed disc.
 fn grains(frame: &Frame) -> FrameText {
     let rows = 0..frame.grains.len();
     dump(ATOMS, frame, (&frame.grains, &GRAIN_COLUMNS), rows)
 }
 
-/// Writes a frame of walls: one row per wall.
+/// Returns the text of a frame of walls: one row per wall.
 fn walls(frame: &Frame) -> FrameText {
     let rows = 0..frame.walls.len();
     dump(LABELS[2], frame, (&frame.walls, &[]), rows)
 }
 
-/// Writes a frame of contacts: one row per contact between two discs.
+/// Returns the text of a frame of contacts: one row per contact between two discs.
 fn contacts(frame: &Frame, facts: &RunFacts) -> FrameText {
     let contacts = frame.moment.contacts.iter().enumerate();
     let between_discs =
@@ -285,8 +287,8 @@ fn dump(
     FrameText { front: String::new(), head, rows: text }
 }
 
-/// Returns the name of the z component that follows the column `name` if the column is a y component. Readers expect
-/// vectors in three dimensions.
+/// Returns the name of the z component to be written after the column `name`; `None` if the column is not a y
+/// component. Readers expect vectors in three dimensions.
 fn along_z(label: &str, name: &str) -> Option<&'static str> {
     match name {
         "y" if label == ATOMS => Some("z"),
@@ -295,7 +297,7 @@ fn along_z(label: &str, name: &str) -> Option<&'static str> {
     }
 }
 
-/// Returns the periodic image that contains each grain, counted in periods along x and y from the grain's initial
+/// Returns, for each grain, the numbers of periods along x and y by which it has moved away from its initial periodic
 /// image. Returns `None` without periodic borders, and for shearing borders, at which the displacement is not a whole
 /// number of periods.
 fn images(moment: &Moment) -> Option<Vec<[i64; 2]>> {
@@ -339,12 +341,12 @@ fn push(text: &mut String, name: &str, values: &Values, row: usize) {
     };
 }
 
-/// Returns the number that stands for the first word of a list of words in the column `name`.
+/// Returns the number that stands for the first word in the column `name`, whose words are written as numbers.
 fn first_code(name: &str) -> u32 {
     if name == "type" { FIRST_TYPE } else { 0 }
 }
 
-/// Returns the text ahead of the first frame: one line with the facts about the run, and for each dump one line that
+/// Returns the text ahead of the first frame: one line with the metadata of the run, and for each dump one line that
 /// describes its columns. There are no more lines, because OVITO recognises a file only if its first frame begins in
 /// the first 20 lines.
 fn front(facts: &RunFacts, frame: &Frame) -> String {
@@ -400,8 +402,9 @@ fn head(moment: &Moment, label: &str, count: usize) -> String {
     )
 }
 
-/// Returns the box around all discs that are not lost (along a periodic axis, the whole periodic cell) by its lower
-/// left and upper right corner, m, and the largest radius of a disc, m.
+/// Returns the box around all grains that are still in the scene and all fixed discs by its lower left and upper right
+/// corner, m (along a periodic axis, the borders of the periodic cell). Also returns the largest radius of these discs,
+/// m.
 fn bounds(moment: &Moment) -> ([DVec2; 2], f64) {
     let grains = moment.grains.iter().filter(|grain| !grain.lost);
     let grains = grains.map(|grain| (grain.position, grain.radius));

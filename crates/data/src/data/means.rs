@@ -1,5 +1,6 @@
-//! Computes means over the time between two frames: the table of pairs, and the mean columns of the tables of grains,
-//! walls and the pile. The means come from sums over all steps, so they include pairs that have separated since.
+//! Computes means of contact forces and stresses over the time between two frames: the table of pairs of bodies, and
+//! the mean columns of the tables of grains, walls and the pile. The means come from sums over all steps in that time,
+//! so they include pairs that have separated since.
 
 use glam::{DMat2, DVec2};
 
@@ -11,7 +12,8 @@ use crate::column_spec::{ColumnSpec, column};
 use crate::granular::GrainMeasures;
 use crate::sim::{ForceSums, Moment, PairSum, Surroundings};
 
-/// The table of pairs, and columns of means for the tables of grains, walls and the pile.
+/// Means of contact forces and stresses over the time since the previous frame: the table of pairs of bodies, and
+/// columns for the tables of grains, walls and the pile.
 pub(super) struct Means {
     pub pairs: Table,
     pub grains: Table,
@@ -20,8 +22,8 @@ pub(super) struct Means {
 }
 
 impl Means {
-    /// Computes the means. `sums` are the sums of contact forces since the previous frame, and `area` is the area of
-    /// the pile at the moment, m².
+    /// Computes the means. `sums` are the sums of contact forces since the previous frame, `moment` is the present
+    /// snapshot, `grains` are the measures of its grains, and `area` is the area of its pile, m².
     pub(super) fn of(
         sums: &ForceSums,
         moment: &Moment,
@@ -70,7 +72,7 @@ struct PairTableRow {
     id: u32,
     other_id: u64,
     kind: u32,
-    /// Index of body j's name in the list of names.
+    /// Index of the name of body j (the body that grain i touches) in the table's list of names.
     name: u32,
     sum: PairSum,
 }
@@ -127,7 +129,8 @@ fn pairs_table(sums: &ForceSums, moment: &Moment) -> Table {
 }
 
 impl Table {
-    /// Makes the table of pairs: one row per pair of bodies that has transmitted a force.
+    /// Makes the table of pairs: one row per pair of bodies between which a contact force acted since the previous
+    /// frame.
     pub fn of_pairs(sums: &ForceSums, moment: &Moment) -> Self {
         pairs_table(sums, moment)
     }
@@ -141,8 +144,8 @@ fn some(number: f64) -> Option<f64> {
     (!number.is_nan()).then_some(number)
 }
 
-/// Columns of the mean stress σ, N/m: Σ f ⊗ ℓ over contacts, averaged over time and divided by the area, with the
-/// contact force f (N) and the branch vector ℓ (m).
+/// Columns of the mean stress σ, N/m: Σ f ⊗ ℓ over contacts, averaged over the time since the previous frame and
+/// divided by the area, with the contact force f (N) and the branch vector ℓ (m), which leads to the centre of grain i.
 const STRESS_COLUMNS: &[ColumnSpec<DMat2>] = &[
     column(
         "mean_stress_xx",

@@ -1,8 +1,8 @@
 //! Writes and reads recordings: tables of all grains and contacts of a run, in files that other programs can read.
 //!
-//! A [`Recording`] receives moments of a run and the measurements of its steps. A [`Frame`] is one moment as tables of
-//! named columns with units. A `Format` writes frames to files. The names and meanings of columns are declared once, in
-//! `columns`, and every format writes all columns. [`read_grains`] reads the grains back from CSV and Parquet.
+//! A [`Recording`] receives snapshots of a run and the measurements of its steps. A [`Frame`] is one snapshot as tables
+//! of named columns with units. A `Format` writes frames to files. The names and meanings of columns are declared once,
+//! in `columns`, and every format writes all columns. [`read_grains`] reads the grains back from CSV and Parquet.
 
 mod columns;
 mod csv;

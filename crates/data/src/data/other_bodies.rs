@@ -5,11 +5,12 @@ use crate::sim::{Moment, OtherBody};
 /// Words of the column `kind_j`, the kind of body j.
 pub(super) const OTHER_KINDS: &[&str] = &["grain", "fixed", "boundary"];
 
-/// Kinds, ids and names of the bodies j of a moment, for tables.
+/// Kinds, ids and names of the bodies that grains touch (body j of each contact) in a snapshot, for tables.
 pub(super) struct OtherBodies<'a> {
     moment: &'a Moment,
     first_boundary: u64,
-    /// Names of bodies: an empty name for grains and fixed discs, followed by shape and number of each boundary.
+    /// List of names: first the empty name, which all grains and fixed discs have, then a name with shape and number
+    /// for each boundary.
     pub names: Vec<String>,
 }
 

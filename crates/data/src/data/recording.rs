@@ -1,4 +1,4 @@
-//! Records a run: writes the measurements of its steps and its moments to files while it runs.
+//! Records a run: writes the measurements of its steps, and snapshots (frames), to files while it runs.
 
 use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -16,13 +16,13 @@ use crate::sim::{ForceSums, Moment, Observables, Simulation};
 
 /// Default simulated time between two frames, s. Pictures have the same default interval.
 const DEFAULT_EVERY_SECS: f64 = 0.04;
-/// Number of messages that may wait for the writing thread. With more, waiting frames take more memory. With fewer, the
-/// run would wait for a disk that is busy for a moment.
+/// Largest number of messages that may wait for the writing thread. If it is larger, waiting frames take more memory.
+/// If it is smaller, the run must wait whenever the disk is busy for a short time.
 const MOST_WAITING: usize = 4;
-/// Largest number of rows of the table of steps that are collected before they are sent to the writing thread.
+/// Number of rows of the table of steps that are collected before they are sent to the writing thread.
 const MOST_ROWS: usize = 1024;
-/// Largest number of frames between two flushes of the files if the run is faster than the disk. If it is larger, more
-/// frames are lost when the program is killed.
+/// Largest number of frames that are added before the files are flushed, if the run is faster than the disk. If it is
+/// larger, more frames are lost when the program is killed.
 const FRAMES_AT_ONCE: usize = 8;
 
 /// A recording that grows during a run.
@@ -66,8 +66,8 @@ struct WriterThread {
 }
 
 impl Recording {
-    /// Starts a recording in a folder, which is created if it does not exist. If the folder contains a recording, that
-    /// recording is removed if `overwrite` is true, and otherwise refused.
+    /// Starts a recording in a folder, which is created if it does not exist. A recording that is already in the folder
+    /// is removed if `overwrite` is true; otherwise starting fails.
     ///
     /// # Errors
     /// If the folder cannot be written to, if another process is recording into the folder, or if it contains a
@@ -98,13 +98,13 @@ impl Recording {
         Self::with(folder, writer, 0, None)
     }
 
-    /// Resumes the recording in a folder, for a run that resumes at the step `step`. At that step the recording had the
-    /// extent `mark`. Later rows and frames are removed. If the folder contains no recording, a new recording is
-    /// started.
+    /// Continues the recording in a folder, for a run that resumes from the time step `step`. `mark` has the numbers of
+    /// frames and rows that the recording had at that step. Later rows and frames are removed. If the folder contains
+    /// no recording, a new recording is started.
     ///
     /// # Errors
-    /// As [`Recording::start`]. Also fails if a file differs from the format of this version, or has lost rows or
-    /// frames of that extent. Then no recorded data are changed.
+    /// As [`Recording::start`]. Also fails if a file differs from the format of this version, or if rows or frames
+    /// counted in `mark` are missing. Then no recorded data are changed.
     pub fn go_on(
         folder: &Path,
         formats: &[FormatName],
@@ -189,13 +189,13 @@ impl Recording {
         if self.rows.len() < MOST_ROWS && !has_failed { Ok(()) } else { self.send_rows() }
     }
 
-    /// Adds the contact forces of the last step to the means of the next frame. Call this function at the start and
-    /// after each step; more than one call per step has no further effect.
+    /// Adds the contact forces of the last step to the sums for the means in the next frame. Call this function at the
+    /// start and after each step; more than one call per step has no further effect.
     pub fn follow(&mut self, simulation: &Simulation) {
         self.sums.follow(simulation);
     }
 
-    /// Adds a moment as a frame. The step of the moment must be later than the steps of all earlier frames.
+    /// Adds a snapshot of the run as a frame. Its time step must be later than the steps of all earlier frames.
     ///
     /// # Errors
     /// If an earlier write failed.
@@ -209,7 +209,7 @@ impl Recording {
 
     /// Sets the simulated times of frames: [`Recording::add_if_due`] then adds a frame at the step nearest to each of
     /// these times. `simulation` is the run in its present state. A resumed recording already has all frames up to this
-    /// state.
+    /// state, so their times are skipped.
     pub fn at(mut self, times: Times, simulation: &Simulation) -> Self {
         let mut schedule = FrameSchedule::new(times);
         if self.last_step.is_some() {
@@ -219,8 +219,8 @@ impl Recording {
         self
     }
 
-    /// Adds a frame of the present state if a frame is due. Without a call of [`Recording::at`], a frame is always due.
-    /// Also calls [`Recording::follow`]. Call this function at the start and after each step.
+    /// Adds a frame of the present state if the schedule asks for one. Without a call of [`Recording::at`], each call
+    /// adds a frame. Also calls [`Recording::follow`]. Call this function at the start and after each step.
     ///
     /// # Errors
     /// If an earlier write failed.
@@ -230,7 +230,7 @@ impl Recording {
         if is_due { self.add(simulation.moment()) } else { Ok(()) }
     }
 
-    /// Waits until all added data are in the files, and returns the extent of the recording.
+    /// Waits until all added data are in the files, and returns the numbers of frames and rows in the recording.
     ///
     /// # Errors
     /// If data could not be written.
@@ -242,7 +242,7 @@ impl Recording {
         answer.recv().or_else(|_| self.end().map(|()| RecordingMark::default()))
     }
 
-    /// Ends the recording.
+    /// Ends the recording after all added data are in the files.
     ///
     /// # Errors
     /// If data could not be written.
@@ -277,8 +277,8 @@ impl Recording {
 
 impl Drop for Recording {
     fn drop(&mut self) {
-        // The writing thread must end before the folder is unlocked for other processes. Its error is lost here; only
-        // `finish` reports it.
+        // The writing thread must end before the folder is unlocked for other processes. Its error is ignored here;
+        // only `finish` reports it.
         if let Some(WriterThread { sender, thread }) = self.writer.take() {
             drop(sender);
             let _ = thread.join();
@@ -288,24 +288,26 @@ impl Drop for Recording {
 
 enum RecordingMessage {
     Steps(Vec<Observables>),
-    /// A frame: the number of earlier frames, the moment, and the sums of contact forces since the previous frame.
+    /// A frame: the number of earlier frames, the snapshot, and the sums of contact forces since the previous frame.
     Frame(u64, Box<(Moment, ForceSums)>),
-    /// A request to write all earlier messages to the files and then to send the extent of the recording.
+    /// Asks the thread to write the data of all earlier messages to the files and then to send the size of the
+    /// recording.
     Flush(SyncSender<RecordingMark>),
 }
 
-/// Writes the files of all formats on a separate thread, and the list of the frames that all formats have written.
+/// Writer of the files of all formats, on a separate thread. Also writes the list of frames that all formats have
+/// written.
 struct FormatsWriter {
     formats: Vec<Box<dyn Format>>,
     index: TextTable,
     /// Frames that the formats have received but may not yet have written to their files.
     waiting: Vec<FrameRow>,
-    /// Extent of all data that the formats have received.
+    /// Numbers of frames and rows that the formats have received so far.
     mark: RecordingMark,
 }
 
 impl FormatsWriter {
-    /// Starts in a folder without a recording, or opens the existing recording in it.
+    /// Starts writing in a folder without a recording, or opens the recording that is already in it.
     fn start(folder: &Path, formats: &[FormatName], facts: &RunFacts) -> Result<Self> {
         let formats = formats.iter().map(|format| start_format(*format, folder, facts));
         let formats = formats.collect::<Result<_>>()?;
@@ -313,7 +315,8 @@ impl FormatsWriter {
         Ok(Self { formats, index, waiting: Vec::new(), mark: RecordingMark::default() })
     }
 
-    /// Checks that the recording has the extent `mark` at the step `step`, and returns its frames up to that step.
+    /// Checks that the files have the frames and rows that `mark` counts up to the time step `step`. Returns the number
+    /// of frames up to that step, and the step of the last frame.
     fn check(&self, step: u64, mark: &RecordingMark) -> Result<KeptRows> {
         let (kept, _) = self.index.rows_there(Some(step), mark.frames)?;
         if kept.rows < mark.frames {
@@ -327,8 +330,8 @@ impl FormatsWriter {
         Ok(kept)
     }
 
-    /// Removes all data that were recorded after the step `step`, at which the recording had the extent `mark`. If data
-    /// of that extent are missing, removes nothing.
+    /// Removes all data that were recorded after the time step `step`. If data counted in `mark`, the size of the
+    /// recording at that step, are missing, removes nothing and fails.
     fn roll_back(&mut self, step: u64, mark: &RecordingMark) -> Result<KeptRows> {
         let kept = self.check(step, mark)?;
         self.index.roll_back(kept.step)?;
@@ -338,8 +341,8 @@ impl FormatsWriter {
         Ok(kept)
     }
 
-    /// Handles messages until the channel closes. An error ends the recording, but the data written before the error
-    /// remain.
+    /// Writes the data of all messages until the channel closes. An error ends the recording, but the data written
+    /// before the error remain.
     fn run(mut self, messages: &Receiver<RecordingMessage>) -> Result<()> {
         let taken = self.take_all(messages);
         // If a frame could not be added, the frames before it are complete and are still written.
@@ -407,7 +410,8 @@ pub enum Times {
 }
 
 impl Times {
-    /// Returns the times that settings ask for: frames at a constant rate.
+    /// Returns the regular times of frames that the settings state. Without a stated interval, the default interval is
+    /// used.
     pub fn of(settings: &DataSettings) -> Self {
         Self::Every(settings.every_secs.unwrap_or(DEFAULT_EVERY_SECS))
     }
@@ -426,15 +430,15 @@ impl FrameSchedule {
         Self { times, next: 0 }
     }
 
-    /// True if a frame of the present state is due. Call this function once for each step, in order.
+    /// True if a frame of the present state is to be recorded. Call this function once for each step, in order.
     pub fn is_due(&mut self, simulation: &Simulation) -> bool {
         let latest_secs = simulation.time_secs() + 0.5 * simulation.parameters().time_step_secs;
         let step = simulation.observables().step;
         self.is_due_at(step, latest_secs, |secs| simulation.step_at(secs))
     }
 
-    /// True if a frame is due after the step `step`, which is the nearest step for all times up to `latest_secs` (s).
-    /// `step_at` returns the step that is nearest to a time.
+    /// True if a frame is to be recorded after the step `step`. This step is the nearest step for all times up to
+    /// `latest_secs` (s). `step_at` returns the step that is nearest to a time.
     fn is_due_at(&mut self, step: u64, latest_secs: f64, step_at: impl Fn(f64) -> u64) -> bool {
         let mut due = false;
         while self.next_secs().is_some_and(|secs| step_at(secs) <= step) {

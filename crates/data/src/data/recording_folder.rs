@@ -19,7 +19,7 @@ use crate::scene::FormatName;
 /// Name of the file that lists the contents of a recording.
 const MANIFEST: &str = "data.json";
 
-/// A folder that no other recording can use until this value is dropped.
+/// A folder for a recording, locked so that no other recording can use it until this value is dropped.
 pub struct RecordingFolder {
     path: PathBuf,
     overwrite: bool,
@@ -27,7 +27,7 @@ pub struct RecordingFolder {
 }
 
 impl RecordingFolder {
-    /// Creates the folder if it does not exist, and locks it.
+    /// Creates the folder of a recording if it does not exist, and locks it.
     ///
     /// # Errors
     /// If the folder cannot be written to, if another process is recording into the folder, or if it contains a
@@ -161,8 +161,8 @@ pub(super) fn check_manifest(folder: &Path, formats: &[FormatName]) -> Result<()
     Err(Error::value("data-format", names.join(","), allowed))
 }
 
-/// Reads the facts about the scene of a recording, by name. `path` is the folder of the recording or a table in it.
-/// Returns `None` if there is no recording.
+/// Reads the metadata of a recording from its manifest: the values of its scene, by name. `path` is the folder of the
+/// recording or a table in it. Returns `None` if there is no recording.
 pub(crate) fn facts_of_recording(path: &Path) -> Option<Map<String, Value>> {
     let mut manifests = path.ancestors().take(3).map(|folder| folder.join(MANIFEST));
     let text = manifests.find_map(|path| std::fs::read(path).ok())?;

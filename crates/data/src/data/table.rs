@@ -18,7 +18,7 @@ pub struct Table {
 pub struct Column {
     /// Name of the column in files.
     pub name: &'static str,
-    /// Unit; `1` for a dimensionless quantity, empty if the column is not a quantity.
+    /// Unit; `1` for a dimensionless quantity, empty if the column is not a physical quantity (an id, for example).
     pub unit: &'static str,
     /// Description of the column, in a few words.
     pub about: &'static str,
@@ -31,22 +31,22 @@ pub struct Column {
 pub enum Values {
     /// Numbers.
     Numbers(Vec<f64>),
-    /// Numbers; `None` for rows without a number.
+    /// Numbers; `None` for rows in which the number is missing.
     SomeNumbers(Vec<Option<f64>>),
     /// Whole numbers ≥ 0: ids and counts.
     Counts(Vec<u64>),
-    /// True or false; `None` if the property does not exist under the contact law.
+    /// True or false; `None` if the contact law does not define the property (a law without bonds, for example).
     Flags(Vec<Option<bool>>),
-    /// Words from a short list.
+    /// Words from a short list, which belongs to the column.
     Words {
-        /// The list of words.
+        /// List of the words that may occur in the column.
         words: Vec<String>,
         /// The index of each row's word in `words`.
         codes: Vec<u32>,
     },
 }
 
-/// Runs the same code on the list of values of a column, for every kind of values.
+/// Runs the same code on the list of values of a column, for every variant of [`Values`].
 macro_rules! each_kind {
     ($values:expr, $list:ident => $work:expr) => {
         match $values {
@@ -60,17 +60,17 @@ macro_rules! each_kind {
 }
 
 impl Values {
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         each_kind!(self, list => list.len())
     }
 
-    /// True if there is no row.
+    /// True if the column has no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Returns the number in a row; NaN if the row has no number.
+    /// Returns the number in a row; NaN if the number is missing or the column has no numbers.
     pub(super) fn number(&self, row: usize) -> f64 {
         match self {
             Self::Numbers(numbers) => numbers[row],
@@ -80,14 +80,14 @@ impl Values {
         }
     }
 
-    /// Returns the word in a row, if this is a column of words.
+    /// Returns the word in a row; `None` if the column has no words.
     pub(super) fn word(&self, row: usize) -> Option<&str> {
         let Self::Words { words, codes } = self else { return None };
         words.get(codes[row] as usize).map(String::as_str)
     }
 
-    /// Returns these values extended to `rows` rows, with missing values at the end. Counts become numbers, because a
-    /// number can be missing but a count cannot. Words, and numbers that cannot be missing, are not extended.
+    /// Returns the values of a column extended to `rows` rows, with missing values at the end. Counts become numbers,
+    /// because a number can be missing but a count cannot. Words, and numbers that cannot be missing, are not extended.
     pub(super) fn padded(self, rows: usize) -> Self {
         match self {
             Self::SomeNumbers(mut numbers) => {
@@ -141,8 +141,8 @@ impl Column {
         format!("{name}{unit}: {about}")
     }
 
-    /// Like `described`, for formats that write words as numbers: also lists the number of each word. The first word
-    /// has the number `first_code`.
+    /// Like [`Column::described`], but also lists the number of each word, for formats that write words as numbers. The
+    /// first word has the number `first_code`.
     pub(super) fn described_with_codes(&self, name: &str, first_code: u32) -> String {
         let codes = match &self.values {
             Values::Words { words, .. } => {
@@ -158,7 +158,8 @@ impl Column {
 }
 
 impl Table {
-    /// Makes a table from rows. `names` is the list of names to which the rows refer by index.
+    /// Makes a table from rows, with the columns `specs`. `names` is the list from which columns of names take their
+    /// values by index.
     pub(super) fn new<Row>(
         name: &'static str,
         specs: &[ColumnSpec<Row>],
@@ -198,23 +199,23 @@ impl Table {
         self
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.columns.first().map_or(0, |column| column.values.len())
     }
 
-    /// True if there is no row.
+    /// True if the table has no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Returns the column with the given name.
+    /// Returns the column with the given name; `None` if there is no such column.
     pub fn column(&self, name: &str) -> Option<&Column> {
         self.columns.iter().find(|column| column.name == name)
     }
 }
 
-/// Methods for tables that grow and are shortened.
+/// Methods for tables to which rows are added and from which rows are removed.
 #[cfg(feature = "data")]
 impl Table {
     /// Adds the rows of a table with the same columns.
@@ -224,7 +225,7 @@ impl Table {
         }
     }
 
-    /// Returns the step of each row.
+    /// Returns the number of the time step of each row.
     pub(super) fn steps(&self) -> &[u64] {
         match self.column(STEP).map(|column| &column.values) {
             Some(Values::Counts(steps)) => steps,
@@ -232,7 +233,7 @@ impl Table {
         }
     }
 
-    /// Removes the rows after the step `step`, or all rows if `step` is `None`.
+    /// Removes the rows of all time steps after `step`, or all rows if `step` is `None`.
     pub(super) fn keep_until(&mut self, step: Option<u64>) {
         let rows = self.steps().partition_point(|&there| Some(there) <= step);
         self.truncate(rows);

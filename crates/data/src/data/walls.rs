@@ -15,10 +15,10 @@ struct WallTableRow {
     step: u64,
     time_secs: f64,
     id: u64,
-    /// Index of the wall's name in the list of names.
+    /// Index of the wall's name in the table's list of names.
     name: u32,
     motion: Option<f64>,
-    /// The boundaries and discs of the wall, and its motion.
+    /// Boundaries and fixed discs that form the wall, and their common motion.
     wall: MotionView,
     place: DVec2,
     force: DVec2,
@@ -105,7 +105,7 @@ const WALL_COLUMNS: &[ColumnSpec<WallTableRow>] = &[
 ];
 
 impl Table {
-    /// Makes the table of walls: one row per wall.
+    /// Makes the table of walls of a snapshot: one row per wall.
     pub fn of_walls(moment: &Moment) -> Self {
         let walls = walls(&moment.surroundings).into_iter().enumerate();
         let rows = walls.map(|(number, (wall, motion))| row(moment, number, motion, wall));
@@ -118,7 +118,8 @@ impl Table {
     }
 }
 
-/// Returns the fixed discs of a moment, each with the velocity that its motion gives it.
+/// Returns the fixed discs of a snapshot, which are at rest or have a prescribed motion, in the form of grains. Each
+/// disc has the velocity of its prescribed motion.
 pub(super) fn fixed_discs(moment: &Moment) -> impl Iterator<Item = GrainState> + '_ {
     let surroundings = &moment.surroundings;
     let discs = &surroundings.fixed_discs;
@@ -142,7 +143,8 @@ pub(super) fn fixed_discs(moment: &Moment) -> impl Iterator<Item = GrainState> +
     })
 }
 
-/// Returns all walls, each with the number of its motion in the scene; `None` for pistons and walls at rest.
+/// Returns all walls of a scene, each with the number of its prescribed motion in the scene; `None` for pistons and
+/// walls at rest.
 pub(super) fn walls(surroundings: &Surroundings) -> Vec<(MotionView, Option<f64>)> {
     let Surroundings { boundaries, fixed_discs, moving, .. } = surroundings;
     // Pistons come first in the list `moving` and have no number.
@@ -207,8 +209,8 @@ fn row(
     (row, name)
 }
 
-/// Returns the reference point of a wall, m: the pivot if the wall turns, else a point of its first boundary, else the
-/// centre of its first disc.
+/// Returns the point of a wall, m, about which its torque is computed: the pivot if the wall turns, else a point of its
+/// first boundary, else the centre of its first disc.
 pub(super) fn place_of(wall: &MotionView, surroundings: &Surroundings) -> DVec2 {
     let Surroundings { boundaries, fixed_discs, .. } = surroundings;
     let of_boundary = wall.boundaries.first().and_then(|&it| point_of(&boundaries[it]));
@@ -217,7 +219,7 @@ pub(super) fn place_of(wall: &MotionView, surroundings: &Surroundings) -> DVec2 
     if turns { wall.pivot } else { of_boundary.or_else(of_disc).unwrap_or_default() }
 }
 
-/// True if a body is a part of a wall.
+/// True if a body that a grain touches is a part of a wall.
 pub(super) fn is_of(body: OtherBody, wall: &MotionView) -> bool {
     match body {
         OtherBody::Grain(_) => false,

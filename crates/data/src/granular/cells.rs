@@ -36,14 +36,14 @@ use crate::world::{Boundary, Edge, Periodic};
 /// is larger, more of the air above a free surface counts.
 const LARGEST_POWER: f64 = 3.0;
 
-/// Relative margin for rounding in the test whether a cell is closed. The squared distances of its corners from its
-/// centre must be below the limit by this fraction.
+/// Relative margin for rounding in the test whether a cell is closed, which means that all its corners are in the
+/// packing. The squared distances of its corners from its centre must be below the limit by this fraction.
 const CLOSED_WITHIN: f64 = 1e-9;
 
 pub(super) struct PowerCells {
-    /// Area of each grain's cell, m²; NaN for a lost grain.
+    /// Area of each grain's cell, m²; NaN for a lost grain (which went through a wall or left the scene).
     pub areas: Vec<f64>,
-    /// Area of each grain's disc divided by the area of its cell; NaN if the cell is not closed.
+    /// Area of each grain's disc divided by the area of its cell; NaN if a corner of the cell is outside the packing.
     pub solid_fractions: Vec<f64>,
     /// Sum of the areas of the cells of all grains, m².
     pub area: f64,
@@ -52,8 +52,8 @@ pub(super) struct PowerCells {
     /// Total area Σ πr² of the discs of all grains, m².
     pub disc_area: f64,
     pub closed: u32,
-    /// Total disc area of the grains with closed cells, divided by the total area of those cells; NaN without closed
-    /// cells.
+    /// Total disc area of the grains with closed cells (all corners in the packing), divided by the total area of those
+    /// cells; NaN without closed cells.
     pub solid_fraction: f64,
 }
 
@@ -118,8 +118,8 @@ impl PowerCells {
     }
 }
 
-/// Returns the indices of the grains that are not lost, and the discs that have cells: first these grains, then the
-/// fixed discs.
+/// Returns the indices of the grains that are still in the scene, and the discs that have cells: first these grains,
+/// then the fixed discs.
 fn sites(network: &Network, surroundings: &Surroundings) -> (Vec<usize>, Vec<Site>) {
     let (indices, grains): (Vec<usize>, Vec<&GrainState>) = network.grains().unzip();
     let mean_radius = grains.iter().map(|grain| grain.radius).sum::<f64>() / grains.len() as f64;
@@ -134,8 +134,8 @@ fn sites(network: &Network, surroundings: &Surroundings) -> (Vec<usize>, Vec<Sit
     (indices, grains.chain(fixed).map(site).collect())
 }
 
-/// Returns the half-plane that bounds the cell of the first site against the second site. On its border both discs have
-/// the same power.
+/// Returns the half-plane that bounds the cell of the disc `first` against the cell of the disc `second` (indices in
+/// `sites`). A point p on its border has the same power |p − x|² − r² with respect to both discs (centre x, radius r).
 fn cut(sites: &[Site], first: usize, second: usize) -> HalfPlane {
     let (site, other) = (&sites[first], &sites[second]);
     let branch = other.position - site.position;
@@ -150,8 +150,8 @@ fn cut(sites: &[Site], first: usize, second: usize) -> HalfPlane {
     HalfPlane { offset: 0.5 * (distance + powers / distance), direction: branch / distance }
 }
 
-/// Returns, for each of the first `grains` sites, the indices of the sites whose cells may border on its cell: the
-/// circles with the radii `reach` around the two sites overlap.
+/// Returns, for each of the first `grains` discs, the indices of the discs whose cells may border on its cell: the
+/// circles with the radii `reach` around the two discs overlap.
 fn neighbours(sites: &[Site], grains: usize) -> Vec<Vec<usize>> {
     let mut neighbours = vec![Vec::new(); grains];
     let centres: Vec<DVec2> = sites.iter().map(|site| site.position).collect();
@@ -187,7 +187,7 @@ impl GrainBox {
         if size.y < 0.0 { f64::NAN } else { area }
     }
 
-    /// Returns the four sides of the box as half-planes relative to `centre`, a point inside the box.
+    /// Returns the four sides of the box around all grains as half-planes relative to `centre`, a point inside the box.
     fn cuts(&self, centre: DVec2) -> [HalfPlane; 4] {
         let (mut above, mut below) = (self.high - centre, centre - self.low);
         let [width, height] = self.periodic.unwrap_or_default().periods();
@@ -210,7 +210,8 @@ impl GrainBox {
 /// A half-plane that cuts a cell: the points p with (p − x)·direction ≤ offset, with the centre x of the cell's disc.
 #[derive(Clone, Copy, Debug)]
 struct HalfPlane {
-    /// Distance of the half-plane's border from the disc's centre, m; negative if the centre is outside the half-plane.
+    /// Distance of the half-plane's border from the centre of the cell's disc, m; negative if that centre is outside
+    /// the half-plane.
     offset: f64,
     /// Unit normal of the half-plane's border, pointing out of the half-plane.
     direction: DVec2,
@@ -225,7 +226,7 @@ struct Site {
     reach: f64,
 }
 
-/// Adds those periodic images of the sites whose cells may border on a cell of an original site.
+/// Adds those periodic images of the discs whose cells may border on a cell of an original disc.
 fn append_images(sites: &mut Vec<Site>, periodic: Option<Periodic>) {
     let Some(periodic) = periodic else { return };
     let reach = 2.0 * sites.iter().map(|site| site.reach).fold(0.0, f64::max);
@@ -245,8 +246,8 @@ fn append_images(sites: &mut Vec<Site>, periodic: Option<Periodic>) {
     sites.extend(images);
 }
 
-/// Returns a site and, with periodic borders, its images one period to each side. Testing the images against the walls
-/// is equivalent to testing the site against the images of the walls.
+/// Returns a disc and, with periodic borders, its images one period to each side. Testing the images against the walls
+/// is equivalent to testing the disc against the images of the walls.
 fn with_images(site: &Site, periodic: Option<Periodic>) -> impl Iterator<Item = Site> {
     let site = *site;
     let around = periodic.unwrap_or_default().around();
@@ -261,7 +262,7 @@ enum Stands {
     Beside(DVec2),
 }
 
-/// Adds the half-planes by which the sides and corners of all boundaries can cut a site's cell.
+/// Adds the half-planes by which the sides and corners of all boundaries can cut the cell of a disc.
 fn cut_by_walls(boundaries: &[Vec<Edge>], site: &Site, cuts: &mut Vec<HalfPlane>) {
     for edges in boundaries {
         let mut before = false;
@@ -335,7 +336,7 @@ impl CellPolygon {
         }
     }
 
-    /// Reduces the cell to the part that is inside all half-planes.
+    /// Reduces the cell to the part that is inside all half-planes `cuts`.
     fn clip<const COUNT: usize>(&mut self, cuts: [HalfPlane; COUNT]) {
         for HalfPlane { offset, direction } in cuts {
             if offset < 0.0 && offset * offset >= self.farthest_squared() {

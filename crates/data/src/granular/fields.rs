@@ -25,7 +25,7 @@ use crate::error::{Error, Result};
 use crate::sim::{GrainState, Moment};
 use crate::world::Periodic;
 
-/// Grid cells per smoothing width. With two, a field that is smooth over a width is resolved.
+/// Number of grid cells per smoothing width. Two cells resolve a field that varies smoothly over a smoothing width.
 const CELLS_IN_WIDTH: f64 = 2.0;
 /// Largest number of grid cells of a field. More cells would take more memory than a field is worth.
 const MOST_CELLS: f64 = 4e6;
@@ -36,8 +36,8 @@ const QUADRATURE: [(f64, f64); 3] = [
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
 
-/// Smoothed fields of a moment. Each list has the mean over each cell of a grid, row by row from below, each row from
-/// the left.
+/// Smoothed fields of a snapshot: density, momentum, velocity and stress. Each list has the mean over each cell of a
+/// grid, row by row from below, each row from the left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fields {
     /// Smoothing width, m: the standard deviation of the smoothing function along each axis.
@@ -47,9 +47,9 @@ pub struct Fields {
     pub origin: DVec2,
     /// Width and height of a grid cell, m.
     pub cell: DVec2,
-    /// Indices of the first cell of the grid along x and y.
+    /// Indices of the first cell of the grid along x and y, counted from the cell at `origin`.
     pub first: [i64; 2],
-    /// Numbers of cells along x and y.
+    /// Numbers of grid cells along x and y.
     pub counts: [usize; 2],
     /// Density ρ in each cell: mass per area, kg/m².
     pub density: Vec<f64>,
@@ -65,17 +65,18 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// Computes the fields of all grains that are not lost, with the smoothing width `width`, m.
+    /// Computes the fields of all grains that are still in the scene, with the smoothing width `width`, m.
     ///
     /// # Errors
-    /// If the width is not a finite length > 0 or would need too many cells, or if a number of the moment is not finite.
+    /// If the width is not a finite length > 0 or would need too many cells, or if a number of the snapshot is not
+    /// finite.
     pub fn of(moment: &Moment, width: f64) -> Result<Self> {
         Self::in_box(moment, width, [DVec2::MIN, DVec2::MAX])
     }
 
     /// Computes the fields on a grid that covers the grains in a box, given by its lower left and upper right corner
-    /// (m), and the region over which these grains are smeared. Grains outside the box count only as far as they are
-    /// smeared into this grid.
+    /// (m), and the region over which smoothing spreads these grains. Grains outside the box count only as far as they
+    /// are spread into this grid.
     ///
     /// # Errors
     /// As [`Fields::of`].
@@ -126,8 +127,8 @@ impl Fields {
         Ok(fields)
     }
 
-    /// True if the fields of a box, given by its lower left and upper right corner (m), do not need more than the
-    /// largest number of grid cells with the smoothing width `width`, m.
+    /// True if the grid for the fields of a box, given by its lower left and upper right corner (m), has no more than
+    /// the largest accepted number of cells with the smoothing width `width`, m.
     pub fn are_few(periodic: Option<Periodic>, corners: [DVec2; 2], width: f64) -> bool {
         let axes = axes_over(periodic.unwrap_or_default(), corners, width);
         axes.iter().map(|axis| axis.cells).product::<f64>() <= MOST_CELLS
@@ -175,7 +176,8 @@ impl Fields {
         self.velocity = velocity;
     }
 
-    /// Returns the centres of the cells along x and along y, m.
+    /// Returns the x coordinates of the columns of cells and the y coordinates of the rows of cells, at the centres of
+    /// the cells, m.
     pub fn centres(&self) -> [Vec<f64>; 2] {
         [0, 1].map(|axis| {
             let of = |number: usize| {
@@ -187,8 +189,8 @@ impl Fields {
     }
 }
 
-/// Returns the lower left and upper right corner of the smallest box around points. Without points, both are at the
-/// origin.
+/// Returns the lower left and upper right corner of the smallest axis-parallel box around points. Without points, both
+/// are at the origin.
 pub(crate) fn box_of(places: impl Iterator<Item = DVec2>) -> [DVec2; 2] {
     let wider = |[low, high]: [DVec2; 2], [other, one]: [DVec2; 2]| [low.min(other), high.max(one)];
     places.map(|at| [at, at]).reduce(wider).unwrap_or([DVec2::ZERO; 2])
@@ -216,8 +218,8 @@ struct GridAxis {
 }
 
 impl GridAxis {
-    /// Creates all cells over which points from `from` to `to` (m) are smeared, or all cells between the periodic
-    /// borders.
+    /// Creates the grid cells along one axis: all cells over which points from `from` to `to` (m) are smeared by
+    /// smoothing, or, if the axis is periodic, all cells between its borders.
     fn of(borders: Option<[f64; 2]>, [from, to]: [f64; 2], width: f64) -> Self {
         let side = width / CELLS_IN_WIDTH;
         if let Some([low, high]) = borders {
@@ -230,9 +232,9 @@ impl GridAxis {
         Self { wraps: false, origin: 0.0, side, first: first as i64, cells }
     }
 
-    /// Returns, for each grid cell over which a point at `place` (m) is smeared, the cell's index, its weight, and the
-    /// number of periods by which the cell is beyond the upper periodic border. The weights add up to 1, unless a part
-    /// of the smeared point is outside the grid.
+    /// Returns, for each grid cell over which smoothing spreads a point at `place` (m), the cell's index, its weight,
+    /// and the number of periods by which the cell is beyond the upper periodic border. The weights add up to 1, unless
+    /// a part of the spread point is outside the grid.
     fn shares(&self, place: f64, width: f64) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
         let knots = knots(width);
         let at = move |cell: f64| self.origin + cell * self.side;
@@ -282,8 +284,8 @@ struct Smoothing {
 }
 
 impl Smoothing {
-    /// Calls `to` for each grid cell over which a point at `place` (m) is smeared, with the cell's index, its weight,
-    /// and the number of periods by which the smeared part lies above the periodic cell of the scene.
+    /// Calls `to` for each grid cell over which smoothing spreads a point at `place` (m), with the cell's index, its
+    /// weight, and the number of periods by which the spread part lies above the periodic cell of the scene.
     fn share(&self, place: DVec2, mut to: impl FnMut(usize, f64, f64)) {
         let [along_x, along_y] = &self.axes;
         let in_row = |above: f64| {

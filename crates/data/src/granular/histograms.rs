@@ -1,6 +1,6 @@
-//! Counts forces, directions, contacts and overlaps of a pile in histograms.
+//! Counts the contact forces, contact directions, contacts per grain and overlaps of a pile in histograms.
 //!
-//! The bins are the same for all piles and moments, so that counts of several frames and runs can be added.
+//! The bins are the same for all piles and for all frames, so that counts of several frames and runs can be added.
 
 use super::MomentParts;
 use super::stress::axis_degrees;
@@ -11,14 +11,14 @@ use crate::sim::Moment;
 const DEGREES: f64 = 5.0;
 /// Number of bins of normal forces per mean force: a bin is 1/5 of the mean force wide.
 const FORCE_BINS_IN_ONE: i32 = 5;
-/// Lower limit of the bins of normal forces: this many mean forces, in tension. One more bin contains all stronger
-/// tensile forces.
+/// Largest tensile normal force, in units of the mean force, up to which the histogram of normal forces has bins of
+/// equal width. One more bin contains all stronger tensile forces.
 const FORCES_PULLING: i32 = 4;
-/// Upper limit of the bins of normal forces: this many mean forces, in compression. One more bin contains all stronger
-/// compressive forces.
+/// Largest compressive normal force, in units of the mean force, up to which the histogram of normal forces has bins of
+/// equal width. One more bin contains all stronger compressive forces.
 const FORCES_PUSHING: i32 = 8;
-/// Lower edge of the last bin of contacts per grain. This bin includes all larger numbers. Equal discs have at most 6
-/// contacts.
+/// Number of contacts per grain at which the last bin of their histogram begins. This bin includes all larger numbers.
+/// Equal discs have at most 6 contacts.
 const CONTACTS: u32 = 12;
 /// Edges of the bins of overlaps, in mean diameters: 0, and then three per decade from 1e-7 to 0.1.
 const OVERLAPS: [f64; 20] = [

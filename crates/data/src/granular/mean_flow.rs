@@ -1,4 +1,5 @@
-//! Fits the mean flow around each grain, and computes the kinetic energy of the grains relative to this flow.
+//! Fits the mean flow (velocity as a linear function of position) around each grain, and computes the kinetic energy of
+//! the grains relative to this flow.
 
 use glam::{DMat3, DVec2, DVec3};
 

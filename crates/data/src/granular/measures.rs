@@ -1,4 +1,5 @@
-//! Measures a pile around each of its grains, and as a whole.
+//! Computes measures of a pile, such as contacts, stress and solid fraction: around each of its grains, and for the
+//! whole pile.
 
 use glam::DVec2;
 
@@ -50,8 +51,8 @@ macro_rules! columns {
 }
 
 columns! {
-    /// Measures of the pile around one grain at one moment. A lost grain has no contacts, and its other measures are
-    /// NaN.
+    /// Measures of the pile around one grain, at one time of the simulation. A lost grain (which went through a wall or
+    /// left the scene) has no contacts, and its other numbers are NaN.
     pub struct GrainMeasures {
         /// Number of contacts with other grains, fixed discs and boundaries.
         coordination: u32, "1";
@@ -79,7 +80,7 @@ columns! {
 }
 
 impl GrainMeasures {
-    /// Measures each grain of a pile, in the order of the grains.
+    /// Computes the measures around each grain of a pile, in the order of the grains.
     pub fn of_each(moment: &Moment) -> Vec<Self> {
         Self::of_parts(&MomentParts::of(moment))
     }
@@ -109,8 +110,8 @@ impl GrainMeasures {
 }
 
 columns! {
-    /// Measures of the whole pile at one moment. An undefined measure is NaN, such as a mean over no contacts, or a
-    /// principal direction if both principal values are equal.
+    /// Measures of the whole pile at one time of the simulation. An undefined measure is NaN, such as a mean over no
+    /// contacts, or a principal direction if both principal values are equal.
     pub struct PileMeasures {
         /// Number of grains that are not lost. All other measures are those of these grains.
         grains: u32, "1";
@@ -198,7 +199,8 @@ columns! {
 }
 
 impl PileMeasures {
-    /// Measures a whole pile. If the measures of its grains are also needed, [`measure`](super::measure) is cheaper.
+    /// Computes the measures of a whole pile. If the measures around its grains are also needed,
+    /// [`measure`](super::measure) is cheaper.
     pub fn of(moment: &Moment) -> Self {
         Self::of_parts(&MomentParts::of(moment))
     }
@@ -246,8 +248,8 @@ impl PileMeasures {
 }
 
 columns! {
-    /// Shape of a heap at one moment, as a triangle. The mass of the triangle and the mass of the heap have the same
-    /// mean height above the lowest point and the same mean horizontal distance from the middle.
+    /// Shape of a heap at one time of the simulation, described by a triangle. The mass of the triangle and the mass of
+    /// the heap have the same mean height above the lowest point and the same mean horizontal distance from the middle.
     pub struct HeapShape {
         /// Angle of repose: slope of the sides of the triangle that represents the heap.
         repose_angle: f64, "degree";
@@ -257,7 +259,7 @@ columns! {
 }
 
 impl HeapShape {
-    /// Measures the shape of a heap.
+    /// Computes the triangle that describes the shape of a heap.
     pub fn of(moment: &Moment) -> Self {
         let grains = || moment.grains.iter().filter(|grain| !grain.lost);
         let mean = |of: &dyn Fn(DVec2) -> f64| {

@@ -11,8 +11,8 @@
 //!
 //! Lengths are in m and forces in N. In a plane a stress is a force per length, in N/m. Compression is positive,
 //! directions are in degrees anticlockwise from the x axis, and an undefined quantity is NaN. Lost grains (grains that
-//! went through a wall or left the world) and their contacts do not count. Forces, normals and gaps of contacts belong
-//! to the moment's last step, and the positions of grains to the end of that step.
+//! went through a wall or left the scene) and their contacts do not count. Forces, normals and gaps of contacts are
+//! those of the last step before the snapshot, and the positions of grains are those at the end of that step.
 
 mod cells;
 mod fields;
@@ -32,18 +32,18 @@ use self::cells::PowerCells;
 use self::network::{Clusters, Coordination, ForceDistribution, Network};
 use crate::sim::{Moment, Surroundings};
 
-/// All measures of a moment: of the pile, of each grain, and histograms.
+/// All measures of a snapshot: of the pile, around each grain, and histograms.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct MomentMeasures {
     /// Measures of the whole pile.
     pub pile: PileMeasures,
-    /// Measures of each grain, in the order of the moment's grains.
+    /// Measures around each grain, in the order of the grains in the snapshot.
     pub grains: Vec<GrainMeasures>,
     /// Histograms of forces, directions, contacts and overlaps ([`histograms()`]).
     pub histograms: Vec<Histogram>,
 }
 
-/// Computes all measures of a moment in one call. One call is faster than separate calls, because the measures share
+/// Computes all measures of a snapshot in one call. One call is faster than separate calls, because the measures share
 /// intermediate results.
 pub fn measure(moment: &Moment) -> MomentMeasures {
     let parts = MomentParts::of(moment);
@@ -54,7 +54,7 @@ pub fn measure(moment: &Moment) -> MomentMeasures {
     }
 }
 
-/// Intermediate results of a moment that several measures use.
+/// Intermediate results of a snapshot that several measures use.
 struct MomentParts<'a> {
     network: Network<'a>,
     cells: PowerCells,

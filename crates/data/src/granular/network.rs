@@ -1,30 +1,30 @@
-//! Builds the network of the grains that count and their contacts, and computes quantities of the network itself:
-//! contacts per grain, clusters, and the distribution of normal forces. A grain counts unless it is lost (it went
-//! through a wall or left the world) or its position is not finite.
+//! Builds the network of grains and their contacts, and computes quantities of the network itself: contacts per grain,
+//! clusters, and the distribution of normal forces. The network leaves out lost grains (they went through a wall or
+//! left the scene) and grains whose position is not finite.
 
 use ena::unify::{InPlaceUnificationTable, UnifyKey};
 use glam::DVec2;
 
 use crate::sim::{ContactState, ContactStatus, GrainState, Moment, OtherBody};
 
-/// Fraction of the mean force of all contacts above which a contact bears a force. If the fraction is smaller, residual
-/// errors of the solver count as forces. If it is larger, weak contacts do not count.
+/// Smallest contact force that counts as a force, as a fraction of the mean force of all contacts. If the fraction is
+/// smaller, residual errors of the solver count as forces. If it is larger, weak contacts do not count.
 const BEARS_FROM: f64 = 1e-6;
 
-/// Network of contacts between the grains that are not lost. Lost grains went through a wall or left the world.
+/// Network of grains and their contacts, without lost grains (which went through a wall or left the scene).
 pub(super) struct Network<'a> {
     pub grains: &'a [GrainState],
-    /// For each grain, true if the grain counts: it is not lost and its position is finite. `links` has only indices of
-    /// such grains.
+    /// For each grain, true if it is in the network: it is not lost and its position is finite. `links` has only
+    /// indices of such grains.
     pub counts: Vec<bool>,
     pub links: Vec<NetworkContact>,
 }
 
-/// A contact of a grain that is not lost with another such grain, a wall or a fixed disc. Lengths are in m and forces
-/// in N.
+/// A contact of a grain in the network with another grain in the network, a wall or a fixed disc. Lengths are in m and
+/// forces in N.
 pub(super) struct NetworkContact {
     pub grain: usize,
-    /// Index of grain j; `None` if grain i touches a wall or a fixed disc.
+    /// Index of grain j, the second grain of the contact; `None` if grain i touches a wall or a fixed disc.
     pub other: Option<usize>,
     pub normal: DVec2,
     pub gap: f64,
@@ -88,7 +88,7 @@ impl<'a> Network<'a> {
         self.grains().count()
     }
 
-    /// Returns the fraction of the contacts that satisfy a condition; NaN without contacts.
+    /// Returns the fraction of the contacts in the network that satisfy a condition; NaN without contacts.
     pub(super) fn share(&self, is_so: impl Fn(&NetworkContact) -> bool) -> f64 {
         let count = self.links.iter().filter(|&link| is_so(link)).count();
         count as f64 / self.links.len() as f64
@@ -133,7 +133,8 @@ pub(super) struct Coordination {
     pub rattlers: Vec<bool>,
     /// Mean number of contacts per grain.
     pub mean: f64,
-    /// Mean number of force-bearing contacts per grain, without rattlers and their contacts.
+    /// Mean number of force-bearing contacts per grain, without rattlers (grains that transmit no force) and their
+    /// contacts.
     pub mean_without_rattlers: f64,
 }
 
@@ -213,8 +214,8 @@ impl UnifyKey for Member {
     }
 }
 
-/// Number and largest size of clusters. A cluster is a set of grains joined by contacts. Walls and fixed discs do not
-/// join grains, so two piles on one floor are separate clusters.
+/// Number of clusters, and size of the largest cluster. A cluster is a set of grains joined by contacts. Walls and
+/// fixed discs do not join grains, so two piles on one floor are separate clusters.
 pub(super) struct Clusters {
     pub count: u32,
     /// Number of grains in the largest cluster.
@@ -260,7 +261,7 @@ impl ForceDistribution {
         Self { mean, over_mean: forces.iter().map(|force| force / mean).collect() }
     }
 
-    /// Returns the moment ⟨|f|^power⟩ of the relative normal forces f; NaN without forces.
+    /// Returns the statistical moment ⟨|f|^power⟩ of the relative normal forces f; NaN without forces.
     pub(super) fn moment(&self, power: i32) -> f64 {
         mean(&self.over_mean, |force| force.abs().powi(power))
     }

@@ -12,7 +12,8 @@ use glam::DVec2;
 
 use super::network::Network;
 
-/// Computes Σ f ⊗ ℓ over all contacts, J, with the contact force f (N) and the branch vector ℓ (m).
+/// Computes Σ f ⊗ ℓ over all contacts, N·m, with the contact force f (N) and the branch vector ℓ (m), which leads to
+/// the centre of grain i from the centre of grain j or from the touched point of a wall or fixed disc.
 pub(super) fn stress_of_contacts(network: &Network) -> Tensor {
     let mut sum = Tensor::default();
     for link in &network.links {
@@ -21,7 +22,7 @@ pub(super) fn stress_of_contacts(network: &Network) -> Tensor {
     sum
 }
 
-/// Computes the contribution of each grain to Σ f ⊗ ℓ ([`stress_of_contacts`]), J, in the order of the grains.
+/// Computes the contribution of each grain to Σ f ⊗ ℓ ([`stress_of_contacts`]), N·m, in the order of the grains.
 pub(super) fn stress_of_grains(network: &Network) -> Vec<Tensor> {
     let mut sums = vec![Tensor::default(); network.grains.len()];
     for link in &network.links {
@@ -52,7 +53,7 @@ pub(super) struct Tensor {
 }
 
 impl Tensor {
-    /// Adds the tensor product a ⊗ b.
+    /// Adds the tensor product a ⊗ b to this tensor.
     pub(super) fn add(&mut self, a: DVec2, b: DVec2) {
         self.xx += a.x * b.x;
         self.xy += a.x * b.y;
@@ -66,18 +67,18 @@ impl Tensor {
         Self { xx: xx / divisor, xy: xy / divisor, yx: yx / divisor, yy: yy / divisor }
     }
 
-    /// Returns the mean of the two principal values.
+    /// Returns the mean of the tensor's two principal values, which is half the trace.
     pub(super) fn mean(self) -> f64 {
         0.5 * (self.xx + self.yy)
     }
 
-    /// Returns half the difference of the principal values of the symmetric part.
+    /// Returns half the difference between the two principal values of the tensor's symmetric part.
     pub(super) fn deviator(self) -> f64 {
         self.half_differences().length()
     }
 
-    /// Returns the direction of the larger principal value of the symmetric part, degrees anticlockwise from the x
-    /// axis, in [0, 180). It is NaN if the principal values are equal.
+    /// Returns the direction of the larger principal value of the tensor's symmetric part, degrees anticlockwise from
+    /// the x axis, in [0, 180). It is NaN if the principal values are equal.
     pub(super) fn direction(self) -> f64 {
         let differences = self.half_differences();
         if differences.length() > 0.0 {
@@ -87,8 +88,8 @@ impl Tensor {
         }
     }
 
-    /// Returns the components a and b of the deviator, the matrix (a b; b −a), which is the symmetric part minus the
-    /// mean of its principal values.
+    /// Returns the components a and b of the tensor's deviator, the matrix (a b; b −a), which is the symmetric part
+    /// minus the mean of its principal values.
     fn half_differences(self) -> DVec2 {
         0.5 * DVec2::new(self.xx - self.yy, self.xy + self.yx)
     }

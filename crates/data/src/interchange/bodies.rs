@@ -1,5 +1,6 @@
-//! Describes the bodies from which a problem's matrix W and velocities q were computed, for solvers that work on
-//! bodies. The bodies are taken from a simulation, checked, and converted to the contact problem of a step.
+//! Describes the bodies of a contact problem in a file: the discs and contacts from which its matrix W and its relative
+//! velocities q were computed. Solvers that work on bodies need them. The bodies are taken from a simulation, checked,
+//! and converted to the contact problem of a step.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -15,13 +16,13 @@ use crate::sim::{ProblemVisitor, RunEnding, Simulation};
 use crate::solver::{Assembled, FixedRow, Model, ModelParts, PairRow, Row, StepProblem};
 use crate::world::{FrictionCone, Grains};
 
-/// Largest accepted relative difference between the numbers in a problem file (matrix W, velocities q, cohesion
-/// impulses c₀) and the values computed from its bodies. It allows for rounding, and for files whose numbers were cut
-/// to ten digits.
+/// Largest accepted relative difference between the numbers in a problem file (matrix W, relative velocities q,
+/// cohesion impulses c₀) and the values computed from the bodies in the file. It allows for rounding, and for files
+/// whose numbers were cut to ten digits.
 pub(super) const DISAGREEMENT: f64 = 1e-9;
 
-/// Discs and their contacts, from which the matrix W, the velocities q and the cohesion impulses c₀ were computed. Each
-/// list has one entry per body or one per contact.
+/// Discs and their contacts, from which the matrix W, the relative velocities q and the cohesion impulses c₀ of a
+/// problem file were computed. Each list has one entry per body or one per contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyForm {
@@ -29,8 +30,9 @@ pub struct BodyForm {
     pub axes: u8,
     /// True if the bodies can rotate.
     pub rotation: bool,
-    /// Capture speed Bond·g·Δt, m/s: the opening speed that one step of cohesion stops. The cohesion impulse c₀ of a
-    /// contact is its effective mass times the capture speed.
+    /// Capture speed Bond·g·Δt (Bond number, gravity g, time step Δt), m/s: the opening speed of a contact that
+    /// cohesion stops within one step. The cohesion impulse c₀ of a contact is its effective mass times the capture
+    /// speed.
     pub capture_speed: f64,
     /// Mass of each body, kg.
     pub mass: Vec<f64>,
@@ -40,21 +42,24 @@ pub struct BodyForm {
     pub radius: Vec<f64>,
     /// Velocity (v_x, v_y, ω) that each body would have at the end of the step without contact impulses, m/s and rad/s.
     pub free_velocity: Vec<[f64; 3]>,
-    /// Indices of the bodies i and j of each contact; j is null for a fixed body.
+    /// Indices of the two bodies i and j of each contact; j is null if body i touches a wall or a fixed disc, which no
+    /// grain can move.
     pub pair: Vec<(u32, Option<u32>)>,
     /// Unit normal n of each contact, pointing from body j to body i.
     pub normal: Vec<[f64; 2]>,
-    /// Additional term of each contact in its velocity q without contact impulses, m/s. It comes from restitution, or
-    /// it is gap/Δt if the contact has a gap within the touch tolerance, which may close.
+    /// Term that restitution adds to the normal velocity q of each contact, m/s. For a contact with a gap within the
+    /// touch tolerance the term is gap/Δt instead (Δt: time step), so that the gap may close.
     pub restitution_velocity: Vec<f64>,
-    /// Speed of the fixed body's surface along the tangent (the normal turned by +90°) at each contact, m/s; 0 for a
-    /// contact between two bodies. The list is empty if no fixed body moves.
+    /// Speed at which the surface of the touched wall or fixed disc moves along the tangent (the normal turned by +90°)
+    /// at each contact, m/s; 0 for a contact between two bodies of the lists. The list is empty if no wall or fixed
+    /// disc moves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub surface_speed: Vec<f64>,
 }
 
 impl BodyForm {
-    /// Checks the bodies, and that the file's matrix W, velocities q and cohesion impulses c₀ follow from the bodies.
+    /// Checks the bodies. Also checks that the file's matrix W, relative velocities q and cohesion impulses c₀ follow
+    /// from the bodies.
     pub(super) fn check(&self, file: &ProblemFile) -> Result<()> {
         let (bodies, contacts) = (self.mass.len(), file.nc);
         let lengths = [
@@ -107,8 +112,8 @@ impl BodyForm {
         with_model!(self.parts(file)?, M => self.check_numbers::<M>(file))
     }
 
-    /// Checks that the file's matrix W, velocities q and cohesion impulses c₀ agree with the values computed from the
-    /// bodies. Without friction the tangential rows have no effect and need not agree.
+    /// Checks that the file's matrix W, relative velocities q and cohesion impulses c₀ agree with the values computed
+    /// from the bodies. Without friction the tangential rows of W and q have no effect and need not agree.
     fn check_numbers<M: Model>(&self, file: &ProblemFile) -> Result<()> {
         let problem = self.step_problem::<M>(file);
         let assembled = Assembled::of(&problem)?;
@@ -154,8 +159,8 @@ impl BodyForm {
         Ok(())
     }
 
-    /// Returns the physical properties (axes, friction, rotation) that select the model with which this problem can be
-    /// solved on its bodies.
+    /// Returns the physical properties (axes, friction, rotation) of the problem. They select the [`Model`], the
+    /// variant of the solvers that can solve the problem on its bodies.
     pub(super) fn parts(&self, file: &ProblemFile) -> Result<ModelParts> {
         let friction = self.friction(file)?;
         Ok(ModelParts {
@@ -175,8 +180,8 @@ impl BodyForm {
         }
     }
 
-    /// Returns the contact problem of the step on its bodies. Contacts with fixed bodies come first; apart from this,
-    /// contacts are in the order of the file.
+    /// Returns the contact problem of the step in the form that solvers on bodies use. Contacts with walls and fixed
+    /// discs come first; apart from this, contacts are in the order of the file.
     pub(super) fn step_problem<M: Model>(&self, file: &ProblemFile) -> StepProblem<M> {
         let coordinates = |body: usize| {
             let [x, y, spin] = self.free_velocity[body];
@@ -225,7 +230,8 @@ impl BodyForm {
     }
 }
 
-/// True if two computed values of the same number agree up to rounding, relative to `scale`. NaN never agrees.
+/// True if `found` and `expected`, two computed values of the same number, agree up to rounding: their difference is at
+/// most [`DISAGREEMENT`] times `scale`. The result is false if a value is NaN.
 fn agree(found: f64, expected: f64, scale: f64) -> bool {
     (found - expected).abs() <= DISAGREEMENT * scale
 }
@@ -234,8 +240,8 @@ fn agree(found: f64, expected: f64, scale: f64) -> bool {
 /// at that time. `progress` is called with the simulated time, s.
 ///
 /// # Errors
-/// If the time is before the start, if there are no contacts at that time or too many for a file, or if the state or a
-/// number of the problem is not finite.
+/// If the time is before the start, if there are no contacts at that time, if a file cannot represent the problem
+/// ([`problem_file_of`]), or if the state or a number of the problem is not finite.
 pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> Result<ProblemFile> {
     if !(at_secs >= 0.0 && at_secs.is_finite()) {
         return Err(Error::value("at", at_secs, "a finite number of seconds ≥ 0"));
@@ -265,7 +271,8 @@ pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> R
 /// Returns the contact problem of a simulation's next step. The simulation does not change.
 ///
 /// # Errors
-/// If the problem has too many contacts for a file.
+/// If a file cannot represent the problem (walls driven by a force, rolling friction, or shearing periodic borders), or
+/// if its matrix W would have too many entries.
 pub fn problem_file_of(simulation: &Simulation) -> Result<ProblemFile> {
     let grains = &simulation.world().grains;
     simulation.next_problem(ProblemFileVisitor { grains })
@@ -338,7 +345,8 @@ impl ProblemVisitor for ProblemFileVisitor<'_> {
     }
 }
 
-/// Fails if a problem file cannot represent the problem.
+/// Fails if a file cannot represent the problem, because of walls driven by a force, rolling friction, or shearing
+/// periodic borders.
 fn check_can_be_held<M: Model>(problem: &StepProblem<M>) -> Result<()> {
     let refuse = |field: &str, holds: &str| {
         Err(Error::value(field, "given", format!("left out: files hold problems of {holds}")))

@@ -4,10 +4,10 @@
 //! that maps contact impulses to changes of relative velocities (2 nc × 2 nc, 1/kg, rows and columns in the order N0,
 //! T0, N1, T1, …); `q` (2 nc, m/s), the relative velocities without contact impulses, including restitution; and `mu`,
 //! the coefficient of friction, as a number or a list. With cohesion it also has `c0`, the cohesion impulse C₀Δt of
-//! each contact (N·s), and `cone`, `"shifted"` or `"compressive"`. A solution consists of contact impulses r = (P_n,
-//! P_t) in N·s and relative velocities u = W r + q; `start` optionally gives initial impulses. Problems that Slump
-//! writes also contain their `bodies` ([`BodyForm`]). Text files of the program Siconos with plane problems can be read
-//! as well (`siconos`).
+//! each contact (N·s), and `cone`, the bound of friction: `"shifted"`, μ(P_n + C₀Δt), or `"compressive"`, μ max(P_n,
+//! 0). A solution consists of contact impulses r = (P_n, P_t) in N·s and relative velocities u = W r + q; `start`
+//! optionally gives initial impulses. Problems that Slump writes also contain their `bodies` ([`BodyForm`]). Text files
+//! of the program Siconos with plane problems can be read as well (`siconos`).
 
 mod bodies;
 mod several;
@@ -28,36 +28,37 @@ use crate::output::write_file;
 use crate::solver::{DelassusProblem, Triplets};
 use crate::world::FrictionCone;
 
-/// Description of a valid problem file, for messages.
+/// Description of a valid problem file, for error messages.
 const FORM: &str = "the JSON of a contact problem, or Siconos' text of a plane one";
 
 /// Coefficient of friction μ, dimensionless: one value for all contacts, or one value for each contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "mu must be a number or a list of numbers")]
 pub enum Friction {
-    /// The same value for all contacts.
+    /// One coefficient of friction for all contacts.
     Same(f64),
-    /// One value per contact.
+    /// One coefficient of friction for each contact.
     Each(Vec<f64>),
 }
 
-/// Content of a problem file. The module describes the fields and their units. The content may be wrong: it is checked
-/// before the problem is solved.
+/// Content of a problem file, the contact problem of one step. The documentation of this module lists the fields and
+/// their units. Values may be wrong: they are checked before the problem is solved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProblemFile {
-    /// Origin of the problem, in words.
+    /// Comment that says where the problem comes from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub comment: Option<String>,
     /// Number of contacts.
     pub nc: usize,
     /// Coefficient of friction μ, dimensionless.
     pub mu: Friction,
-    /// Friction cone: the part of the normal impulse that bounds friction.
+    /// Friction cone, the bound of the friction impulse, N·s: μ(P_n + C₀Δt) (`shifted`) or μ max(P_n, 0)
+    /// (`compressive`), with the normal impulse P_n and the cohesion impulse C₀Δt.
     #[serde(default)]
     pub cone: FrictionCone,
-    /// Relative velocities q without contact impulses, including restitution, m/s: normal and tangential for each
-    /// contact.
+    /// Relative velocities q that the contacts would have after the step without contact impulses, including
+    /// restitution, m/s: a normal and a tangential value for each contact.
     pub q: Vec<f64>,
     /// Cohesion impulse C₀Δt of each contact, N·s; `None` without cohesion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -65,7 +66,7 @@ pub struct ProblemFile {
     /// Initial guess of the contact impulses: (P_n, P_t) of each contact, N·s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<Vec<f64>>,
-    /// The bodies from which the matrix W and the velocities q were computed; `None` if only W and q are known.
+    /// Bodies from which the matrix W and the relative velocities q were computed; `None` if only W and q are known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bodies: Option<BodyForm>,
     /// Matrix W, which maps contact impulses to changes of relative velocities, 1/kg.
@@ -119,7 +120,8 @@ impl ProblemFile {
         Ok(file)
     }
 
-    /// Returns the text of the problem file. Numbers are as short as possible and still read back bit for bit.
+    /// Returns the text of the problem file. Numbers are as short as possible, but reading them back gives exactly the
+    /// same values.
     pub fn text(&self) -> String {
         // Serialising strings, numbers and lists of them cannot fail.
         serde_json::to_string(self).expect("a problem is always written") + "\n"
@@ -138,10 +140,11 @@ impl ProblemFile {
         self.c0.clone().unwrap_or_else(|| vec![0.0; self.nc])
     }
 
-    /// Returns the contact problem in terms of the matrix W, with the initial impulses of the file.
+    /// Returns the contact problem in terms of the matrix W, without bodies. Its initial guess is the initial impulses
+    /// of the file.
     ///
     /// # Errors
-    /// The error names the field that does not fit.
+    /// The error names the field whose length or value is not valid.
     pub fn delassus(&self) -> Result<DelassusProblem> {
         if self.nc == 0 {
             return Err(Error::value("nc", 0, "at least 1"));

@@ -1,5 +1,5 @@
-//! Searches for several solutions of a problem file under Coulomb friction, each from several initial guesses of the
-//! contact impulses.
+//! Searches for several solutions of the contact problem in a file. Under Coulomb friction the solution need not be
+//! unique. The search starts from several initial guesses of the contact impulses.
 
 use slump_core::with_model;
 
@@ -22,7 +22,8 @@ pub struct FoundSolution {
     /// Distance of the velocities of this solution from the velocities of each earlier solution in the list, m/s: root
     /// mean square, weighted with mass.
     pub distances: Vec<f64>,
-    /// Index of the body whose velocity differs most from its velocity in the first solution, and that difference, m/s.
+    /// Index of the body whose translational velocity differs most from that in the first solution of the list, and the
+    /// magnitude of this difference, m/s.
     pub farthest: (usize, f64),
     /// Velocity (v_x, v_y, ω) of each body at the end of the step, m/s and rad/s.
     pub velocities: Vec<[f64; 3]>,
@@ -31,7 +32,8 @@ pub struct FoundSolution {
 /// Largest number of initial guesses in one search.
 pub const MOST_STARTS: u32 = 1_000;
 
-/// Searches for several solutions of the contact problem in a file. The problem must have bodies.
+/// Searches for several solutions of the contact problem in a file. The file must contain the bodies, because solutions
+/// are distinguished by the velocities of the bodies.
 ///
 /// # Errors
 /// If the file contains an error or has no bodies, or a parameter of the search is outside its range.

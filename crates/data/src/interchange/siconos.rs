@@ -15,7 +15,7 @@ const SPARSE: usize = 2;
 /// Number by which Siconos denotes sparse storage by compressed columns.
 const COMPRESSED_COLUMNS: usize = 2;
 
-/// Parses a text in Siconos' format. Does not check the problem.
+/// Parses a text in Siconos' format. The caller must check the numbers of the problem.
 pub(super) fn parse(text: &str) -> Result<ProblemFile> {
     let mut lines = text.lines();
     let mut number = |what: &str| first_word::<usize>(&mut lines, what);
@@ -53,7 +53,7 @@ pub(super) fn parse(text: &str) -> Result<ProblemFile> {
     })
 }
 
-/// Reads the matrix. Each column has a line such as "col 3 : locations 6 to 8" and, below this line, a line "row :
+/// Reads the matrix W. Each column has a line such as "col 3 : locations 6 to 8" and, below this line, a line "row :
 /// value" for each location.
 fn columns(lines: &mut Lines, count: usize) -> Result<Triplets> {
     let mut matrix = Triplets::default();

@@ -14,28 +14,28 @@ use crate::solver::{
     is_ended, solve, solve_delassus,
 };
 
-/// Solution of a problem file by one method (solver).
+/// Result of one solver for the contact problem in a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Solution {
     /// Number of contacts.
     pub contacts: usize,
-    /// Name of the method, as for the option `--solver`.
+    /// Name of the solver, as for the option `--solver`.
     pub method: String,
-    /// True if the method worked on the bodies of the file, false if it had only the matrix W.
+    /// True if the solver worked on the bodies of the file, false if it had only the matrix W.
     pub on_bodies: bool,
-    /// Number of sweeps, or of iterations of about the same cost.
+    /// Number of sweeps (one sweep visits every contact), or of iterations that cost about as much as a sweep.
     pub sweeps: u32,
-    /// Number of matrices that the method factorised.
+    /// Number of matrices that the solver factorised.
     pub factorisations: u32,
-    /// Computing time of the solve alone, s: the shortest time of all repeats.
+    /// Computing time of the solve alone, s. If the solve was repeated, this is the shortest time.
     pub seconds: f64,
-    /// True if the method reached its tolerance, both by its own measure and by the residual of the impulses `r`.
+    /// True if the solver reached its tolerance, both by its own error measure and by the residual of the impulses `r`.
     pub converged: bool,
-    /// True if the method failed because it made no more progress, so that more sweeps would not help. False if the
-    /// method was stopped too early.
+    /// True if the solver failed because it made no more progress, so that more sweeps would not help. False if it was
+    /// stopped before it converged.
     pub stalled: bool,
-    /// Residual of the contact laws, dimensionless: the same measure for all methods. It is computed from the impulses
-    /// `r` and the file's matrix W and velocities q.
+    /// Residual of the contact laws, dimensionless; this error measure is the same for all solvers. It is computed from
+    /// the impulses `r` and the file's matrix W and relative velocities q.
     #[serde(with = "number")]
     pub residual: f64,
     /// Relative velocity (v_n, v_t) of each contact at the end of the step, m/s: W r + q, which includes restitution.
@@ -56,10 +56,10 @@ impl Solution {
 }
 
 /// Solves the contact problem in a file `repeats` times (at least once), each time from the initial impulses of the
-/// file, with the method and the tolerance of the settings.
+/// file, with the solver and the tolerance of the settings.
 ///
 /// # Errors
-/// If the file contains an error, or the method cannot solve the problem.
+/// If the file contains an error, or the solver cannot solve the problem.
 pub fn solve_file(file: &ProblemFile, settings: &SolverSettings, repeats: u32) -> Result<Solution> {
     settings.validate()?;
     let mut delassus = file.delassus()?;

@@ -1,5 +1,5 @@
-//! Writes files completely or not at all, checks the destinations of files, and collects the texts that are stored in
-//! files.
+//! Writes files completely or not at all, checks that output files can be written at given paths, and collects the
+//! descriptive texts (such as title and settings) that are stored in files.
 
 use std::borrow::Cow;
 use std::ffi::OsStr;
@@ -13,18 +13,20 @@ use std::path::{Path, PathBuf};
 use crate::draft::{DraftFile, nameless_file};
 use crate::error::{Error, Result};
 
-/// Ending of the name of a draft, an incomplete file.
+/// Ending of the name of a draft, a file that is not complete yet.
 const ENDING_OF_DRAFT: &str = ".part";
-/// Longest name of a file whose draft has a name that all common file systems accept, bytes. Such a name has at most
-/// 255 bytes, and a draft adds `.` in front, and `.`, six letters and the ending behind.
+/// Length of the longest file name whose draft (the incomplete file) still has a name that all common file systems
+/// accept, bytes. They accept 255 bytes, and a draft's name has `.` in front, and `.`, six letters and the ending
+/// behind.
 #[cfg(not(target_arch = "wasm32"))]
 const MOST_OF_NAME: usize = 255 - 8 - ENDING_OF_DRAFT.len();
-/// Largest number of symbolic links that are followed. The system follows fewer links, so more links form a cycle.
+/// Largest number of symbolic links that are followed from a path to its file. The system follows fewer links, so a
+/// longer chain of links must be a cycle.
 const MOST_LINKS: usize = 40;
 
-/// Returns the intended name of a file if `name` is that of its draft, `.NAME.LETTERS.part`, which a killed process
-/// left. Other names are returned unchanged. Drafts are hidden files, so that programs that read whole folders skip
-/// them.
+/// Converts the name of a draft (an incomplete file that a killed process left), `.NAME.LETTERS.part`, to the name that
+/// the complete file should have. Other names are returned unchanged. Drafts are hidden files, so that programs that
+/// read whole folders skip them.
 pub fn final_name(name: &str) -> &str {
     let inner = name.strip_prefix('.').and_then(|rest| rest.strip_suffix(ENDING_OF_DRAFT));
     match inner.and_then(|rest| rest.rsplit_once('.')) {
@@ -48,7 +50,7 @@ pub struct PendingFile {
 }
 
 impl PendingFile {
-    /// Starts a file that will have the path `path`.
+    /// Starts writing a file that will get the path `path` when it is complete.
     ///
     /// # Errors
     /// The error names the file and gives the system's message.
@@ -60,12 +62,12 @@ impl PendingFile {
         Ok(Self { path: path.to_owned(), destination, file })
     }
 
-    /// Returns the file, to be written to.
+    /// Returns the incomplete file, for writing.
     pub fn file(&mut self) -> &mut DraftFile {
         &mut self.file
     }
 
-    /// Writes bytes to the file.
+    /// Writes bytes at the end of the incomplete file.
     ///
     /// # Errors
     /// The error names the file and gives the system's message.
@@ -73,8 +75,8 @@ impl PendingFile {
         self.file.write_all(bytes).map_err(|error| Error::file(&self.path, error))
     }
 
-    /// Gives the file its name. If `safe` is true, the data are on the disk before the file gets its name, so that even
-    /// a crash of the machine leaves either the old file or the new file.
+    /// Completes the file and gives it its name. If `safe` is true, the data are on the disk before the file gets its
+    /// name, so that even a crash of the machine leaves either the old file or the new file.
     ///
     /// # Errors
     /// The error names the file and gives the system's message.
@@ -116,7 +118,7 @@ impl PendingFile {
     }
 }
 
-/// Shortens a name so that the name of its draft is not too long.
+/// Shortens a file name so that the name of the file's draft is not too long.
 #[cfg(not(target_arch = "wasm32"))]
 fn shortened(name: &OsStr) -> Cow<'_, OsStr> {
     if name.len() <= MOST_OF_NAME {
@@ -135,7 +137,7 @@ pub fn folder_of(path: &Path) -> &Path {
 /// Destination of a path after all symbolic links are followed.
 struct Destination {
     path: PathBuf,
-    /// Permissions of the file that already exists, if any.
+    /// Permissions of the file that already exists at this path; `None` if there is no plain file.
     permissions: Option<Permissions>,
     /// True if the destination is not a plain file but a device, a pipe or a socket, which must not be replaced.
     is_special: bool,
@@ -162,8 +164,8 @@ impl Destination {
         Err(Error::file(path, "is a symbolic link that leads back to itself"))
     }
 
-    /// Returns the file to write to: a file without a name if the destination is a plain file, else the destination
-    /// itself.
+    /// Returns the file to write to: a file without a name if the destination is a regular file, else the destination
+    /// itself (a device or a pipe).
     fn draft(&self) -> std::io::Result<DraftFile> {
         #[cfg(not(target_arch = "wasm32"))]
         if self.is_special {
@@ -174,7 +176,7 @@ impl Destination {
 }
 
 /// Creates `folder` if it does not exist, and checks that files can be written in it. `field` is the name of the
-/// option, for messages.
+/// option, for error messages.
 ///
 /// # Errors
 /// The error names the option and the folder, and gives the system's message.
@@ -189,7 +191,7 @@ pub fn check_writable(field: &str, folder: &Path) -> Result<()> {
 }
 
 /// Checks that a file can be written at `path`, and creates the folder of the file if it does not exist. `field` is the
-/// name of the option, for messages.
+/// name of the option, for error messages.
 ///
 /// # Errors
 /// The error names the option and the file, and gives the reason.
@@ -244,8 +246,8 @@ pub fn remove_drafts(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Returns the unique path of the file to which a path leads, so that two paths of one file are equal. Returns `None`
-/// for a device or a pipe, which accepts all data.
+/// Resolves all symbolic links in a path, so that two paths that lead to one file give equal results. Returns `None`
+/// for a device or a pipe, to which several outputs may be written.
 ///
 /// # Errors
 /// If the links form a cycle.
@@ -263,7 +265,8 @@ fn try_to_write(folder: &Path) -> std::io::Result<()> {
     nameless_file(folder).map(drop)
 }
 
-/// Writes a file in a single operation: a run that is stopped leaves no incomplete file and destroys no existing file.
+/// Writes a file completely or not at all. If the run is stopped meanwhile, no incomplete file remains, and an existing
+/// file at this path is unchanged.
 ///
 /// # Errors
 /// The error names the file and gives the system's message.
@@ -284,8 +287,8 @@ pub fn remove_if_there(path: &Path) -> Result<()> {
     }
 }
 
-/// Texts that are stored in a file, each with a keyword, in order. Keywords are ASCII with at most 79 characters, as
-/// PNG requires.
+/// Descriptive texts that are stored in an output file, such as title and settings, each with a keyword, in order.
+/// Keywords are ASCII with at most 79 characters, as PNG requires.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texts(Vec<(String, String)>);
 

@@ -1,4 +1,4 @@
-//! Writes text files that grow by whole rows.
+//! Writes text files that grow during a run and always consist of complete rows.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
@@ -29,11 +29,11 @@ impl GrowingFile {
         Ok(Self { path, file, whole: 0 })
     }
 
-    /// Opens a file to continue it after its first `whole` bytes, and drops the rest. If `whole` is 0, the file need
-    /// not exist.
+    /// Opens a file to continue it after its first `whole` bytes, and removes all later bytes. If `whole` is 0, the
+    /// file need not exist.
     ///
     /// # Errors
-    /// The error names the file and gives the system's message, or says that the file is shorter.
+    /// The error names the file and gives the system's message, or says that the file is shorter than `whole` bytes.
     pub fn go_on(path: PathBuf, whole: u64) -> Result<Self> {
         let refuse = |error| Error::file(&path, error);
         let file = OpenOptions::new().write(true).create(whole == 0).truncate(false).open(&path);
@@ -85,9 +85,9 @@ impl GrowingFile {
         Ok(())
     }
 
-    /// Writes a head and rows, which include their line ends, so that all of them appear in the file in one operation.
-    /// The rows are first written below a draft line that begins with `draft`. Readers must skip this line and the rows
-    /// below it. Finally the head replaces the draft line.
+    /// Writes a head (header lines) and rows at the end of the file, so that all of them appear in the file in one
+    /// operation. Head and rows include their line ends. The rows are first written below a draft line that begins with
+    /// `draft`. Readers must skip this line and the rows below it. Finally the head replaces the draft line.
     ///
     /// If the program is killed, a write can only be interrupted at the end of a page of the file. A head that spans
     /// two pages is therefore written from its end, the second page first. The rows remain a draft until the first page
@@ -113,15 +113,16 @@ impl GrowingFile {
         Ok(())
     }
 
-    /// Writes bytes after the complete rows, over the bytes that are already there, the last page first.
+    /// Writes bytes behind the complete rows, over the bytes that are already there. If they span several pages of the
+    /// file, the last page is written first.
     fn put_from_its_end(&mut self, bytes: &[u8]) -> std::io::Result<()> {
         self.pages_from_the_last(bytes.len())
             .into_iter()
             .try_for_each(|part| self.put(part.start, &bytes[part]))
     }
 
-    /// Splits `length` bytes after the complete rows into ranges that lie in one page each. Returns the last range
-    /// first.
+    /// Splits the `length` bytes that follow the complete rows into ranges that lie in one page of the file each.
+    /// Returns the last range first.
     fn pages_from_the_last(&self, length: usize) -> Vec<std::ops::Range<usize>> {
         let room = (PAGE - self.whole % PAGE) as usize;
         let starts = std::iter::once(0).chain((room..length).step_by(PAGE as usize));
@@ -131,7 +132,7 @@ impl GrowingFile {
         pages
     }
 
-    /// Writes bytes at the offset `behind` after the complete rows.
+    /// Writes bytes into the file, beginning `behind` bytes after the end of the complete rows.
     fn put(&mut self, behind: usize, bytes: &[u8]) -> std::io::Result<()> {
         self.file.seek(SeekFrom::Start(self.whole + behind as u64))?;
         self.file.write_all(bytes)
@@ -146,7 +147,7 @@ impl GrowingFile {
         end_of_last(&rows[..room.min(rows.len())]).or_else(first).unwrap_or(rows.len())
     }
 
-    /// Writes all data to the disk.
+    /// Waits until all data of the file are on the disk.
     ///
     /// # Errors
     /// If the file is no longer at its path.
@@ -161,14 +162,14 @@ impl GrowingFile {
     }
 }
 
-/// Returns rows below a draft line that is as long as the head. The line is filled by `repeat`, because the padding of
-/// `format!` is limited to 65,535 characters.
+/// Returns the text of a draft: a line that begins with `draft` and is as long as the head, and then the rows. The line
+/// is filled by `repeat`, because the padding of `format!` is limited to 65,535 characters.
 fn below_draft(draft: &str, head: &str, rows: &str) -> String {
     let room = head.len().saturating_sub(draft.len() + 1);
     format!("{draft}{}\n{rows}", " ".repeat(room))
 }
 
-/// Returns the end of the last complete row in `rows`, bytes; `None` without a complete row.
+/// Returns the number of bytes up to the end of the last complete row in `rows`; `None` if no row is complete.
 pub fn end_of_last(rows: &[u8]) -> Option<usize> {
     rows.iter().rposition(|&byte| byte == b'\n').map(|last| last + 1)
 }
@@ -177,7 +178,8 @@ pub fn end_of_last(rows: &[u8]) -> Option<usize> {
 mod tests {
     use super::*;
 
-    /// Checks the file after every single write of a head, for every position of a page end within the head.
+    /// Checks after every single write of a head that the file shows either a draft or the complete head and rows.
+    /// Tests every position of a page end within the head.
     #[test]
     fn a_head_over_the_end_of_a_page_is_a_draft_until_it_is_whole() {
         let folder = tempfile::tempdir().expect("a folder");

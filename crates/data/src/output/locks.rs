@@ -1,4 +1,4 @@
-//! Locks folders and files that only one run may write at a time.
+//! Locks folders and files to which only one run may write at a time.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
@@ -7,13 +7,13 @@ use super::terminal::note_line;
 use crate::error::{Error, Result, place};
 
 /// Kind of output that only one run at a time may write into a folder. The run locks a file in that folder; the name of
-/// this lock file depends on the kind of output. The lock ends with the process, however the process ends. A lock file
-/// that is left behind locks nothing.
+/// this lock file depends on the kind of output. The system ends the lock when the process ends, even if it is killed.
+/// A lock file that is left behind has no effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Locked {
-    /// Pictures and the files that accompany them.
+    /// Pictures of a run and the files that accompany them.
     Pictures,
-    /// A recording. Pictures may be in the same folder.
+    /// A recording of a run. Pictures may be written into the same folder.
     Recording,
 }
 
@@ -51,7 +51,7 @@ pub fn lock_of(path: &Path) -> std::io::Result<File> {
     OpenOptions::new().create(true).truncate(false).write(true).open(lock)
 }
 
-/// A folder into which several programs write different parts at the same time, unless one of them locks it
+/// A folder into which several processes write different files at the same time, unless one of them locks the folder
 /// exclusively.
 pub struct SharedFolder {
     path: PathBuf,
@@ -90,7 +90,7 @@ impl SharedFolder {
         }
     }
 
-    /// Returns the error that another program uses the folder.
+    /// Returns the error which says that another program is writing into this folder and must end first.
     pub fn in_use(&self) -> Error {
         in_use(&self.path)
     }
@@ -107,13 +107,13 @@ impl SharedFolder {
     }
 }
 
-/// Returns the error that another program is writing a file or a folder and must end first.
+/// Returns the error which says that another program is writing a file or a folder and must end first.
 pub fn in_use(path: &Path) -> Error {
     Error::file(path, "is being written by another program, which must end first")
 }
 
-/// Reports that a folder cannot be locked, because some file systems have no locks. Writing without a lock is better
-/// than not writing at all.
+/// Reports on stderr that a folder cannot be locked, because some file systems have no locks. The run continues:
+/// writing without a lock is better than not writing at all.
 fn note_unlocked(folder: &Path, error: &std::io::Error) {
     let folder = place(folder);
     note_line(format_args!(
@@ -128,7 +128,7 @@ pub struct FolderLock {
 }
 
 impl FolderLock {
-    /// Locks an existing folder.
+    /// Locks an existing folder for one kind of output.
     ///
     /// # Errors
     /// If another process has locked the folder, or no file can be written in the folder.

@@ -1,5 +1,5 @@
-//! Provides services for all long work: files that are written completely or not at all, output to streams that may be
-//! closed, signals that ask the program to end, and progress.
+//! Provides output functions for work that takes long: files that are written completely or not at all, messages to
+//! streams that may be closed, progress bars, and signals that ask the program to end.
 
 mod files;
 mod growing;

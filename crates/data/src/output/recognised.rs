@@ -1,5 +1,5 @@
-//! Recognises files that Slump wrote by their first bytes. The name of a file, or a list of files that anyone can edit,
-//! is not sufficient evidence for removing a file.
+//! Recognises the files that Slump wrote. It compares the first bytes of a file, because the name of a file, or a list
+//! of files that anyone can edit, is not sufficient evidence for removing a file.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -8,16 +8,16 @@ use std::path::Path;
 use super::files::final_name;
 use crate::error::{Error, Result};
 
-/// Number of bytes at the beginning of a file by which the file is recognised. They include a description of its run,
-/// if any.
+/// Number of bytes at the beginning of a file that are searched for signs that Slump wrote it. They include the
+/// description of its run, if the file has one.
 const MOST_OF_HEAD: u64 = 1 << 20;
-/// Number of bytes at the end of a Parquet file that contain the name of the program that wrote it.
+/// Number of bytes at the end of a Parquet file that are searched for the name of the program that wrote it.
 const TAIL: u64 = 4096;
 
-/// First bytes of a line of a study's journal.
+/// First bytes of a line in the journal of a study, the file with its finished runs.
 const OF_JOURNAL: &[u8] = b"{\"checksum\":\"";
-/// First bytes of files that Slump writes. The second bytes of each pair must also occur at the beginning of the file;
-/// they are empty if the first bytes are sufficient.
+/// Pairs of byte strings that identify files that Slump writes. A file begins with the first string. The second string
+/// must also occur near the beginning of the file; it is empty if the first string is sufficient.
 const BEGINNINGS: [(&[u8], &[u8]); 13] = [
     (b"\x89PNG\r\n\x1a\n", b"tEXtSoftware\0slump "),
     (b"{\n  \"program\": \"slump\",\n", b""),
@@ -37,18 +37,19 @@ const BEGINNINGS: [(&[u8], &[u8]); 13] = [
         b" Name=\"smoothing_width\" ",
     ),
 ];
-/// First bytes of VTK files of Slump, in which no field names the program.
+/// First bytes of VTK files that Slump writes. They are long, because no field of these files names the program.
 const OF_VTK: [&[u8]; 2] = [
     b"<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" \
         byte_order=\"LittleEndian\">\n<Collection>\n",
     b"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" \
         header_type=\"UInt64\">\n  <PolyData>\n    <FieldData>\n      <DataArray type=\"Int64\" Name=\"step\" ",
 ];
-/// Bytes that follow the length of the data at the beginning of a file with a state that waits to be drawn.
+/// Bytes 8 to 15 of a file with states of a run that wait to be drawn as pictures. Bytes 0 to 7 are the length of the
+/// data that follow.
 const STATE: &[u8] = b"\x82\xa6number";
 
-/// True if Slump wrote the file, even if the file was cut because the program was killed. A blank file is also
-/// recognised, because it is of no use to anybody.
+/// True if the content shows that Slump wrote the file, even if the file was cut because the program was killed. A
+/// blank file also counts, because nobody loses anything if it is removed.
 ///
 /// # Errors
 /// If the file cannot be read.
@@ -87,8 +88,8 @@ fn recognised(path: &Path) -> std::io::Result<bool> {
         || head.get(8..).is_some_and(|state| state.starts_with(STATE)))
 }
 
-/// Fails if Slump did not write a file that is to be removed or overwritten. `option` is the name of the option that
-/// asks for this, for the message.
+/// Fails if a file that is to be removed or overwritten was not written by Slump. `option` is the name of the
+/// command-line option that allows the removal, for the error message.
 ///
 /// # Errors
 /// The error names the file.

@@ -16,12 +16,12 @@ use crate::error::{Error, Result};
 use crate::input::open;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
-/// Longest first line, bytes.
+/// Length of the longest first line, bytes.
 const MOST_OF_LINE: u64 = 256;
-/// Message for a file whose content does not match its checksum.
+/// Error message for a file whose content does not match its checksum.
 const DAMAGED: &str = "is damaged: its checksum is not that of its content, but must be, as it was when it was written";
 
-/// Header of files of one kind, and the words for such files in messages.
+/// Header of a type of file that only Slump reads, and the words for such files in error messages.
 pub struct Seal {
     /// The first word of the file and the space after it.
     pub magic: &'static str,
@@ -32,7 +32,7 @@ pub struct Seal {
     pub what: &'static str,
     /// Text that follows the word `what` in messages, such as ` of a run`.
     pub of: &'static str,
-    /// Description of a valid file, for messages.
+    /// Description of a valid file, for error messages.
     pub form: &'static str,
 }
 
@@ -50,19 +50,19 @@ impl Seal {
     /// Reads the content of a file.
     ///
     /// # Errors
-    /// If the file cannot be read, is damaged, is of another version, or is not a file of this kind.
+    /// If the file cannot be read, is damaged, is of another version, or does not have this header.
     pub fn open<T: DeserializeOwned>(&self, path: &Path) -> Result<T> {
         self.read(BufReader::new(open(path, self.form)?), path)
     }
 
-    /// True if a file is of this kind, in any version.
+    /// True if a file has this header, written by any version of Slump.
     pub(crate) fn is_on(&self, path: &Path) -> bool {
         let mut start = vec![0; self.magic.len()];
         let read = open(path, self.form).map(|mut file| file.read_exact(&mut start));
         read.is_ok_and(|read| read.is_ok()) && start == self.magic.as_bytes()
     }
 
-    /// Reads the content of a file from an open source. `path` is for messages.
+    /// Reads the content of a file from an open source. `path` is for error messages.
     pub(crate) fn read<T: DeserializeOwned>(
         &self,
         mut file: impl BufRead,
@@ -99,8 +99,8 @@ impl Seal {
         format!("{}{} {VERSION} {length} {checksum}\n", self.magic, self.format)
     }
 
-    /// Returns the number of bytes that follow the first line `line`. The error is the reason why the line is not valid
-    /// in this version, as the rest of a sentence.
+    /// Returns the number of bytes that follow the first line `line` of a file. The error says why the line is not
+    /// valid in this version, as the rest of a sentence that begins with the file's name.
     fn length_of_content(&self, line: &[u8]) -> std::result::Result<u64, String> {
         let Self { magic, what, of, form, .. } = self;
         let Some(said) = line.strip_prefix(magic.as_bytes()) else {

@@ -24,7 +24,7 @@ pub fn print_text(text: impl Display) {
     remember(write!(std::io::stdout(), "{text}"));
 }
 
-/// Records the outcome of a write to stdout by other code.
+/// Records whether a write to stdout by other code has failed, for [`lost_stdout`].
 pub fn note_printed(outcome: std::io::Result<()>) {
     remember(outcome);
 }
@@ -35,8 +35,8 @@ pub fn note_line(line: impl Display) {
     let _ = writeln!(std::io::stderr(), "{}", escaped(&line.to_string()));
 }
 
-/// Returns a sentence about the first failed write to stdout, if any. If a reader closed the stream early, this is not
-/// a failure.
+/// Returns a sentence about the first failed write to stdout; `None` if no write has failed. It is not a failure if the
+/// reader of the stream closed it early.
 pub fn lost_stdout() -> Option<String> {
     remember(std::io::stdout().flush());
     LOST.get().map(|reason| format!("stdout did not take all that was written to it ({reason})"))
@@ -62,7 +62,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Shows the progress of work with `length` units of any kind. `what` is written in front of the bar.
+    /// Shows the progress of work that has `length` units, for example steps. `what` is written in front of the bar.
     pub fn new(what: &str, length: u64) -> Self {
         let bar = if std::io::stderr().is_terminal() {
             let template = "{prefix} {wide_bar} {percent:>3} %  {left}";
@@ -116,8 +116,8 @@ fn left(done: u64, estimate: Duration) -> String {
     }
 }
 
-/// Number of steps above which a warning is written before a run begins. Even for the smallest scene so long a run
-/// takes minutes.
+/// Number of steps above which a warning is written before a run begins. Even with the smallest scene, so many steps
+/// take minutes.
 const MANY_STEPS: u64 = 100_000_000;
 
 /// Warns on stderr if a very large number of steps was requested.
@@ -127,7 +127,7 @@ pub fn warn_of_steps(steps: u64) {
     }
 }
 
-/// Number of the first signal that arrived; 0 if no signal has arrived.
+/// Number of the first signal to end (such as INT) that the program received; 0 if there was none.
 static CAUGHT: AtomicI32 = AtomicI32::new(0);
 
 /// A signal that asks the program to end.

@@ -1,5 +1,5 @@
-//! Assembles the result of an error budget for one quantity: one row per possible cause (such as the time step or the
-//! contact law), the limit of small time steps, and a verdict.
+//! Assembles the error budget of one quantity: one row per possible cause of an error (such as the time step or the
+//! contact law), the limit of the quantity for small time steps, and a verdict.
 
 use super::causes::{Cause, Variant};
 use super::collect::{BudgetEnd, Runs};
@@ -8,9 +8,9 @@ use super::rows::{CauseRow, Design, QuantityBudget, Trust};
 use super::words::paragraph;
 use crate::statistics::Mean;
 
-/// Tolerance of the test for convergence as the time step Δt goes to 0, as a fraction of the requested half-width of
-/// the intervals. A deviation from the expected decrease of the effects counts as zero if its interval comes this close
-/// to 0.
+/// Tolerance of the test whether a quantity converges as the time step Δt goes to 0, as a fraction of the requested
+/// half-width of the confidence intervals. The effects of halving Δt should decrease by a constant factor. A deviation
+/// from this decrease counts as zero if its confidence interval is within this tolerance of 0.
 const SLACK: f64 = 0.25;
 pub(super) fn budget_of(
     runs: &Runs,
@@ -89,7 +89,8 @@ fn row(runs: &Runs, variant: &Variant, series: usize, quantity: usize) -> CauseR
     }
 }
 
-/// Returns the indices of the three series of runs with the time steps Δt/2, Δt/4 and Δt/8, if all three gave a value.
+/// Returns the indices of the three series of runs with the time steps Δt/2, Δt/4 and Δt/8; `None` if one of them gave
+/// no value of the quantity.
 fn halvings(runs: &Runs, design: &Design<'_>, quantity: usize) -> Option<[usize; 3]> {
     let all = design.variants.iter().zip(1..);
     let of_steps = all.filter(|(variant, series)| {
@@ -136,9 +137,9 @@ mod tests {
     use super::*;
     use crate::scene::{NewPile, built_in};
 
-    /// Returns the error budget of synthetic runs of a cohesive pile. The value of a run is the sum of four numbers:
-    /// 0.3; the effect that `of` returns for the run's change of the scene; a random number that all runs from the same
-    /// initial state share; and a random number of this run with the standard deviation `scatter`.
+    /// Returns the error budget of made-up runs of a cohesive pile, for tests. The value of a run is the sum of four
+    /// numbers: 0.3; the effect that `of` returns for the run's change of the scene; a random number that all runs from
+    /// the same initial state share; and a random number of this run alone, with the standard deviation `scatter`.
     fn made_up(
         seed: u64,
         scatter: f64,
@@ -149,7 +150,7 @@ mod tests {
         made_up_at(seed, scatter, limits, of, &as_expected)
     }
 
-    /// Like `made_up`. In addition, `cost_of` returns the computing time of a run, s.
+    /// Like `made_up`, but `cost_of` returns the computing time of a run, s, from the run's change of the scene.
     fn made_up_at(
         seed: u64,
         scatter: f64,
@@ -299,8 +300,9 @@ mod tests {
         assert_eq!(budget.trust, Trust::NotKnownYet);
     }
 
-    /// Checks how the computing time is distributed. Runs under another contact law take ten times as long as the
-    /// budget expects. All other runs take the expected time.
+    /// Checks that one expensive change of the scene does not use up the computing time of the other changes. Here,
+    /// runs under another contact law take ten times as long as expected. They must be left out, and every other change
+    /// must be run from at least six initial states.
     #[test]
     fn a_law_that_is_dearer_than_expected_does_not_take_the_time_of_all_else() {
         let is_dear = |variant: &Variant| variant.cause == Cause::ContactLaw;

@@ -1,5 +1,5 @@
-//! Lists the possible causes of an effect on a result, such as the time step, the solver or the contact law, as far as
-//! they can matter in a scene. Each cause is tested by one change of the scene.
+//! Lists the possible causes of an error of a result, such as the time step, the solver or the contact law, as far as
+//! they can matter in a scene. An error budget tests each cause by one change of the scene.
 
 use crate::chart::{PALETTE, Rgb};
 use crate::fracture_work::{fracture_work, with_fracture_work};
@@ -12,11 +12,11 @@ use crate::world::FrictionCone;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Share {
-    /// Causes in the grains: their number and their initial state.
+    /// The number of grains, and their packing in the initial state.
     Grains,
-    /// Causes in the laws that contacts obey.
+    /// The laws that contacts obey, such as the contact law and the friction model.
     Law,
-    /// Causes in the numerical method: the time step, unsolved steps, and the initial guesses of the solver.
+    /// The numerical method: the time step, unsolved steps, and the initial guesses of the solver.
     Method,
 }
 
@@ -54,8 +54,8 @@ pub(crate) enum Cause {
 }
 
 impl Cause {
-    /// Returns the group of the cause, its name, and the subject of sentences about it, in which `{}` stands for the
-    /// change.
+    /// Returns the group of the cause, the name of the cause, and the subject of a sentence about it, in which `{}`
+    /// stands for the changed value.
     const fn row(self) -> (Share, &'static str, &'static str) {
         match self {
             Self::TimeStep => (Share::Method, "time step", "the {}"),
@@ -88,7 +88,7 @@ impl Cause {
     }
 }
 
-/// A variant of a scene: one change that tests one possible cause.
+/// A variant of a scene: the scene with one change, which tests one possible cause of an error.
 #[derive(Clone, Debug)]
 pub(crate) struct Variant {
     pub cause: Cause,
@@ -97,26 +97,28 @@ pub(crate) struct Variant {
     pub settings: Settings,
     /// Pile that replaces the grains of the scene; `None` if the grains are not changed.
     pub pile: Option<NewPile>,
-    /// Expected computing time of a run, divided by the time of a run of the unchanged scene. The expectation is used
-    /// until a run has been measured.
+    /// Expected computing time of a run of this variant, divided by the time of a run of the unchanged scene. The
+    /// expectation is used until a run of the variant has been timed.
     pub cost: f64,
 }
 
-/// Divisors of the time step Δt: an error budget also runs the scene with Δt/2, Δt/4 and Δt/8.
+/// Divisors of the scene's time step Δt: an error budget also runs the scene with Δt/2, Δt/4 and Δt/8.
 pub(crate) const DIVISORS: [u32; 3] = [2, 4, 8];
-/// Factor on the default tolerance of the solver, with which an error budget measures the effect of unsolved steps. A
-/// smaller factor would not help: because of rounding, some steps cannot be solved to 1e-7 √(g d), with gravity g and
-/// mean diameter d.
+/// Factor by which an error budget multiplies the solver's default tolerance, to measure the effect of inaccurate
+/// solutions of steps. A smaller factor would not help: because of rounding, some steps cannot be solved to 1e-7 √(g
+/// d), with gravity g and mean diameter d.
 const TIGHTER: f64 = 1e-2;
-/// Touch tolerance that an error budget tries instead of the scene's own, in mean diameters: contacts pull up to this
-/// gap. It is larger than the residual gaps of a step and smaller than the roughness of grains.
+/// Touch tolerance (the gap up to which contacts pull) that an error budget tries instead of the scene's own, in mean
+/// diameters. It is larger than the gaps that remain in closed contacts after a step, and smaller than the roughness of
+/// grains.
 const TOUCH_TOLERANCE: f64 = 1e-3;
-/// Restitution threshold that an error budget tries instead of none, in units of g·Δt, the speed that gravity adds in
-/// one step: slower contacts do not bounce. Bounces slower than about this threshold are not visible.
+/// Restitution threshold (the approach speed below which contacts do not bounce) that an error budget tries in a scene
+/// without a threshold, in units of g·Δt, the speed that gravity adds in one step. Bounces slower than about this
+/// threshold are not visible.
 const THRESHOLD: f64 = 2.0;
 
-/// Returns all variants of a scene that the scene supports and that can have an effect. A variant is the scene with one
-/// change. `pile` describes the grains of the scene, if they are generated. `resizes` is true if the number of grains
+/// Returns all variants of a scene (the scene with one change) that can be simulated and whose change can have an
+/// effect. `pile` describes the grains of the scene, if they are generated. `resizes` is true if the number of grains
 /// can be changed.
 pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> Vec<Variant> {
     let base = scene.settings();
@@ -209,7 +211,8 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
     all
 }
 
-/// Returns the settings with a solver so accurate that the errors of solved steps are negligible.
+/// Returns changed settings, with a solver so accurate that the errors of solved steps are negligible. `is_driven` is
+/// true if a force drives a wall, which not every solver supports.
 fn tighter(mut settings: Settings, is_driven: bool) -> Settings {
     let solver = settings.solver;
     let method = match solver.friction_model {
@@ -228,8 +231,9 @@ fn tighter(mut settings: Settings, is_driven: bool) -> Settings {
     settings
 }
 
-/// Returns settings with another contact law under which breaking a bond takes the same work as under the scene's own
-/// law. If the scene's law does not define this work, it is the work under `range` with the scene's debonding distance.
+/// Returns settings with the contact law of another `stepper`, chosen so that breaking a bond takes the same work as
+/// under the scene's own law. If the scene's own law does not define this work, breaking takes the same work as under
+/// `range` with the scene's debonding distance.
 fn at_equal_work(scene: &Scene, stepper: Stepper) -> Settings {
     let settings = Settings { stepper, ..scene.settings() }.with_only_what_is_taken();
     if !(scene.physics.cohesion && settings.parameters.bond > 0.0) {

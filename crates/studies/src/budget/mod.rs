@@ -1,9 +1,9 @@
-//! Computes error budgets: estimates how much of a result is due to the grains, to the contact law and to the numerical
-//! method.
+//! Computes error budgets: estimates how much of a simulated result is due to the grains, to the contact law and to the
+//! numerical method.
 //!
 //! Each possible cause is tested by one change of the scene, from the same initial states as the unchanged scene. The
-//! effect of the change is the mean of paired differences, with a confidence interval. The intervals of a budget are
-//! simultaneous: all of them together contain the true values.
+//! effect of the change is the mean of paired differences, with a confidence interval. The intervals of an error budget
+//! are simultaneous: in 95 % of error budgets all of them contain their true values.
 
 mod answer;
 mod causes;
@@ -35,35 +35,39 @@ use crate::output::{check_writable, note_line, print_line, print_text, remove_dr
 use crate::scene::Scene;
 use crate::sim::Settings;
 
-/// Options of an error budget.
+/// Options of an error budget, which estimates how much of a result is due to the grains, the contact law and the
+/// numerical method.
 #[derive(Clone, Debug)]
 pub struct BudgetOptions {
     /// Scene whose results are examined, with its settings.
     pub config: Config,
     /// Quantities to examine: columns of the tables `steps` and `measures`, or `mean(…)`, `min(…)`, `max(…)`,
-    /// `total(…)` of such a column over a window of time. The slump is examined if the list is empty.
+    /// `total(…)` of such a column over an interval of simulated time. The slump is examined if the list is empty.
     pub quantities: Vec<String>,
-    /// Simulated time at which the window of examined results begins, s; `None` for 0.
+    /// Simulated time from which on results are examined, s; `None` for 0.
     pub from_secs: Option<f64>,
-    /// Simulated time at which the window of examined results ends, s; `None` for the end of the scene.
+    /// Simulated time up to which results are examined, s; `None` for the end of the run.
     pub to_secs: Option<f64>,
-    /// Requested half-width of every confidence interval, in the unit of the quantity; `None` for a tenth of the value.
+    /// Requested half-width of every confidence interval, in the unit of the examined quantity; `None` for a tenth of
+    /// the quantity's value.
     pub within: Option<f64>,
-    /// Limit of the computing time with all cores in use, s.
+    /// Limit of the computing time, s of wall-clock time if all cores are in use.
     pub cost_secs: f64,
-    /// The part of the initial states to run on this machine; `None` for all initial states.
+    /// The part of the initial states that this call runs, if several machines share the error budget; `None` for all
+    /// initial states.
     pub shard: Option<Shard>,
 }
 
-/// An error budget of some quantities of a scene.
+/// The error budgets of some quantities of a scene: estimates of how much of each quantity is due to the grains, the
+/// contact law and the numerical method.
 #[derive(Debug, Serialize)]
 pub struct ErrorBudget {
     program: &'static str,
     version: &'static str,
-    /// Command that repeats the budget, without the option of the time limit.
+    /// Command that computes the error budget again, without the option that limits the computing time.
     command: String,
     scene: String,
-    /// Stepper, Bond number, time step, restitution and friction, in a few words.
+    /// Short description of the scene's stepper, Bond number, time step, restitution and friction.
     stepped: String,
     from_secs: f64,
     to_secs: f64,
@@ -74,28 +78,28 @@ pub struct ErrorBudget {
 }
 
 impl ErrorBudget {
-    /// Returns the answer on the first examined quantity.
+    /// Returns the error budget of the first examined quantity, in the form that the graphical window displays.
     pub fn first_answer(&self) -> Option<BudgetAnswer> {
         self.quantities.first().map(QuantityBudget::for_window)
     }
 
-    /// Returns the budget as JSON, as in the file `budget.json`.
+    /// Returns the error budget as JSON, as in the file `budget.json`.
     ///
-    /// # Errors
-    /// If the budget cannot be written as JSON.
+    /// # Errors If the error budget cannot be written as JSON.
     pub fn to_json(&self) -> Result<String> {
         serde_json::to_string_pretty(self).map_err(|error| Error::file("budget.json", error))
     }
 }
 
-/// Name of the journal that stores the runs of a budget.
+/// Name of the journal that stores the runs of an error budget.
 const JOURNAL: &str = "budget";
 /// Name of the quantity that is examined if the user gives none.
 const QUANTITY: &str = "slump";
 
-/// Computes an error budget and writes `report.md`, a picture, `budget.csv` and `budget.json` to `folder`. The same
-/// call resumes a budget that was stopped. Runs that other parts of the budget have already stored in the folder cost
-/// no time. A call for one part (`options.shard`) only adds the runs of this part to the folder and writes no report.
+/// Computes an error budget and writes `report.md`, pictures, `budget.csv` and `budget.json` to `folder`. If the
+/// computation is stopped, the same call resumes it. With `options.shard`, the call only computes one part of the runs,
+/// stores them in the folder, and writes no report. Runs that other parts have stored in the folder do not count
+/// towards the time limit.
 ///
 /// # Errors
 /// If a quantity, time or setting is not allowed, or if the folder cannot be written; the error names the cause. Also
@@ -117,9 +121,9 @@ pub fn budget(options: &BudgetOptions, folder: &Path) -> Result<ErrorBudget> {
     Ok(budget)
 }
 
-/// Like [`budget`], but only writes the files that are needed to resume. Initial states of piles are stored in
-/// `states`. After each stage, `watch` is called with the budget so far. The computation ends if `watch` returns
-/// `Break`.
+/// Like [`budget`], but only writes the files that are needed to resume, and shows no progress bar. Initial states of
+/// piles are stored in the folder `states`. After each group of runs, `watch` is called with the error budget so far.
+/// The computation ends if `watch` returns `Break`.
 ///
 /// # Errors
 /// Returns the errors of [`budget`].
@@ -217,7 +221,8 @@ fn made_showing(
     Ok(of(&runs, ended))
 }
 
-/// Returns a runner that knows the finished runs of all parts in a folder, and the keys of the runs of other parts.
+/// Returns a runner that does not repeat the finished runs of an error budget in a folder, and the keys of those runs
+/// that belong to other parts of the error budget.
 fn runner_of(shard: Option<Shard>, folder: &Path) -> Result<(Runner<RunValues>, HashSet<String>)> {
     let name = shard.map_or_else(|| JOURNAL.to_owned(), |shard| shard.journal(JOURNAL));
     let journal = Journal::open(folder, &name)?;

@@ -1,5 +1,6 @@
 //! Defines the quantities of an error budget, and evaluates them during a run. A quantity is a column of the tables
-//! `steps` or `measures`, or a property of the shape of a heap, at one time or over a window of time.
+//! `steps` or `measures`, or a property of the shape of a heap. Its value is the last value in an interval of simulated
+//! time, or the mean, minimum, maximum or total over the interval.
 
 use crate::column_spec::{CellValue, ColumnSpec};
 use crate::data::STEP_COLUMNS;
@@ -7,11 +8,12 @@ use crate::error::{Error, Result};
 use crate::granular::{HeapShape, PileMeasures};
 use crate::sim::{Observables, Simulation};
 
-/// Number of moments in a window of time at which columns of the table `measures` are evaluated. The number is small,
-/// because one evaluation takes as long as several steps.
+/// Approximate number of times at which columns of the table `measures` are evaluated in the examined interval of
+/// simulated time. The number is small, because one evaluation takes as long as several steps.
 const MOMENTS: u64 = 100;
 
-/// A statistic of the values in a window of time, such as their mean.
+/// A function that returns a statistic, such as the mean, of a column's values in the examined interval of simulated
+/// time.
 type Statistic = fn(&Found) -> f64;
 
 const STATISTICS: [(&str, Statistic); 4] = [
@@ -36,7 +38,8 @@ pub(crate) struct BudgetQuantity {
     pub name: String,
     /// Unit of the quantity; empty for a dimensionless quantity.
     pub unit: &'static str,
-    /// Statistic over the window of time; `None` for the last value in the window.
+    /// Statistic (such as the mean) of the values in the examined interval of simulated time; `None` for the last value
+    /// in the interval.
     statistic: Option<Statistic>,
     column: RecordedColumn,
 }
@@ -63,7 +66,8 @@ impl std::str::FromStr for BudgetQuantity {
     }
 }
 
-/// True if a column contains numbers and is not one of the columns `step`, `time` and `time_step`.
+/// True if a column contains results that are numbers. The columns `step`, `time` and `time_step` do not count as
+/// results.
 fn is_number<Row>(column: &ColumnSpec<Row>) -> bool {
     !matches!(column.name, "step" | "time" | "time_step")
         && !matches!(column.value, CellValue::Word(..) | CellValue::Name(_))
@@ -75,7 +79,8 @@ fn names() -> impl Iterator<Item = &'static str> {
     of_steps.chain(measures_of_moment().filter(is_new))
 }
 
-/// Returns the names of the quantities that can be computed from the grains and contact forces at a single moment.
+/// Returns the names of those quantities that can be computed from the grains and contact forces at a single simulated
+/// time.
 pub(crate) fn measures_of_moment() -> impl Iterator<Item = &'static str> {
     let measures = PileMeasures::COLUMNS.iter().map(|column| column.name);
     measures.chain(HeapShape::COLUMNS.iter().map(|column| column.name))
@@ -93,7 +98,7 @@ fn column_of(name: &str) -> Option<(RecordedColumn, &'static str)> {
     Some((RecordedColumn::Measures(column), column.unit))
 }
 
-/// A window of simulated time in a run, s.
+/// The interval of simulated time in which results of a run are examined, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Window {
     pub from_secs: f64,
@@ -131,7 +136,7 @@ impl<'a> QuantityWatch<'a> {
         Self { quantities, first, last, stride, found: vec![none; quantities.len()] }
     }
 
-    /// Returns the number of steps from the start of the run to the end of the window of time.
+    /// Returns the number of steps from the start of the run to the end of the examined interval of simulated time.
     pub(super) fn steps(&self) -> u64 {
         self.last
     }
@@ -169,7 +174,7 @@ impl<'a> QuantityWatch<'a> {
         }
     }
 
-    /// Returns the values of all quantities. A value can be NaN or infinite.
+    /// Returns the values of all quantities after the run. A value can be NaN or infinite.
     pub(super) fn values(&self) -> Vec<f64> {
         let of = |(quantity, found): (&BudgetQuantity, &Found)| {
             quantity.statistic.map_or(found.latest, |statistic| statistic(found))

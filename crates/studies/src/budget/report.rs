@@ -1,4 +1,4 @@
-//! Writes the files of an error budget: the answer in words, a picture, and the table as CSV and JSON.
+//! Writes the files of an error budget: a report in words, pictures, and the table of effects as CSV and JSON.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -53,8 +53,9 @@ pub(super) fn write(budget: &ErrorBudget, folder: &Path) -> Result<()> {
     write_file(&folder.join(REPORT), text.as_bytes())
 }
 
-/// Returns the table of an error budget, with one row per possible cause: its effect with the interval, the fraction of
-/// unsolved steps, the relative computing time, and the reason of a failure.
+/// Returns the table of the error budget of one quantity, with one row per possible cause: its effect on the quantity
+/// with the confidence interval, the fraction of unsolved steps, the computing time relative to the unchanged scene,
+/// and the reason if the effect is not known.
 pub(super) fn table(budget: &QuantityBudget) -> ReportTable {
     let columns = "quantity share cause changed starts adds low high unsolved cost note";
     let number =
@@ -83,8 +84,8 @@ pub(super) fn table(budget: &QuantityBudget) -> ReportTable {
     ReportTable::new("budget", columns, rows)
 }
 
-/// Draws a bar chart of the effects of all causes, the largest effect first. A second chart shows the remaining error
-/// of the tested time steps against their computing time.
+/// Draws a bar chart of the effects of all causes on one quantity, the largest effect first. A second chart shows, for
+/// the tested time steps, the remaining error of the quantity against the computing time.
 fn sheet(budget: &ErrorBudget, one: &QuantityBudget) -> Sheet {
     let rows = one.effects();
     let reach = rows.iter().flat_map(|(_, ends)| *ends).map(f64::abs).filter(|end| end.is_finite());
@@ -130,8 +131,8 @@ fn sheet(budget: &ErrorBudget, one: &QuantityBudget) -> Sheet {
     Sheet { size: (width, 200 + 50 * rows.len().max(4) as u32), charts, caption }
 }
 
-/// Draws, for each tested time step, the difference of the quantity to its value at the smallest tested time step,
-/// against the computing time.
+/// Draws the error due to the time step against the computing time, with one point per tested time step. The error is
+/// the value of the quantity minus its value at the smallest tested time step.
 fn by_cost(one: &QuantityBudget, label: &str) -> Option<Chart> {
     let tried: Vec<Point> = one
         .left_by_time_step

@@ -15,38 +15,38 @@ pub(crate) struct CauseRow {
     pub changed: String,
     /// Number of initial states for which both the changed and the unchanged scene gave a value.
     pub starts: usize,
-    /// Mean effect on the quantity, and both ends of its interval; `None` if the changed scene was not run, or if a run
-    /// failed.
+    /// Mean effect of the change on the quantity, and both ends of its confidence interval, in the unit of the
+    /// quantity; `None` if there are not enough runs of the changed scene, or if a run failed.
     pub adds: Option<[f64; 3]>,
-    /// Fraction of the steps of the changed scene that missed their tolerance.
+    /// Fraction of the steps of the changed scene that were not solved to their tolerance.
     pub unsolved: f64,
-    /// Computing time divided by the computing time of the unchanged scene. The ratio differs between machines and
-    /// repetitions.
+    /// Computing time of the changed scene divided by the computing time of the unchanged scene; `None` if there are
+    /// not enough runs. The ratio differs between machines and repetitions.
     pub cost: Option<f64>,
-    /// Reason why the effect is not known; `None` if it is known.
+    /// Reason why the effect is not known, in words; `None` if it is known.
     pub failure: Option<String>,
     #[serde(skip)]
     pub(super) kind: Cause,
 }
 
-/// Verdict on a result: tells whether the result is due to the grains and their contact law and not to the numerical
-/// method.
+/// Verdict on a simulated result: says whether the result comes from the grains and their contact law, or from the
+/// numerical method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Trust {
-    /// Neither the numerical method nor the choice of a contact law changes the result by more than the user allows.
+    /// Neither the numerical method nor the choice of a contact law changes the result by more than the user's limit.
     Yes,
-    /// The numerical method does not change the result by more than the user allows. The choice of a contact law does,
+    /// The numerical method does not change the result by more than the user's limit. The choice of a contact law does,
     /// or its effect is not yet known.
     Mostly,
-    /// The numerical method changes the result by more than the user allows.
+    /// The numerical method changes the result by more than the user's limit.
     No,
     /// The confidence intervals are too wide to decide.
     NotKnownYet,
 }
 
 impl Trust {
-    /// Returns the verdict in words.
+    /// Returns the verdict in words, as an answer to the question whether the result can be trusted.
     pub fn words(self) -> &'static str {
         match self {
             Self::Yes => "yes",
@@ -62,32 +62,36 @@ impl Trust {
 pub(crate) struct QuantityBudget {
     pub quantity: String,
     pub unit: &'static str,
-    /// Requested half-width of the intervals, in the unit of the quantity. It is also the largest acceptable effect of
-    /// the numerical method.
+    /// Requested half-width of the confidence intervals, in the unit of the quantity. It is also the largest acceptable
+    /// effect of the numerical method.
     pub within: f64,
     /// Number of initial states from which the unchanged scene was run.
     pub starts: usize,
-    /// Mean of the quantity over the initial states, and both ends of its interval; `None` if a run failed.
+    /// Mean of the quantity over the initial states, and both ends of its confidence interval, in the unit of the
+    /// quantity; `None` if a run failed.
     pub value: Option<[f64; 3]>,
-    /// Standard deviation of the quantity between initial states.
+    /// Standard deviation of the quantity between initial states, in the unit of the quantity; `None` if a run failed.
     pub spread: Option<f64>,
-    /// Value of the quantity in the scene that the user requested, if that scene is not one of the initial states.
+    /// Value of the quantity in the user's scene with its own initial state; `None` if this initial state is already
+    /// one of those that are averaged, or if the run failed.
     pub itself: Option<f64>,
-    /// Effect on the quantity of letting the time step Δt go to 0, and both ends of its interval, if it is known.
+    /// Estimated change of the quantity in the limit of a time step of 0, and both ends of its confidence interval, in
+    /// the unit of the quantity; `None` if the runs do not show such a limit.
     pub limit_adds: Option<[f64; 3]>,
-    /// One entry for each of the time steps Δt, Δt/2 and Δt/4. An entry contains the computing time divided by the
-    /// computing time of Δt, and the difference between the quantity at this time step and at Δt/8, with both ends of
-    /// its interval.
+    /// One entry for each of the time steps Δt, Δt/2 and Δt/4. An entry contains the computing time with this time
+    /// step, divided by the computing time with Δt, and the quantity at this time step minus the quantity at Δt/8, with
+    /// both ends of the confidence interval.
     pub left_by_time_step: Vec<(f64, [f64; 3])>,
     pub trust: Trust,
     pub answer: String,
     pub causes: Vec<CauseRow>,
 }
 
-/// The answer of an error budget on one quantity, in the form that the program's graphical window displays.
+/// The error budget of one quantity (how much of it is due to the grains, the law and the method), in the form that the
+/// program's graphical window displays.
 #[derive(Clone, Debug)]
 pub struct BudgetAnswer {
-    /// Verdict on the quantity.
+    /// Verdict on the quantity: says whether its value can be trusted.
     pub trust: Trust,
     /// Name of the quantity.
     pub quantity: String,
@@ -95,13 +99,13 @@ pub struct BudgetAnswer {
     pub within: f64,
     /// Largest acceptable effect of the numerical method as text, with its unit.
     pub within_text: String,
-    /// All findings in words.
+    /// All findings of the error budget on this quantity, as a paragraph of text.
     pub text: String,
-    /// Known effects of changes of the scene, the largest effect first.
+    /// Known effects of changes of the scene on the quantity, the largest effect first.
     pub effects: Vec<BudgetEffect>,
 }
 
-/// The effect of one change on a quantity.
+/// The effect of one change of the scene on a quantity.
 #[derive(Clone, Debug)]
 pub struct BudgetEffect {
     /// Group of the cause: grains, law or method.
@@ -110,11 +114,12 @@ pub struct BudgetEffect {
     pub colour: Rgb,
     /// Description of the change, for example the new time step.
     pub changed: String,
-    /// Mean effect on the quantity and both ends of its interval, in the unit of the quantity.
+    /// Mean effect of the change on the quantity, and both ends of its confidence interval, in the unit of the
+    /// quantity.
     pub adds: [f64; 3],
 }
 
-/// The design of an error budget: everything except its runs.
+/// The setup of an error budget: the changes of the scene, the sort of initial states, and the time step.
 pub(super) struct Design<'a> {
     pub variants: &'a [Variant],
     /// True if the initial states are piles made from different seeds. False if they are copies of one scene whose
@@ -123,8 +128,9 @@ pub(super) struct Design<'a> {
     pub time_step_secs: f64,
 }
 
-/// Largest standard deviation of a quantity, between initial states with minimally displaced grains, at which a scene
-/// does not count as chaotic. It is a fraction of the requested half-width of the intervals.
+/// Largest standard deviation of a quantity at which a scene does not count as chaotic, as a fraction of the requested
+/// half-width of the confidence intervals. The standard deviation is taken between runs whose grains are initially
+/// displaced by at most 1e-9 diameters.
 pub(super) const SMOOTH: f64 = 0.01;
 
 pub(super) fn is_inside([_, low, high]: [f64; 3], within: f64) -> bool {
@@ -140,7 +146,8 @@ pub(super) fn is_seen([_, low, high]: [f64; 3]) -> bool {
 }
 
 impl QuantityBudget {
-    /// Returns the causes whose effect is known, with their effects, the largest effect first.
+    /// Returns the rows of the causes whose effect on the quantity is known, each with the mean effect and both ends of
+    /// its confidence interval, the largest effect first.
     pub(super) fn effects(&self) -> Vec<(&CauseRow, [f64; 3])> {
         let mut rows: Vec<(&CauseRow, [f64; 3])> =
             self.causes.iter().filter_map(|row| Some((row, row.adds?))).collect();
@@ -148,7 +155,7 @@ impl QuantityBudget {
         rows
     }
 
-    /// Returns the answer in the form that the program's graphical window displays.
+    /// Returns the error budget of this quantity in the form that the program's graphical window displays.
     pub(super) fn for_window(&self) -> BudgetAnswer {
         let effect = |(row, adds): (&CauseRow, [f64; 3])| BudgetEffect {
             share: row.share.word(),
@@ -166,14 +173,15 @@ impl QuantityBudget {
         }
     }
 
-    /// Returns the row of the smallest time step with a value. If no time step has a value, returns the row of the
-    /// smallest time step.
+    /// Returns the row of the smallest tested time step whose effect is known. If no effect is known, returns the row
+    /// of the smallest tested time step.
     pub(super) fn smallest_step(&self) -> Option<&CauseRow> {
         let of_steps = || self.causes.iter().filter(|row| row.kind == Cause::TimeStep);
         of_steps().rfind(|row| row.adds.is_some()).or_else(|| of_steps().next_back())
     }
 
-    /// True if a cause of this group changes the quantity by more than the user allows.
+    /// True if a cause of this group certainly changes the quantity by more than the user's limit: the whole confidence
+    /// interval of its effect is beyond the limit.
     pub(super) fn is_any_outside(&self, share: Share) -> bool {
         let of_share = self.causes.iter().filter(|row| row.share == share);
         of_share.filter_map(|row| row.adds).any(|ends| is_outside(ends, self.within))

@@ -19,39 +19,41 @@ use crate::scene::{NewPile, Scene};
 use crate::sim::{RunEnding, Settings, Tally};
 use crate::states::settled_pile;
 
-/// Largest displacement of the grains, in mean diameters, that makes another initial state of the same scene. In a
-/// chaotic scene the difference between two such runs grows.
+/// Largest displacement of a grain along an axis, in mean diameters, with which another initial state of the same scene
+/// is made. In a chaotic scene, runs from such initial states move apart.
 const MOVED_IN_DIAMETERS: f64 = 1e-9;
 
 /// Results of a run of an error budget.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RunValues {
-    /// Values of the quantities, in the order of the budget; `None` if the run has no finite value of a quantity.
+    /// Values of the examined quantities, in the order in which the user lists them; `None` if the run has no finite
+    /// value of a quantity.
     pub values: Vec<Option<f64>>,
-    /// Reason why the values are invalid: the state was no longer finite, or grains were lost. `None` if the values are
-    /// valid.
+    /// Reason why the values are invalid, in words: positions or velocities became NaN or infinite, or grains left the
+    /// scene. `None` if the values are valid.
     pub failure: Option<String>,
-    /// Fraction of the steps that missed their tolerance.
+    /// Fraction of the steps of the run that were not solved to their tolerance.
     #[serde(with = "number")]
     pub unsolved: f64,
-    /// Computing time of the run without the preparation of its initial state, s.
+    /// Computing time of the run, without the time to make its initial state, s.
     #[serde(with = "number")]
     pub run_secs: f64,
 }
 
 /// The initial states of an error budget: piles with different seeds if the scene generates its grains, otherwise the
-/// scene itself and copies of it with minimally displaced grains.
+/// scene itself and copies of the scene whose grains are displaced by at most 1e-9 diameters.
 pub(crate) struct Starts {
     config: Config,
     base: BaseScene,
-    /// The scene that the user requested.
+    /// The scene that the user described, without changes.
     pub scene: Scene,
     pub pile: Option<NewPile>,
     states: PathBuf,
 }
 
 impl Starts {
-    /// Returns the initial states of a requested scene. Initial states of piles are stored in the folder `states`.
+    /// Returns the initial states of the scene that the user describes in `config`. Initial states of piles are stored
+    /// in the folder `states`.
     pub(crate) fn of(config: &Config, states: &Path) -> Result<Self> {
         let base = config.base_scene()?;
         let scene = config.change(&base)?;
@@ -67,7 +69,7 @@ impl Starts {
         Ok(starts)
     }
 
-    /// True if the pile can also be made with another number of grains.
+    /// True if the scene is a pile that can also be made with another number of grains.
     pub(super) fn resizes(&self) -> bool {
         self.pile.is_some() && self.is_default_scene()
     }
@@ -76,15 +78,16 @@ impl Starts {
         self.config.named() == Config::DEFAULT_SCENE
     }
 
-    /// Returns the seed of the pile for an initial state; `None` if initial states differ by displaced grains instead.
-    /// The seed of the shipped pile is never used, because that pile was chosen for illustration.
+    /// Returns the seed with which the pile of initial state number `start` is made; `None` if initial states differ by
+    /// displaced grains and not by a seed. The seed of the shipped pile is never used, because that pile was chosen for
+    /// illustration.
     fn seed(&self, start: u64) -> Option<u64> {
         let chosen = NewPile::default().seed;
         self.pile.as_ref().map(|_| if start < chosen { start } else { start + 1 })
     }
 
-    /// Returns the scene with initial state number `start`, counted from 1, and with the settings and the pile of a
-    /// variant.
+    /// Returns the scene with initial state number `start`, counted from 1, and with the changed settings and the
+    /// changed pile of a variant, if any.
     pub(crate) fn scene(&self, start: u64, variant: Option<&Variant>) -> Result<Scene> {
         let settings = variant.map_or_else(|| self.scene.settings(), |variant| variant.settings);
         let pile = variant.and_then(|variant| variant.pile.as_ref()).or(self.pile.as_ref());
@@ -105,13 +108,13 @@ impl Starts {
         Ok(scene)
     }
 
-    /// Returns the scene that the user requested, with its own initial state.
+    /// Returns the user's scene without changes, with its own initial state.
     pub(super) fn itself(&self) -> Result<Scene> {
         self.config.scene_on(self.base.clone(), |_| true)
     }
 
     /// Returns the key of a run: a hash of everything that affects the result of the run. `start` is the number of the
-    /// initial state; `None` for the requested scene itself.
+    /// initial state; `None` for the user's scene with its own initial state.
     pub(crate) fn key(
         &self,
         start: Option<u64>,
@@ -146,7 +149,8 @@ impl Starts {
     }
 }
 
-/// Runs a scene from time 0 to the end of the window of time, and returns the values of the quantities in this window.
+/// Runs a scene from time 0 to the end of `window`, an interval of simulated time, and returns the values of the
+/// quantities in this interval.
 pub(crate) fn run(
     scene: &Scene,
     quantities: &[BudgetQuantity],
@@ -174,7 +178,7 @@ pub(crate) fn run(
     Ok(RunValues { values, failure, unsolved, run_secs: begun.elapsed().as_secs_f64() })
 }
 
-/// Describes the stepper, the Bond number, the time step, restitution and friction in a few words.
+/// Returns a short description of the stepper, the Bond number, the time step, the restitution and the friction.
 pub(super) fn said_of(settings: &Settings) -> String {
     let parameters = &settings.parameters;
     format!(

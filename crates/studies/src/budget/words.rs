@@ -1,10 +1,10 @@
-//! Writes the answer of an error budget in words. There is a template of a sentence for each possible finding.
+//! Writes the findings of an error budget in words. There is a template of a sentence for each possible finding.
 
 use super::causes::{Cause, DIVISORS, Share, short};
 use super::collect::{BudgetEnd, OUTSIDE, Runs};
 use super::rows::{CauseRow, Design, QuantityBudget, SMOOTH, Trust, is_inside, is_seen};
 
-/// Rounds a number to the decimals that are meaningful if its confidence interval has the half-width `half`.
+/// Formats a number with those decimals that are meaningful if its confidence interval has the half-width `half`.
 fn rounded(number: f64, half: f64) -> String {
     if !(half > 0.0 && half.is_finite()) {
         return short(number);
@@ -29,7 +29,7 @@ fn rounded(number: f64, half: f64) -> String {
     format!("{number:.*e}", digits as usize)
 }
 
-/// Joins names to an enumeration, as in "time step, cone and friction model".
+/// Joins names into a list in words, as in "time step, cone and friction model".
 fn listed(names: &[String]) -> String {
     match names.split_last() {
         Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
@@ -37,19 +37,19 @@ fn listed(names: &[String]) -> String {
     }
 }
 
-/// Returns a cause as the subject of a sentence.
+/// Returns the subject of a sentence about the effect of a cause, such as "the contact law range in place of this one".
 fn subject(row: &CauseRow) -> String {
     row.kind.subject().replace("{}", &row.changed)
 }
 
-/// Returns the text with its first letter changed by a function, for example to a capital letter.
+/// Returns the text with its first letter changed by the function `change`, for example to a capital letter.
 fn with_first(text: &str, change: fn(&char) -> char) -> String {
     let mut letters = text.chars();
     letters.next().iter().map(change).chain(letters).collect()
 }
 
-/// Returns the answer of an error budget on one quantity as a paragraph. `is_halved` is true if the quantity has a
-/// value with all halved time steps.
+/// Returns the findings of an error budget on one quantity as a paragraph. `is_halved` is true if the quantity has a
+/// value at each of the time steps Δt/2, Δt/4 and Δt/8.
 pub(super) fn paragraph(
     budget: &QuantityBudget,
     (runs, ended): (&Runs, BudgetEnd),
@@ -66,26 +66,28 @@ pub(super) fn paragraph(
     said.join(" ")
 }
 
-/// The sentences of the answer on one quantity.
+/// The sentences about one quantity of an error budget.
 impl QuantityBudget {
-    /// Formats a number whose interval has the half-width `half`. Decimals below the largest negligible change,
-    /// [`SMOOTH`] times the requested half-width, are left out.
+    /// Formats a number whose confidence interval has the half-width `half`. Decimals that are smaller than a
+    /// negligible change (the requested half-width times [`SMOOTH`]) are left out.
     fn number(&self, number: f64, half: f64) -> String {
         rounded(number, half.max(SMOOTH * self.within))
     }
 
-    /// Returns the largest size of an effect that its interval allows.
+    /// Returns the largest size of an effect within its confidence interval. The argument is the mean effect and both
+    /// ends of the interval.
     fn most([_, low, high]: [f64; 3]) -> f64 {
         low.abs().max(high.abs())
     }
 
-    /// True if an effect is statistically significant and larger than the largest negligible change.
+    /// True if an effect, given by its mean and both ends of its confidence interval, is statistically significant and
+    /// may be larger than a negligible change.
     fn is_told(&self, ends: [f64; 3]) -> bool {
         is_seen(ends) && Self::most(ends) > SMOOTH * self.within
     }
 
-    /// Returns the largest possible size of an effect that is not significant, in words; empty if the effect is exactly
-    /// 0.
+    /// Returns a phrase with the largest possible size of an effect that is not significant, such as " (at most 0.02)";
+    /// empty if the effect is exactly 0. `ends` is the mean effect and both ends of its confidence interval.
     fn at_most(&self, ends: [f64; 3]) -> String {
         let (most, least) = (Self::most(ends), SMOOTH * self.within);
         match most {
@@ -223,8 +225,8 @@ impl QuantityBudget {
         }
     }
 
-    /// Returns a sentence about the cheapest tested time step whose effect on the quantity is small enough. Returns
-    /// `None` if no shorter time step is needed.
+    /// Returns a sentence that recommends the largest tested time step whose error of the quantity is within the user's
+    /// limit, and gives its relative computing time. Returns `None` if no smaller time step is needed.
     fn of_cost(&self, within: &str, time_step_secs: f64) -> Option<String> {
         if self.trust != Trust::No || self.left_by_time_step.is_empty() {
             return None;

@@ -37,8 +37,8 @@ const PAIRS: usize = 6;
 /// Options of a calibration, which finds the parameters with which a scene reproduces measured values.
 #[derive(Clone, Debug)]
 pub struct CalibrateOptions {
-    /// Scene to calibrate, with its settings. Its seed, 1 by default, is the seed of the first run. Further runs use
-    /// the following seeds.
+    /// Scene to calibrate, with its settings. Its seed, 1 by default, gives the initial state of the first run. Further
+    /// runs use the following seeds.
     pub config: Config,
     /// Measured values, as in `slump=0.35±0.02`: a quantity at the end of a run, its value, and its standard error.
     pub targets: Vec<String>,

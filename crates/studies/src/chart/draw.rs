@@ -14,12 +14,13 @@ use crate::error::{Error, Result};
 use crate::output::Texts;
 use crate::png::png_of_rgb;
 
-/// Sizes of text, pixels: title of a chart, labels of axes, caption of the sheet, and words within a chart.
+/// Font sizes, pixels: title of a chart, labels of axes, caption of the sheet, and text within a chart.
 const TITLE: u32 = 27;
 const WORDS: u32 = 24;
 const CAPTION: u32 = 20;
 const WITHIN: u32 = 18;
-/// Least width of the space for labels left of the vertical axis, and width of a character of longer labels, pixels.
+/// Least width of the space for labels to the left of the vertical axis, and width of a character, from which the space
+/// for longer labels is computed, pixels.
 const BESIDE: u32 = 104;
 const CHARACTER: u32 = 12;
 /// Sizes of the legend, pixels: space above its first entry, height of a line of text (also in the caption), space
@@ -31,7 +32,7 @@ const KEY: u32 = 70;
 const CAPTION_CHARACTER: u32 = 10;
 /// Half the height of a horizontal bar, as a fraction of the height of its row.
 const BAR: f64 = 0.32;
-/// Name of the font. Browsers also know this name, so that they can display the text of an SVG file.
+/// Name of the font of all charts. Browsers also know this name, so that they can display the text of an SVG file.
 const FONT: &str = "sans-serif";
 
 type Context<'a, DB> = ChartContext<'a, DB, Cartesian2d<AxisCoordinates, AxisCoordinates>>;
@@ -64,7 +65,7 @@ pub fn svg(sheet: &Sheet) -> Result<String> {
     Ok(text)
 }
 
-/// Layout of a sheet: its charts, a legend to their right, and the caption below.
+/// Layout of a sheet of charts: the charts, a legend to their right, and the caption below.
 struct Layout<'a> {
     sheet: &'a Sheet,
     size: (u32, u32),
@@ -96,7 +97,7 @@ impl<'a> Layout<'a> {
     }
 }
 
-/// Breaks text into lines of at most `most` characters.
+/// Breaks a text between words into lines of at most `most` characters. A longer word gets its own line.
 fn wrapped(words: &str, most: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in words.split(' ') {
@@ -280,7 +281,8 @@ fn draw_curve<'a, DB: DrawingBackend + 'a>(
     Ok(())
 }
 
-/// Returns the width of the line of a style, 0 if the style has no line, and the radius and style of its dots.
+/// Returns the width of the line of a curve's style, pixels (0 if the style has no line), and the radius, pixels, and
+/// plotters style of its dots, if it has dots.
 fn strokes(look: Look, colour: RGBColor) -> (u32, Option<(u32, ShapeStyle)>) {
     match look {
         Look::Line(width) | Look::Dashes(width) => (width, None),
@@ -296,10 +298,12 @@ fn rgb((red, green, blue): Rgb) -> RGBColor {
     RGBColor(red, green, blue)
 }
 
-/// Largest distance between a coordinate and a tick mark, as a fraction of the axis, at which both count as equal.
+/// Largest distance between a coordinate and a tick mark at which the coordinate gets the label of the tick mark, as a
+/// fraction of the length of the axis.
 const NEAR: f64 = 1e-6;
 
-/// Range of the coordinates along an axis, as given by `Scale::place`, and the tick marks of the axis.
+/// An axis as the crate plotters needs it: the range of the coordinates along the axis (logarithms on a logarithmic
+/// axis), and the tick marks.
 struct AxisCoordinates {
     range: Range<f64>,
     marks: Vec<(f64, String)>,

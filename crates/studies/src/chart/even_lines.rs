@@ -55,8 +55,8 @@ impl<'a> DrawingBackend for EvenLines<'a> {
     }
 }
 
-/// Returns the pixels of a line, each with the fraction of its area that the line covers. The fraction is one half for
-/// a pixel whose centre is half the line's width away from the middle of the line.
+/// Returns the pixels of a line with this `width` (pixels) along `path`, each with the approximate fraction of its area
+/// that the line covers. The fraction is one half for a pixel whose centre is on the edge of the line.
 fn covered(path: &[BackendCoord], width: f64) -> BTreeMap<BackendCoord, f64> {
     let place = |(x, y): BackendCoord| DVec2::new(f64::from(x), f64::from(y));
     let reach = (0.5 * width + 1.0).ceil() as i32;
@@ -86,8 +86,8 @@ fn covered(path: &[BackendCoord], width: f64) -> BTreeMap<BackendCoord, f64> {
 mod tests {
     use super::*;
 
-    /// Returns the mean width of a line: the sum of the covered fractions without the round ends, divided by the
-    /// length.
+    /// Returns the mean width of a drawn line from the origin to `to`, pixels: the sum of the covered fractions of
+    /// pixels, without the round ends of the line, divided by the length of the line.
     fn mean_width(to: BackendCoord, width: f64) -> f64 {
         let area: f64 = covered(&[(0, 0), to], width).values().sum();
         let length = f64::from(to.0).hypot(f64::from(to.1));

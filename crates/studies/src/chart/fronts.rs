@@ -1,4 +1,4 @@
-//! Computes the Pareto front of methods: the best combinations of speed and error.
+//! Computes the Pareto front of solver methods: the best combinations of speed and error.
 
 /// Returns the indices of those points (speed, error) for which no other point is at least as fast and at least as
 /// accurate, by increasing speed. Of equal points, the first is returned.

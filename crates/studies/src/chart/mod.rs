@@ -25,7 +25,8 @@ pub const PALETTE: [Rgb; 7] = [
     (213, 94, 0),
 ];
 
-/// Distance between curves that are drawn side by side, as a fraction of the width of the chart.
+/// Horizontal shift between curves with the same x values, which makes their confidence intervals visible side by side,
+/// as a fraction of the width of the chart.
 const ASIDE: f64 = 0.006;
 
 /// One axis of a chart.
@@ -35,23 +36,24 @@ pub struct Axis {
     pub(crate) scale: Scale,
     pub(crate) from: f64,
     pub(crate) to: f64,
-    /// Positions of tick marks with their labels. If the list is empty, the marks are at round numbers.
+    /// Values at which the axis has tick marks, with their labels. If the list is empty, the marks are at round
+    /// numbers.
     pub(crate) ticks: Vec<(f64, String)>,
 }
 
 impl Axis {
-    /// Returns a linear axis.
+    /// Returns a linear axis with the values `from` and `to` at its ends.
     pub fn linear(label: impl Into<String>, from: f64, to: f64) -> Self {
         Self { label: label.into(), scale: Scale::Linear, from, to, ticks: Vec::new() }
     }
 
-    /// Returns a logarithmic axis.
+    /// Returns a logarithmic axis with the values `from` and `to` at its ends.
     pub fn log(label: impl Into<String>, from: f64, to: f64) -> Self {
         Self { label: label.into(), scale: Scale::Log, from, to, ticks: Vec::new() }
     }
 }
 
-/// A point of a curve, with its confidence interval if it has one.
+/// A point of a curve on a chart, with its confidence interval if it has one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// Coordinate on the x axis.
@@ -62,17 +64,17 @@ pub struct Point {
     pub interval: Option<(f64, f64)>,
 }
 
-/// Returns points without confidence intervals, from their coordinates x and y.
+/// Returns points of a curve, without confidence intervals, from pairs of coordinates (x, y).
 pub(crate) fn points(places: impl IntoIterator<Item = (f64, f64)>) -> Vec<Point> {
     places.into_iter().map(|(x, y)| Point { x, y, interval: None }).collect()
 }
 
-/// A filled rectangle of a map.
+/// A filled rectangle of a map, a chart that shows a value over x and y by colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapCell {
-    /// Value on the x axis, and the left and right edges of the rectangle.
+    /// Value on the x axis that the rectangle represents, and the x values of its left and right edges.
     pub x: (f64, [f64; 2]),
-    /// Value on the y axis, and the lower and upper edges of the rectangle.
+    /// Value on the y axis that the rectangle represents, and the y values of its lower and upper edges.
     pub y: (f64, [f64; 2]),
     /// Value that the colour of the rectangle shows.
     pub value: f64,
@@ -95,28 +97,28 @@ pub enum Look {
     Bars,
 }
 
-/// One layer of a chart.
+/// One layer of a chart: a curve, filled rectangles, or a text label.
 #[derive(Clone, Debug)]
 pub enum Layer {
-    /// Points, with or without lines between them.
+    /// A curve: points, with or without lines between them.
     Curve {
-        /// Name in the CSV, and in the legend if `in_legend` is true.
+        /// Name of the curve in the CSV file, and in the legend if `in_legend` is true.
         name: String,
         /// True if the curve is in the legend.
         in_legend: bool,
-        /// Points, in the order in which a line connects them.
+        /// Points of the curve, in the order in which a line connects them.
         points: Vec<Point>,
         /// Colour of the curve.
         colour: Rgb,
         /// Style of the curve.
         look: Look,
-        /// Horizontal shift of the curve, as a fraction of the width of the chart, so that the intervals of several
-        /// curves do not hide each other.
+        /// Horizontal shift of the curve, as a fraction of the width of the chart, so that the confidence intervals of
+        /// several curves do not hide each other.
         aside: f64,
     },
     /// Filled rectangles, each with the value that its colour shows.
     Cells {
-        /// Name in the CSV.
+        /// Name of the rectangles in the CSV file.
         name: String,
         /// The rectangles.
         cells: Vec<MapCell>,
@@ -125,7 +127,7 @@ pub enum Layer {
     },
     /// A text label within the chart.
     Words {
-        /// Position at which the text begins, in the units of the axes.
+        /// Position at which the text begins: values on the x axis and on the y axis.
         at: (f64, f64),
         /// The text.
         text: String,
@@ -140,7 +142,8 @@ impl Layer {
         Self::Curve { name: name.into(), in_legend: true, points, colour, look, aside: 0.0 }
     }
 
-    /// Returns this curve, shifted horizontally as number `index` of `count` curves that are drawn side by side.
+    /// Returns this curve with a small horizontal shift. `index` is its number, from 0, among `count` curves with the
+    /// same x values, which are shifted so that their confidence intervals do not hide each other.
     pub fn beside(mut self, index: usize, count: usize) -> Self {
         if let Self::Curve { aside, .. } = &mut self {
             *aside = ASIDE * (index as f64 - 0.5 * (count as f64 - 1.0));
@@ -162,12 +165,12 @@ pub struct Chart {
     pub(crate) y: Axis,
     /// Layers of the chart, from back to front.
     pub layers: Vec<Layer>,
-    /// Width on the sheet, relative to the other charts.
+    /// Width of the chart on its sheet, relative to the other charts on the sheet.
     pub(crate) width: f64,
 }
 
 impl Chart {
-    /// Returns a chart without layers.
+    /// Returns an empty chart with this title and these axes.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
         Self { title: title.into(), x, y, layers: Vec::new(), width: 1.0 }
     }
@@ -180,7 +183,7 @@ pub struct Sheet {
     pub size: (u32, u32),
     /// The charts, from left to right.
     pub charts: Vec<Chart>,
-    /// Lines of the caption.
+    /// Lines of the caption below the charts.
     pub caption: Vec<String>,
 }
 
@@ -189,7 +192,8 @@ impl Sheet {
         Self { size: (1200, 820), charts: vec![chart], caption: Vec::new() }
     }
 
-    /// Returns every point of every layer as CSV, with the columns panel, layer, x, y, low, high and value.
+    /// Returns every point of every layer of the charts as CSV, with the columns panel (number of the chart), layer, x,
+    /// y, low, high and value.
     ///
     /// # Errors
     /// If a row cannot be written as CSV.
@@ -236,8 +240,8 @@ pub(crate) enum Scale {
 
 const MARKS: f64 = 6.0;
 
-/// Ratio of the ends of a logarithmic axis below which not only powers of ten have labels, but also 2 and 5 times these
-/// powers.
+/// Ratio of the values at the two ends of a logarithmic axis, below which not only powers of ten get labels, but also 2
+/// and 5 times these powers.
 const SHORT: f64 = 80.0;
 
 impl Scale {
@@ -250,7 +254,8 @@ impl Scale {
         }
     }
 
-    /// Returns the round numbers in an interval, with their labels. The labels of minor tick marks are empty.
+    /// Returns the round numbers between two ends of an axis, at which tick marks are drawn, with their labels. Minor
+    /// tick marks have empty labels.
     fn marks(self, from: f64, to: f64) -> Vec<(f64, String)> {
         match self {
             Self::Linear => linear_marks(from, to),

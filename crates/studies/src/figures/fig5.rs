@@ -24,7 +24,7 @@ const LARGE_OVERLAP: f64 = 0.01;
 const END_OF_AXIS: f64 = 0.06;
 
 /// A statement of Fig. 5a about one Bond number: the Bond number, the statement in words, its test, and the slope of
-/// the slump per decade of Δt on the border between true and false.
+/// the slump per decade of Δt at which the statement changes from false to true.
 type SlumpClaim = (f64, &'static str, SlumpTest, f64);
 /// A test of a statement about the slump. Its input is a list for each initial state: log₁₀ Δt and slump of each run,
 /// by increasing Δt. It returns the measurement in words and the verdict.

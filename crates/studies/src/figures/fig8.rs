@@ -13,7 +13,8 @@ use crate::statistics;
 /// Gap between the discs i and j at the end of a run, in diameters, above which their bond counts as open. The value is
 /// well above rounding errors, and well below any gap of an open bond.
 pub(super) const OPEN_GAP: f64 = 1e-6;
-/// Outcomes of the cradle in the paper: time step, s, and true for an open bond or false for a closed bond.
+/// Outcomes of the paper's cradle, in which disc k hits the bonded discs i and j: time step, s, and true if the bond
+/// opens or false if it stays closed.
 const PAPER: [(f64, bool); 14] = [
     (1e-4, true),
     (2e-4, true),
@@ -30,15 +31,16 @@ const PAPER: [(f64, bool); 14] = [
     (6e-3, true),
     (1e-2, true),
 ];
-/// Time step, s, below which the outcome of the cradle does not depend on the start distance of disc k, which decides
-/// at which time within a step the discs meet.
+/// Time step, s, below which the outcome of the cradle (the bond of the discs i and j opens or stays closed) does not
+/// depend on the start distance of disc k. This distance decides at which time within a step disc k hits disc i.
 pub(super) const PHASE_SECS: f64 = 3.5e-3;
 
 fn is_open(run: &MeasuredCase) -> bool {
     run.reading("first_gap") > OPEN_GAP
 }
 
-/// Returns the number of runs of the cradle in which the bond opened, and the number of all runs.
+/// Returns the number of runs of the cradle in which the bond of the discs i and j is open at the end, and the number
+/// of all runs.
 fn open_of(rows: &Measurements<'_>) -> [usize; 2] {
     [rows.0.iter().filter(|run| is_open(run)).count(), rows.0.len()]
 }
@@ -181,8 +183,8 @@ pub(super) fn share(studies: &StudyRunner) -> Result<Figure> {
     let claims = at_large_steps.into_iter().map(|(tolerance, large)| {
         let listed: Vec<String> =
             large.iter().map(|point| format!("{:.0} % at {}", 100.0 * point.y, point.x)).collect();
-        // The claim is accepted if the intervals at the smallest and at the largest of the tested time steps do not
-        // overlap.
+        // The claim counts as true if the interval at the largest tested time step is above the interval at the
+        // smallest one.
         let ends = large.first().zip(large.last());
         let intervals = ends.and_then(|(first, last)| first.interval.zip(last.interval));
         let rises = intervals.is_some_and(|(first, last)| last.0 > first.1);

@@ -1,5 +1,5 @@
-//! Draws Fig. 8 of the paper: the position of disc j of the cradle over time, after disc k has hit disc i. Tests the
-//! paper's statements about these runs.
+//! Draws Fig. 8 of the paper: the position of disc j over time in the cradle, three discs i, j and k on a line, of
+//! which k hits the bonded discs i and j. Tests the paper's statements about these runs.
 
 use std::ops::RangeInclusive;
 
@@ -14,11 +14,14 @@ use crate::scene::cradle;
 const SHOWN_SECS: [f64; 6] = [5e-4, 1e-3, 4e-3, 5e-3, 6e-3, 1e-2];
 /// Upper ends of the axes of the paper's Fig. 8: time, s, and position of disc j, diameters.
 const ENDS: (f64, f64) = (2.0, 5.0);
-/// Time steps at which, according to the paper, disc j leaves disc i with the same velocity for every time step, s.
+/// Time steps at which, according to the paper, disc j of the cradle flies off with one velocity, the same for all
+/// these time steps, s.
 const FREE_SECS: RangeInclusive<f64> = 1e-4..=6e-4;
-/// Time steps at which, according to the paper, disc k stays with the discs i and j, s.
+/// Time steps at which, according to the paper, disc k of the cradle stays with the discs i and j after it has hit
+/// them, s.
 const CLUSTER_SECS: RangeInclusive<f64> = 7e-4..=3e-3;
-/// Time step at which, according to the paper, disc i catches up with disc j, s.
+/// Time step at which, according to the paper, the bond of the cradle's discs i and j opens and disc i then catches up
+/// with disc j, s.
 const CAUGHT_SECS: f64 = 5e-3;
 /// Largest ratio of the largest to the smallest velocity at which velocities of disc j count as equal.
 const ONE_VELOCITY: f64 = 1.1;

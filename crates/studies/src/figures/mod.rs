@@ -23,7 +23,8 @@ struct Figure {
     pub name: &'static str,
     pub sheet: Sheet,
     pub claims: Vec<Claim>,
-    /// Table of the numbers on which the verdicts are based, if the chart does not show them all.
+    /// Table of the numbers on which the verdicts about the figure's statements are based, if the chart does not show
+    /// them all.
     pub table: Option<ReportTable>,
 }
 

@@ -16,7 +16,7 @@ use crate::statistics::{Mean, mean, p_value};
 const MOST: f64 = 0.55;
 const CONTOURS: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 10.0];
 const WHITE: Rgb = (255, 255, 255);
-/// Cohesive times from 1/`NEAR` to `NEAR` count as near 1.
+/// Cohesive times Bond·Δt/√(d/g), with mean diameter d and gravity g, from 1/`NEAR` to `NEAR` count as near 1.
 const NEAR: f64 = 3.0;
 const SHADES: u32 = 64;
 
@@ -117,9 +117,9 @@ fn scale() -> Chart {
     scale
 }
 
-/// Returns one difference of slumps per initial state: the mean slump of runs whose cohesive time is not near 1, minus
-/// the mean slump of runs whose cohesive time is near 1. The difference is computed for each Bond number that has runs
-/// of both kinds, and then averaged over these Bond numbers.
+/// Returns one difference of slumps per initial state: the mean slump of runs whose cohesive time Bond·Δt/√(d/g) is not
+/// near 1, minus the mean slump of runs whose cohesive time is near 1. The difference is computed for each Bond number
+/// that has runs of both kinds, and then averaged over these Bond numbers.
 fn depths(groups: &[Alike], states: usize) -> Vec<f64> {
     let of_group = |runs: &Alike| {
         let (near, away): (Vec<_>, Vec<_>) =
@@ -138,9 +138,9 @@ fn depths(groups: &[Alike], states: usize) -> Vec<f64> {
     groups.chunks(each).map(of_state).filter(|depth| depth.is_finite()).collect()
 }
 
-/// Tests whether the slump is lower at cohesive times near 1 than at other cohesive times. The test does not look for
-/// the time step with the lowest slump at each Bond number, because such a time step exists even without any effect of
-/// Δt.
+/// Tests whether the slump is lower at cohesive times Bond·Δt/√(d/g) near 1 than at other cohesive times. The test does
+/// not look for the time step with the lowest slump at each Bond number, because such a time step exists even without
+/// any effect of Δt.
 fn claim(groups: &[Alike], states: usize) -> Claim {
     let depth = |groups: &[Alike]| mean(&depths(groups, states));
     let verdict = |depth: Mean| Verdict::of(depth.p_above(0.0), depth.p_below(0.0));

@@ -1,7 +1,7 @@
-//! Reads and writes journals of results. A journal has one line of JSON per case. The line is appended when the case
-//! ends, so if the program is killed, all finished cases are still there. Each line has a checksum. An incomplete last
-//! line, which a killed program can leave, is cut off; a damaged line is reported and ignored. Stored initial states
-//! use the same kind of checksum.
+//! Reads and writes journals of results. A journal has one line of JSON per case (a run of a study or an experiment).
+//! The line is appended when the case ends, so if the program is killed, all finished cases are still there. Each line
+//! has a checksum. An incomplete last line, which a killed program can leave, is cut off; a damaged line is reported
+//! and ignored. Stored initial states use the same kind of checksum.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};

@@ -1,5 +1,5 @@
-//! Runs the cases of an experiment. The runner computes the cases that are not finished, writes each result to a
-//! journal at once, and returns all results in the order of the cases.
+//! Runs the cases (runs) of a study or an experiment. The runner computes the cases that are not finished, writes each
+//! result to a journal as soon as the case ends, and returns all results in the order of the cases.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -62,7 +62,7 @@ impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
         self.finished.contains_key(key)
     }
 
-    /// Runs the cases that are not finished, and returns the results of all cases in the order of `cases`.
+    /// Computes those of `cases` that are not finished, and returns the results of all cases in the order of `cases`.
     pub(crate) fn run<C: Sync>(
         &self,
         cases: &[Case<C>],

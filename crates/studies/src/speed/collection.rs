@@ -1,5 +1,5 @@
-//! Collects steps of piles, on which solver methods are compared. A collected step is a simulation in its state just
-//! before the step, with the impulses of the previous step for a warm start.
+//! Collects steps of simulated piles, on which solver methods are compared. A collected step is a simulation in its
+//! state just before the step, together with the impulses of the previous step for a warm start.
 
 use std::path::Path;
 
@@ -17,8 +17,8 @@ use crate::solver::{FrictionModel, Method, Ordering, SolverSettings, StopTest};
 use crate::states::States;
 use crate::world::ParameterChanges;
 
-/// Solver settings with which piles are simulated up to the collected steps. The tolerance is much smaller than any
-/// claim about a pile needs, so that a collection does not favour the errors of one of the compared methods.
+/// Solver settings with which piles are simulated up to the collected steps. The tolerance is so small that the
+/// collected states contain no visible error of the solver, which could favour one of the compared methods.
 const ADVANCE: SolverSettings = SolverSettings {
     method: Method::Newton,
     ordering: Ordering::Interleaved,
@@ -30,38 +30,39 @@ const ADVANCE: SolverSettings = SolverSettings {
     model_solves: 1,
 };
 
-/// Width of a pile's box divided by the square root of the number of grains, in diameters. It gives a width of 16 for
-/// 138 grains.
+/// Width of the box in which a pile is made, in diameters, divided by the square root of the number of grains. For 138
+/// grains the box is 16 diameters wide.
 const WIDTH_BY_ROOT: f64 = 1.35;
 
-/// Plan of a collection of steps on which methods are compared. There is one pile for every Bond number and time step,
-/// and each pile gives one step at each time.
+/// Description of a collection of steps on which solver methods are compared. One pile is simulated for every Bond
+/// number and time step Δt, and one of its steps is collected at each of several simulated times.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct CollectionPlan {
     pub bonds: Vec<f64>,
     /// Time steps Δt of the piles, s.
     pub time_steps_secs: Vec<f64>,
-    /// Simulated times at which the steps begin, s, in ascending order.
+    /// Simulated times at which the collected steps begin, s, in ascending order.
     pub times_secs: Vec<f64>,
-    /// Seeds of the initial states, assigned to the piles in turn.
+    /// Seeds of the initial states of the piles. The piles get these seeds in turn.
     pub seeds: Vec<u64>,
     pub grains: usize,
     /// Width of the box in which the initial states are made, in diameters.
     pub box_width_in_diameters: f64,
     pub deposition: Deposition,
-    /// True if the side walls of the box remain, so that the piles are at rest.
+    /// True if the piles remain in the box in which they were made, so that they are at rest.
     pub in_a_box: bool,
     pub advance: SolverSettings,
-    /// Speed below which contacts do not bounce, in units of g·Δt, the speed that gravity adds in one step; 0 in the
-    /// paper's scheme.
+    /// Approach speed below which contacts do not bounce, in units of g·Δt, the speed that gravity adds in one step; 0
+    /// in the paper's scheme.
     pub restitution_threshold: f64,
     /// Coefficient of friction; `None` for the coefficient of the scene.
     pub friction: Option<f64>,
 }
 
 impl CollectionPlan {
-    /// Returns the plan of 48 steps (24 in a quick pass) of piles of 138 grains. In the full pass, the steps belong to
-    /// the first motion, the collapse (which takes about 0.3 s), its end, and rest.
+    /// Returns the description of a collection of 48 steps (24 in a quick pass) of piles of 138 grains. In the full
+    /// pass, the steps are from the first motion, from the collapse (which takes about 0.3 s), from its end, and from
+    /// the state of rest.
     pub(super) fn piles(restitution_threshold: f64, effort: Effort) -> Self {
         let rain = NewPile::default();
         Self {
@@ -79,10 +80,11 @@ impl CollectionPlan {
         }
     }
 
-    /// Returns the plan of steps at Δt = 1e-3 s of piles with and without cohesion. The initial states are made by a
-    /// quick method and are as steep as the pile of 138 grains. The piles begin to slump or, in their box, are at rest.
-    /// Every step before the collected step is solved with bounded friction (Tresca), so that the impulses of a warm
-    /// start contain no error of a compared method.
+    /// Returns the description of a collection of steps with Δt = 1e-3 s, from piles of `grains` grains with and
+    /// without cohesion. The initial states are made by the quick method drop-and-roll and are as steep as the pile of
+    /// 138 grains. The piles begin to slump or, with `in_a_box`, are at rest in their box. The steps before a collected
+    /// step are solved with bounded friction (Tresca), so that the impulses of the warm start contain no error of a
+    /// compared method.
     pub(super) fn of_size(grains: usize, in_a_box: bool, effort: Effort) -> Self {
         let times_secs = match in_a_box {
             true => effort.pick(vec![5e-3], vec![1e-2, 2e-2]),
@@ -108,7 +110,7 @@ impl CollectionPlan {
         }
     }
 
-    /// Returns Bond number, Δt (s) and time (s) of each step of the plan.
+    /// Returns the Bond number, the time step Δt (s) and the simulated time (s) of each step of the collection.
     pub(super) fn steps(&self) -> Vec<[f64; 3]> {
         let of_pile = |bond, step| self.times_secs.iter().map(move |&time| [bond, step, time]);
         let steps =
@@ -129,7 +131,7 @@ impl CollectionPlan {
         self.steps().into_iter().map(name).collect()
     }
 
-    /// Returns the settings of one pile for every Bond number and time step. The seed advances with both, so that every
+    /// Returns the settings of one pile for every Bond number and time step. The seed changes with both, so that every
     /// time step and every Bond number occurs with several initial states.
     fn configs(&self) -> Vec<Config> {
         let mut configs = Vec::new();
@@ -156,9 +158,10 @@ impl CollectionPlan {
     }
 }
 
-/// Simulates the piles of a plan on all cores. Returns the simulations just before the collected steps, in the order of
-/// `CollectionPlan::names`. `Simulation::next_problem` gives the contact problem of such a step. Initial states are
-/// stored in `states_folder`. The same plan gives bitwise the same steps.
+/// Simulates the piles of a collection on all cores. Returns the simulations just before the collected steps, in the
+/// order of `CollectionPlan::names`. `Simulation::next_problem` gives the contact problem of such a step. Initial
+/// states are stored in `states_folder`. Two calls with the same plan return simulations that are equal to the last
+/// bit.
 pub(super) fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec<Simulation>> {
     let configs = plan.configs();
     let states = States::of(states_folder.to_owned(), configs.iter())?;
@@ -193,8 +196,8 @@ pub(super) fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec
     Ok(piles?.into_iter().flatten().collect())
 }
 
-/// Returns a result for each step of a plan. The result is computed, or read from the journal named `journal` if it is
-/// already there.
+/// Returns the results of `compute` for each step of a collection. A result that is already in the journal named
+/// `journal` is read from there and not computed again.
 pub(super) fn over_steps<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
     bench: &Bench,
     journal: &str,

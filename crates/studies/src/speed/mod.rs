@@ -1,9 +1,9 @@
-//! Draws charts of the speed of solver methods against their accuracy: in single steps of small and large piles, and in
-//! whole simulations. Every solver method of the program is on every chart.
+//! Measures the speed and the accuracy of solver methods, in single steps of small and large piles and in whole
+//! simulations, and draws charts of them. The charts compare all solver methods of the program.
 //!
 //! The folder of a chart contains pictures (PNG and SVG), tables (CSV), `chart.md`, initial states, and the folder
-//! `measured/`. In that folder, each program and processor has its own journals of measurements. So the same command
-//! resumes if it was stopped, and never mixes times of different programs.
+//! `measured/`. In the latter, each build of the program and each processor has its own journals of measurements. If a
+//! command is stopped, the same command resumes its work, and times of different builds are never mixed.
 
 mod collection;
 mod performance;
@@ -55,12 +55,13 @@ struct ChartSection {
     name: String,
     sheet: Sheet,
     words: String,
-    /// Tables of the section. The first table is a part of the report.
+    /// Tables of this section of the report, which are written as CSV files. The first table is also in the text of the
+    /// report.
     tables: Vec<ReportTable>,
 }
 
-/// Measures speed and accuracy, and draws charts into a folder. `version` is the version of the program that the charts
-/// name.
+/// Measures the speed and the accuracy of solver methods, and writes charts and a report to a folder. `version` is the
+/// version of the program that the charts name.
 ///
 /// # Errors
 /// If the folder cannot be written, or a simulation fails.

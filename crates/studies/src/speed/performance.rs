@@ -1,14 +1,14 @@
-//! Compares solver methods over many problems. Some methods do not solve some of the problems, so the means take
-//! failures into account.
+//! Compares the computing times of solver methods over many contact problems. Some methods do not solve some of the
+//! problems, and the means take this into account.
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Timing {
-    /// Time until the problem was solved or the method stopped, s.
+    /// Computing time until the method solved the problem, or until it stopped without a solution, s.
     pub secs: f64,
     pub solved: bool,
 }
 
-/// Returns the geometric mean; `None` without values.
+/// Returns the geometric mean of values above 0; `None` if there are no values.
 pub(super) fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0usize);
     for value in values {
@@ -23,9 +23,9 @@ pub(super) fn share_solved(timings: &[Timing]) -> f64 {
     solved as f64 / timings.len().max(1) as f64
 }
 
-/// Returns the speed of a method divided by the speed of a base method, as a geometric mean over the problems that the
-/// method solves. If the base method failed on a problem, its time until it stopped counts. This time is a lower bound
-/// of the time that the base method would need.
+/// Returns how many times as fast as a base method a method is: the geometric mean of the ratio of their computing
+/// times, over the problems that the method solves. If the base method does not solve a problem, the time until it
+/// stopped counts, which is a lower bound of the time that it would need.
 pub(super) fn speed_ratio(base: &[Timing], method: &[Timing]) -> Option<f64> {
     let pairs = base.iter().zip(method).filter(|(_, method)| method.solved);
     geometric_mean(pairs.map(|(base, method)| base.secs / method.secs))

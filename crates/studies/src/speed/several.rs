@@ -1,5 +1,5 @@
-//! Counts the solutions that single steps of piles have under Coulomb friction, and measures the distances between
-//! them.
+//! Counts the solutions that single steps of piles have under Coulomb friction (a step can have several), and measures
+//! the distances between them.
 
 use super::collection::{CollectionPlan, over_steps};
 use super::solves::{ReferenceSearch, References};
@@ -13,9 +13,11 @@ const BONDS: [f64; 3] = [0.0, 20.0, 100.0];
 /// Time steps Δt of the piles, s.
 const TIME_STEPS_SECS: [f64; 2] = [1e-3, 5e-3];
 const FRICTIONS: [f64; 3] = [0.2, 0.5, 0.9];
-/// Smallest distance between two solutions that the chart shows, √(g d), with gravity g and mean diameter d.
+/// Smallest distance between the velocities of two solutions of a step that the chart shows, √(g d), with gravity g and
+/// mean diameter d.
 const LEAST_DISTANCE: f64 = 1e-6;
-/// Horizontal shift between the points of different Bond numbers, as a factor on the number of grains.
+/// Factor by which the number of grains is multiplied, for each further Bond number, to shift the points of a chart
+/// horizontally, so that they do not hide each other.
 const ASIDE: f64 = 1.12;
 
 /// A step of a pile, and the result of the search for its solutions.
@@ -28,8 +30,8 @@ struct SearchedStep {
     found: References,
 }
 
-/// Returns the plans of the collections of steps with their names. Each plan is for one number of grains, one friction
-/// coefficient, and piles that either move or are at rest.
+/// Returns descriptions of the collections of steps whose solutions are counted, with their names. Each collection has
+/// one number of grains, one friction coefficient, and piles that either move or are at rest.
 fn plans(effort: Effort) -> Vec<(String, CollectionPlan)> {
     let sizes: &[(usize, &[f64])] = match effort {
         Effort::Quick => &[(138, &[0.1])],
@@ -56,14 +58,15 @@ fn plans(effort: Effort) -> Vec<(String, CollectionPlan)> {
     plans
 }
 
-/// Returns the settings of the search for the solutions of a step.
+/// Returns the settings of the search for several solutions of a step: the number of initial guesses, the largest
+/// number of sweeps, and the tolerance.
 fn search(effort: Effort) -> SolutionSearch {
     let max_sweeps = effort.pick(5_000, 20_000);
     SolutionSearch { starts: 4, seed: 1, max_sweeps, tolerance: 1e-10 }
 }
 
-/// Searches the solutions of all steps, several steps in parallel, and charts the distances between the solutions of a
-/// step.
+/// Searches for the solutions of all collected steps, on all cores, and charts the largest distance between two
+/// solutions of a step.
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     let search = search(bench.effort);
     let mut all = Vec::new();

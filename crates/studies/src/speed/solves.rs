@@ -1,5 +1,5 @@
-//! Times solves of single steps with an increasing number of sweeps, and measures the distance of their velocities from
-//! a solution under Coulomb friction.
+//! Measures how long solver methods take to solve a single step, with an increasing number of sweeps, and how far the
+//! resulting velocities are from a solution under Coulomb friction.
 
 use std::time::Instant;
 
@@ -16,43 +16,49 @@ use crate::solver::{
     solve, velocities, velocity_error, worst,
 };
 
-/// Least number of repeats of a solve. The shortest time of all repeats counts.
+/// Least number of times that a solve of a step is timed, unless it takes long. The shortest time counts.
 pub(super) const LEAST_REPEATS: usize = 3;
-/// Total computing time, s, up to which a short solve is repeated, but at most [`MOST_REPEATS`] times.
+/// Total computing time, s, after which the timing of a short solve is no longer repeated. It is repeated at most
+/// [`MOST_REPEATS`] times.
 const ENOUGH_SECS: f64 = 2e-3;
-/// Largest number of repeats of a short solve; see [`ENOUGH_SECS`].
+/// Largest number of times that a short solve of a step is timed.
 const MOST_REPEATS: usize = 12;
-/// Computing time, s, above which a solve is not repeated, because disturbances average out within the solve.
+/// Computing time of a solve, s, above which its timing is not repeated, because disturbances average out within the
+/// solve.
 pub(super) const LONG_SOLVE_SECS: f64 = 0.1;
-/// Largest number of sweeps of a solve, even if the solve takes little time.
+/// Largest number of sweeps with which a step is solved, even if the solve takes little time.
 const MOST_SWEEPS: u32 = 1 << 20;
-/// Factor of the number of sweeps from one solve to the next.
+/// Factor by which the number of sweeps is increased from one timed solve of a step to the next.
 const GROWTH: u32 = 2;
 
-/// The known solutions of a step under Coulomb friction, from which errors are measured.
+/// The known solutions of a step under Coulomb friction. The error of a solver is the distance of its velocities from
+/// the nearest of them.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct References {
-    /// Velocities of all grains in each solution.
+    /// Velocities of all grains in each known solution, m/s: the components along the axes of the scene, and, if grains
+    /// turn, the radius times the angular velocity.
     #[serde(skip)]
     velocities: Vec<Vec<[f64; 3]>>,
     pub found: usize,
-    /// Largest distance between the velocities of two known solutions, √(g d), with gravity g and mean diameter d.
+    /// Largest distance between the velocities of two known solutions of the step, √(g d), with gravity g and mean
+    /// diameter d; 0 for a single solution.
     pub spread: f64,
-    /// Estimated distance of the least accurate known solution from an exact solution, √(g d), with gravity g and mean
-    /// diameter d.
+    /// Estimated distance between the velocities of the least accurate known solution and those of an exact solution,
+    /// √(g d), with gravity g and mean diameter d.
     #[serde(with = "number")]
     pub told: f64,
-    /// Largest residual of the known solutions.
+    /// Largest residual of the known solutions of the step, dimensionless.
     #[serde(with = "number")]
     pub residual: f64,
 }
 
-/// Searches for the solutions of the next step of a simulation under Coulomb friction.
+/// A search for the solutions of the next step of a simulation under Coulomb friction, with its settings.
 pub(super) struct ReferenceSearch(pub SolutionSearch);
 
 impl References {
-    /// Returns the error, in √(g d) with gravity g and mean diameter d, below which methods cannot be compared: smaller
-    /// errors only distinguish the known solutions from each other, or the known solutions from exact solutions.
+    /// Returns the error of velocities, in √(g d) with gravity g and mean diameter d, below which solver methods cannot
+    /// be compared: the larger of the distance between known solutions and their estimated distance from exact
+    /// solutions.
     pub(super) fn floor(&self) -> f64 {
         self.spread.max(self.told)
     }
@@ -79,11 +85,11 @@ impl ProblemVisitor for ReferenceSearch {
     }
 }
 
-/// A timed solve with a limited number of sweeps.
+/// Computing time and error of a solve of a step with a limited number of sweeps.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct TimedSolve {
     pub sweeps: u32,
-    /// Shortest computing time among the repeats, s.
+    /// Computing time of the solve, s: the shortest among its repetitions.
     pub secs: f64,
     /// Distance of the velocities to the nearest known solution under Coulomb friction, √(g d), with gravity g and mean
     /// diameter d.
@@ -91,13 +97,13 @@ pub(super) struct TimedSolve {
     pub error: f64,
 }
 
-/// Results of one method on one step, by increasing number of sweeps.
+/// Computing times and errors of one solver method on one step, by increasing number of sweeps.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct TimedSolves(pub Vec<TimedSolve>);
 
 impl TimedSolves {
-    /// Returns the time in which the error `error` was reached. If the error was not reached, returns the time of the
-    /// last solve, marked as not solved.
+    /// Returns the computing time of the first solve whose error is at most `error`. If there is no such solve, returns
+    /// the time of the last solve, marked as not solved.
     pub(super) fn timing(&self, error: f64) -> Timing {
         let reached = self.0.iter().find(|effort| effort.error <= error);
         let secs = |solve: &TimedSolve| solve.secs;
@@ -107,19 +113,20 @@ impl TimedSolves {
         }
     }
 
-    /// Returns solve number `number`, or the last solve if there are fewer solves, because more sweeps would not change
-    /// it.
+    /// Returns solve number `number`, counted from 0 by increasing number of sweeps, or the last solve if there are
+    /// fewer solves.
     pub(super) fn effort(&self, number: usize) -> Option<TimedSolve> {
         self.0.get(number).or(self.0.last()).copied()
     }
 }
 
-/// Times solves of one step by one method, with an increasing number of sweeps. All solves begin with the same initial
-/// guess. The last solve is the one that ends by itself or takes too long. The time to copy the problem does not count.
+/// Measures the computing times and errors of solves of one step by one solver variant, with an increasing number of
+/// sweeps. All solves begin with the same initial guess. The series ends with the first solve that stops before its
+/// limit of sweeps or takes too long. The time to copy the problem does not count.
 pub(super) struct SolveTimer<'a> {
     pub variant: &'a Change,
     pub references: &'a References,
-    /// Computing time, s, of a solve above which no further solve follows.
+    /// Computing time of a solve, s, above which no solve with more sweeps follows.
     pub limit_secs: f64,
 }
 
@@ -154,8 +161,8 @@ impl SolveTimer<'_> {
         (effort, has_ended)
     }
 
-    /// Returns the distance of the velocities to the nearest known solution, √(g d), with gravity g and mean diameter
-    /// d.
+    /// Returns the error of a solved step, √(g d), with gravity g and mean diameter d: the distance of its velocities
+    /// from those of the nearest known solution.
     fn error<M: Model>(&self, solved: &StepProblem<M>) -> f64 {
         let all = self.references.velocities.iter();
         let distances = all.map(|reference| distance_to_velocities(solved, reference));
@@ -180,7 +187,8 @@ impl ProblemVisitor for SolveTimer<'_> {
     }
 }
 
-/// Solves a copy of the problem. Returns the computing time, s, the solved copy, and the number of sweeps.
+/// Solves a copy of the contact problem of a step. Returns the computing time, s, the solved copy, and the number of
+/// sweeps.
 fn timed<M: Model>(
     problem: &StepProblem<M>,
     settings: &SolverSettings,

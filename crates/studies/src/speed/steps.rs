@@ -1,5 +1,5 @@
-//! Charts speed against accuracy of single steps: the distance of the velocities from a solution under Coulomb
-//! friction, against the computing time.
+//! Charts the accuracy of solver methods in single steps against their computing time. The error is the distance of the
+//! velocities from a solution under Coulomb friction.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,10 +15,11 @@ use crate::error::Result;
 use crate::harness::{Change, Effort, ReportTable, Threads};
 use crate::solver::{FrictionModel, Method, Ordering, SolutionSearch};
 
-/// Restitution threshold at which nearly every step has a solution, in units of g·Δt, the speed that gravity adds in
-/// one step.
+/// Restitution threshold (the approach speed below which contacts do not bounce) with which nearly every step has a
+/// solution, in units of g·Δt, the speed that gravity adds in one step.
 const THRESHOLD: f64 = 2.0;
-/// Errors of the velocities for which the report gives computing times, √(g d), with gravity g and mean diameter d.
+/// Errors of the velocities for which the report says how long a method takes to reach them, √(g d), with gravity g and
+/// mean diameter d.
 const REPORTED: [f64; 3] = [1e-2, 1e-3, 1e-4];
 const BASE: (Method, Ordering) = (Method::Nsgs, Ordering::Interleaved);
 const SIZES: [usize; 4] = [138, 500, 2_000, 10_000];
@@ -26,28 +27,29 @@ const SIZES: [usize; 4] = [138, 500, 2_000, 10_000];
 const LEAST_ERROR: f64 = 1e-8;
 const BAND: Rgb = (225, 225, 225);
 
-/// Settings of the search for the solutions of a step. More initial guesses find more solutions.
+/// Settings of the search for the solutions of a step, from which errors of solver methods are measured. More initial
+/// guesses (`starts`) find more solutions.
 const SEARCH: SolutionSearch =
     SolutionSearch { starts: 4, seed: 1, max_sweeps: 30_000, tolerance: 1e-12 };
 
-/// A step with its known solutions, and the results of every solver variant.
+/// The results of all solver variants on one step, and the known solutions of the step.
 #[derive(Clone, Serialize, Deserialize)]
 struct TimedStep {
     references: References,
     solves: Vec<TimedSolves>,
 }
 
-/// A collection of steps, with the results of every solver variant.
+/// The results of all solver variants on a collection of steps.
 struct TimedCollection {
     title: String,
-    /// Computing time of a solve above which no further solve follows, s.
+    /// Computing time of a solve above which the step is not solved again with more sweeps, s.
     limit_secs: f64,
     problems: Vec<String>,
     variants: Vec<Change>,
     steps: Vec<TimedStep>,
 }
 
-/// Times all solver variants on steps of 138 grains, and charts the results.
+/// Measures the time and the error of all solver variants on steps of piles of 138 grains, and charts the results.
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     let effort = bench.effort;
     let timer =
@@ -69,8 +71,8 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     Ok(vec![timer.section(bench, "chart-step", &all)])
 }
 
-/// Times all solver variants on steps of piles of all sizes, which begin to slump or are at rest in their box, and
-/// charts the results.
+/// Measures the time and the error of all solver variants on steps of piles with 138 to 10,000 grains, and charts the
+/// results. The piles begin to slump, or are at rest in a box.
 pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
     let effort = bench.effort;
     let timer = CollectionTimer { variants: with_bounds(variants::of_problems(false)) };
@@ -90,7 +92,8 @@ pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
     Ok(sections)
 }
 
-/// Adds the variants with bounded friction (Tresca): by sweeps and by the interior-point method.
+/// Adds two variants that solve bounded friction (Tresca) instead of Coulomb friction: by sweeps and by the
+/// interior-point method.
 fn with_bounds(mut variants: Vec<Change>) -> Vec<Change> {
     let models = variants::models().into_iter();
     variants.extend(models.filter(|one| one.solver().friction_model == FrictionModel::Tresca));
@@ -102,8 +105,8 @@ struct CollectionTimer {
 }
 
 impl CollectionTimer {
-    /// Times every solver variant on every step, one after the other. Steps whose results are already in the journal
-    /// are not timed again.
+    /// Measures the time and the error of every solver variant on every step of a collection, one after the other.
+    /// Steps whose results are already in the journal are not measured again.
     fn time(
         &self,
         bench: &Bench,
@@ -145,12 +148,13 @@ impl TimedCollection {
         self.steps.iter().map(|step| step.solves[variant].timing(error)).collect()
     }
 
-    /// Returns the median over the steps of a number that belongs to the known solutions of each step.
+    /// Returns the median over the steps of `number`, which is computed from the known solutions of each step.
     fn of_references(&self, number: fn(&References) -> f64) -> f64 {
         median(self.steps.iter().map(|step| number(&step.references)).collect())
     }
 
-    /// Returns the median time, ms, and the median error over all steps, for each number of sweeps of a variant.
+    /// Returns, for each number of sweeps of a solver variant, the median time of a solve, ms, and the median error of
+    /// the velocities, in √(g d), over all steps.
     fn medians(&self, variant: usize) -> Vec<(f64, f64)> {
         let solves = || self.steps.iter().map(|step| &step.solves[variant]);
         let longest = solves().map(|solves| solves.0.len()).max().unwrap_or(0);
@@ -163,8 +167,8 @@ impl TimedCollection {
         (0..longest).map(point).collect()
     }
 
-    /// Returns the smallest error that a family of methods reaches for its time: time, ms, and error, the most
-    /// expensive point last.
+    /// Returns the best results of a family of methods as points (median time, ms; median error): those points for
+    /// which no other point of the family is at least as fast and at least as accurate, by increasing time.
     fn front(&self, family: Family) -> Vec<(f64, f64)> {
         let its = (0..self.variants.len()).filter(|&one| self.variants[one].family() == family);
         let all: Vec<(f64, f64)> = its.flat_map(|one| self.medians(one)).collect();
@@ -173,7 +177,8 @@ impl TimedCollection {
     }
 }
 
-/// Returns the median. For an even number of values it is the larger of the two middle values; without values it is 0.
+/// Returns the median of the values: for an even number of values the larger of the two middle values; 0 if there are
+/// no values.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
@@ -216,7 +221,8 @@ fn errors_sheet(bench: &Bench, all: &[TimedCollection]) -> Sheet {
     Sheet { size: (500 * charts.len().max(2) as u32, 600), charts, caption }
 }
 
-/// Describes, for the report, how the steps were timed, and the number of solutions in each collection of steps.
+/// Returns the text of the report about single steps: how they were timed, and, for each collection of steps, how many
+/// steps have several solutions.
 fn words(all: &[TimedCollection]) -> String {
     let mut lines = vec![format!(
         "Errors are distances of velocities to the nearest of the solutions that {} starts led to, in √(g d). Times are \
@@ -244,8 +250,8 @@ fn words(all: &[TimedCollection]) -> String {
     lines.join("\n")
 }
 
-/// Returns a table with the results of each solver variant: the fraction of steps in which it reaches an error, its
-/// time, and its speed relative to Gauss–Seidel.
+/// Returns a table with one row per collection of steps, error and solver variant: the fraction of the steps in which
+/// the variant reaches the error, its mean time to reach it, and its speed relative to Gauss–Seidel.
 fn summary(name: &str, all: &[TimedCollection]) -> ReportTable {
     let columns = "collection method error share_reached mean_ms ratio_to_nsgs_at_least";
     let mut rows = Vec::new();

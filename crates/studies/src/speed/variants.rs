@@ -1,4 +1,4 @@
-//! Lists the solver variants that the charts compare: every solver method of the program, with its settings.
+//! Lists the solver variants that the charts of speed compare: every solver method of the program, with its settings.
 
 use crate::chart::{PALETTE, Rgb};
 use crate::harness::{Change, distinct};
@@ -9,19 +9,21 @@ use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverSettings, St
 /// eighteen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Family {
-    /// The default solver.
+    /// The default solver of the program, which chooses among methods itself.
     Default,
-    /// Methods that sweep over the contact problem row by row.
+    /// Methods that sweep over the contacts and update the impulse of each contact by itself, such as Gauss–Seidel and
+    /// Jacobi.
     Sweeps,
-    /// First-order methods, which only need products of vectors with the operator of the whole problem.
+    /// First-order methods, which only multiply vectors by the operator of the whole contact problem and factorise no
+    /// matrix.
     FirstOrder,
     /// Methods with factorisations of matrices, under Coulomb friction.
     Newton,
     /// Methods that solve a convex friction model instead of Coulomb friction.
     Convex,
-    /// The contact law `range`, under which bonds have a finite length.
+    /// The stepper `range`, whose bonds pull up to a debonding distance.
     Range,
-    /// Steppers that use springs or penalties instead of a contact problem.
+    /// Steppers that use springs or penalties between grains and do not solve a contact problem.
     Penalties,
 }
 
@@ -36,7 +38,7 @@ impl Family {
         Self::Penalties,
     ];
 
-    /// Returns the name of the family in charts.
+    /// Returns the name of the family of methods in the legends of charts.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Default => "default",
@@ -55,7 +57,7 @@ impl Family {
     }
 }
 
-/// Returns, for captions, the names of those variants that belong to each family.
+/// Returns a text for captions, which lists the names of the variants in each family.
 pub(super) fn members<'a>(variants: impl Iterator<Item = &'a Change> + Clone) -> String {
     let of = |family: Family| {
         let its = variants.clone().filter(|variant| variant.family() == family);
@@ -66,7 +68,7 @@ pub(super) fn members<'a>(variants: impl Iterator<Item = &'a Change> + Clone) ->
     format!("{}.", all.join("; "))
 }
 
-/// Returns the steppers that use no solver method. Each of them is a variant.
+/// Returns the steppers that use no solver method, such as `dem`. Each of them is a variant of its own.
 fn without_method() -> impl Iterator<Item = Stepper> {
     Stepper::ALL.iter().copied().filter(|stepper| !stepper.uses_method())
 }
@@ -89,8 +91,8 @@ pub(super) fn default() -> Change {
     Change::of_solver("default", Stepper::Moreau, &SolverSettings::default())
 }
 
-/// Returns the variants that solve the contact problem of a step. If `orders` is true, Gauss–Seidel with other orders
-/// of the contacts is included.
+/// Returns the variants that solve the contact problem of a step: every solver method, and the default solver. If
+/// `orders` is true, Gauss–Seidel with other orders of the contacts is included.
 pub(super) fn of_problems(orders: bool) -> Vec<Change> {
     let own = METHODS.iter().map(|info| info.method).filter(|method| *method != Method::Auto);
     let mut variants: Vec<Change> = own.map(of_method).chain([default()]).collect();
@@ -105,15 +107,15 @@ pub(super) fn of_problems(orders: bool) -> Vec<Change> {
     variants
 }
 
-/// Returns the variants with a friction model other than Coulomb friction, solved by sweeps, and bounded friction
-/// (Tresca) solved by the interior-point method.
+/// Returns the variants with another friction model than Coulomb friction: every such model solved by sweeps, and
+/// bounded friction (Tresca) also by the interior-point method.
 pub(super) fn models() -> Vec<Change> {
     let models = FrictionModel::ALL.iter().filter(|model| **model != FrictionModel::Coulomb);
     models.map(|&model| of_model(Method::Nsgs, model)).chain([bounded()]).collect()
 }
 
-/// Returns bounded friction (Tresca) with the interior-point method, which solves the convex problem of this model at
-/// any size.
+/// Returns the variant that solves bounded friction (Tresca) by the interior-point method, which solves the convex
+/// problem of this model for any number of grains.
 pub(super) fn bounded() -> Change {
     of_model(Method::InteriorPoint, FrictionModel::Tresca)
 }
@@ -127,7 +129,7 @@ fn of_model(method: Method, friction_model: FrictionModel) -> Change {
     Change::of_solver(name, Stepper::Moreau, &solver)
 }
 
-/// Properties of variants for charts.
+/// Properties of solver variants for the charts of speed.
 impl Change {
     /// True for the [`default`] solver, which determines its number of sweeps itself.
     pub(super) fn is_default(&self) -> bool {
@@ -143,8 +145,8 @@ impl Change {
         SolverSettings { stop, tolerance, max_sweeps, warm_start: true, ..self.solver() }
     }
 
-    /// Returns the solver settings with a warm start and exactly `count` sweeps. The default solver keeps its own
-    /// settings.
+    /// Returns the solver settings of the variant, with a warm start and exactly `count` sweeps. For the default
+    /// solver, returns its own settings without a change.
     pub(super) fn sweeps(&self, count: u32) -> SolverSettings {
         match self.is_default() {
             true => self.solver(),

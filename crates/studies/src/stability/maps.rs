@@ -1,21 +1,22 @@
-//! Draws stability maps over two parameters: the region in which a method holds a scene at rest, the region in which
-//! the scene sinks or overlaps by more than 1 % of the diameter d, and the region in which grains are lost (torn off or
-//! thrown away) or the state is no longer finite.
+//! Draws stability maps over two parameters, for scenes that must stay at rest. A map shows three regions: a solver
+//! method keeps the scene at rest; the scene sinks, or grains overlap, by more than 1 % of the diameter d; grains are
+//! torn off, thrown away or still shaking, or positions become NaN or infinite.
 //!
-//! Theory gives the boundaries of the regions. The velocity of the slowest mode before a step is the sum of gravity's
-//! contribution g Δt and of the velocity that the previous step left. A step of s sweeps of Gauss–Seidel without a warm
-//! start leaves the fraction ρ^s of this velocity, where ρ is the contraction per sweep. A column therefore sinks with
-//! the velocity
+//! Theory gives the boundaries of the regions. Sweeps of Gauss–Seidel remove the velocity of a falling column only in
+//! part. The slowest mode (the velocity pattern that decreases most slowly) has, before a step, the velocity g Δt from
+//! gravity plus the velocity that remains from the previous step. A step of s sweeps without a warm start leaves the
+//! fraction ρ^s of this velocity, where ρ is the factor by which one sweep reduces the mode. A column therefore sinks
+//! with the velocity
 //!
 //! > v = A g Δt ρ^s / (1 − ρ^s),
 //!
 //! where A = 4/π is the slowest mode's amplitude at the top of a tall column (1 for two discs), and `scene::stability`
 //! derives ρ for each scene. In the time T the column sinks by v T = 0.01 d if s = ln(q/(1 + q)) / ln ρ, with q = 0.01
-//! d/(A g Δt T). For springs, the boundary is their critical time step.
+//! d/(A g Δt T). For steppers with springs, the boundary is the critical time step of explicit integration.
 //!
-//! Over Δt and Bond number the boundary is static: the Bond number below which the cohesion force C₀ no longer supports
-//! the cantilever. It does not depend on Δt. The force of a bond is a reaction, so cohesion does not pull grains into
-//! each other, however long the step is.
+//! On the map over Δt and Bond number, the boundary follows from statics: below a certain Bond number the cohesion
+//! force C₀ no longer supports the cantilever. This Bond number does not depend on Δt. The force of a bond is a
+//! reaction, so cohesion does not pull grains into each other, however long the step is.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -36,24 +37,24 @@ use crate::solver::METHODS;
 
 /// Simulated time of every run of a stability map, s.
 const DURATION_SECS: f64 = 0.1;
-/// Distance of sinking, or overlap, above which a run counts as a failure, in diameters d.
+/// Sinking distance, or overlap, above which a run of a stability map is marked as sinking, in diameters d.
 const COUNTS: f64 = 0.01;
-/// Amplitude A of the slowest mode of Gauss–Seidel at the top of a tall column, dimensionless. The velocity of sinking
-/// is proportional to A.
+/// Amplitude A, at the top of a tall column, of the mode (velocity pattern) that Gauss–Seidel sweeps reduce most
+/// slowly, dimensionless. The velocity with which a column sinks is proportional to A.
 const TOP_OF_COLUMN: f64 = 4.0 / PI;
-/// Displacement above which a grain counts as lost, in diameters d.
+/// Displacement of a grain during a run above which the grain counts as torn off or thrown away, in diameters d.
 const LOST: f64 = 1.0;
-/// Speed at the end of a run above which a scene does not count as at rest, in √(g d), with gravity g and diameter d.
-/// The first value is for rigid grains, the second for grains on springs.
+/// Root mean square speed of the grains at the end of a run above which the scene counts as shaking, in √(g d), with
+/// gravity g and diameter d. The first value is for rigid grains, the second for grains on springs.
 const SHAKES: [f64; 2] = [0.05, 4e-3];
-/// Number of discs of a column, in maps that do not vary this number.
+/// Number of discs of a column, in those maps that do not vary this number.
 const DISCS: usize = 20;
 /// Size of a chart, pixels.
 const CHART: (u32, u32) = (500, 500);
 /// Number of charts side by side on a sheet.
 const ABREAST: usize = 5;
 
-/// A parameter of a stability map, which is one of its two axes.
+/// A varied parameter of a stability map, which is on one of the two axes.
 struct Parameter {
     label: &'static str,
     from: f64,
@@ -69,8 +70,8 @@ const fn sweeps(to: f64) -> Parameter {
 }
 
 impl Parameter {
-    /// Returns twelve values of the parameter (six in a quick pass) with a constant ratio, each with the two edges of
-    /// its cell.
+    /// Returns the tested values of the parameter: twelve (six in a quick pass), with a constant ratio. Each value
+    /// comes with the lower and the upper edge of its cell on the map.
     fn values(&self, effort: Effort) -> Vec<(f64, [f64; 2])> {
         let count = effort.pick(6, 12);
         let ratio = (self.to / self.from).powf(1.0 / f64::from(count));
@@ -87,11 +88,11 @@ impl Parameter {
     }
 }
 
-/// A theoretical boundary on a map: its name, the name of the variant (stepper or solver method) to which it applies,
-/// empty for all variants, and the y value as a function of x.
+/// A theoretical boundary on a stability map: its name; the name of the stepper or solver method on whose maps it is
+/// drawn, empty for all maps; and the y value as a function of x.
 type Border = (&'static str, &'static str, fn(f64) -> Result<f64>);
 
-/// A stability map over two parameters.
+/// Description of a stability map: a scene, two varied parameters, and theoretical boundaries.
 struct Map {
     name: &'static str,
     title: &'static str,
@@ -169,11 +170,12 @@ fn sagging_on_line(count: usize, time_step_secs: f64, sweeps: f64) -> Scene {
     scene
 }
 
-/// Returns the class of a run: 0 if the variant holds the scene, 1 if the scene sinks or overlaps, 2 if grains are
-/// lost.
+/// Runs a scene and returns the class of the run: 0 if the variant of the solver keeps the scene at rest, 1 if the
+/// scene sinks or grains overlap, 2 if grains are torn off, thrown away or still shaking, or if positions become NaN or
+/// infinite.
 ///
-/// A scene with unsolved steps sinks steadily. Grains on stable, stiff springs are at rest at the end, unless they
-/// `may_swing`.
+/// A scene whose steps are not solved accurately sinks steadily and does not count as shaking. Grains on stable, stiff
+/// springs are at rest at the end of a run; with `may_swing`, grains on springs are allowed to swing.
 fn class(variant: &Change, scene: &Scene, may_swing: bool) -> Result<f64> {
     let mut scene = scene.clone();
     step_by(variant, &mut scene);
@@ -198,15 +200,16 @@ fn class(variant: &Change, scene: &Scene, may_swing: bool) -> Result<f64> {
     })
 }
 
-/// Returns the variants that are a solver method or a stepper without further changes. Only these variants have maps.
+/// Returns the variants of the solver for which maps are drawn: every solver method and every stepper, without further
+/// changes of settings.
 fn of_registry() -> impl Iterator<Item = &'static Change> {
     let steppers = Stepper::ALL.iter().map(|stepper| stepper.name());
     let names: Vec<&str> = METHODS.iter().map(|info| info.name).chain(steppers).collect();
     VARIANTS.iter().filter(move |variant| names.contains(&&*variant.name))
 }
 
-/// Draws all stability maps, with the solver methods and steppers side by side. Each sheet comes with the name of its
-/// file.
+/// Draws all stability maps, with the charts of several solver methods and steppers side by side on a sheet. Returns
+/// each sheet with the name of its file. `progress` is called after each chart.
 ///
 /// # Errors
 /// If a scene is invalid.
@@ -237,13 +240,14 @@ pub fn maps(quick: bool, progress: impl Fn() + Sync) -> Result<Vec<(String, Shee
     Ok(sheets)
 }
 
-/// Returns the number of charts of all stability maps.
+/// Returns the number of charts on all sheets of stability maps: one chart per map and solver method or stepper.
 pub fn count_of_maps() -> usize {
     MAPS.len() * of_registry().count()
 }
 
 impl Map {
-    /// True for the map of the cantilever, whose springs swing for longer than a run.
+    /// True for the map of the cantilever. With the stepper `dem`, the cantilever swings on its springs for longer than
+    /// a run.
     fn can_swing(&self) -> bool {
         self.borders.iter().any(|(name, ..)| *name == STATICS)
     }
@@ -279,7 +283,8 @@ impl Map {
     }
 }
 
-/// Returns the factor by which one sweep of Gauss–Seidel reduces the slowest mode of a column of `count` discs.
+/// Returns the factor by which one sweep of Gauss–Seidel reduces that velocity pattern of a column of `count` discs
+/// which decreases most slowly.
 pub fn contraction_of_column(count: f64) -> f64 {
     (FRAC_PI_2 / count).cos().powi(2)
 }

@@ -1,6 +1,6 @@
-//! Runs stability tests: scenes that are made to break methods. Each test has a known right answer, a measured error,
-//! and a parameter that drives the scene into failure. The scenes are in `scene::stability`, the measures of error are
-//! in `rest` and `motion`, and [`CHALLENGES`] lists all tests.
+//! Runs stability tests: scenes that are made to break solver methods. Each test has a known right answer, a measured
+//! error, and a driving parameter, which makes the scene more difficult until a method fails. The scenes are in
+//! `scene::stability`, the measures of error are in `rest` and `motion`, and [`CHALLENGES`] lists all tests.
 
 mod maps;
 mod motion;
@@ -25,46 +25,47 @@ use crate::sim::{Simulation, Snapshot, Stepper};
 use crate::solver::{FrictionModel, METHODS, Method, Ordering, SolverChanges, SolverSettings};
 use crate::world::World;
 
-/// A stability test: a scene that is made to break methods, with its measure of error.
+/// A stability test: a scene that is made to break solver methods, with a measure of the error of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Challenge {
     /// Name of the test on the command line and in the table.
     pub name: &'static str,
-    /// Name of the parameter that drives the scene into failure, with its unit.
+    /// Name and unit of the driving parameter: the parameter of the scene that is changed until a solver method fails.
     driver: &'static str,
-    /// Values of the driving parameter in a quick pass, from harmless to harmful.
+    /// Values of the driving parameter in a quick pass, from the easiest to the most difficult.
     pub quick: &'static [f64],
-    /// Further, more harmful values of the driving parameter in a full pass.
+    /// Additional, more difficult values of the driving parameter in a full pass.
     further: &'static [f64],
-    /// Two limits of the error: a method holds up to the first limit, degrades up to the second, and fails above the
-    /// second.
+    /// Two limits of the error, in its unit: up to the first limit a method gets the verdict "holds", up to the second
+    /// "degrades", and above the second "fails".
     limits: [f64; 2],
     error: fn(&Trial) -> Result<f64>,
-    /// Right answer as a sentence, and a measure of error for single moments of a run, if there is one. Both refer to
-    /// the scene with the same name as the test.
+    /// Right answer as a sentence, and a measure of the error at a single time of a run, for the graphical window;
+    /// `None` if the window shows no error. Both refer to the scene that has the same name as the test.
     seen: Option<(&'static str, SeenError)>,
 }
 
-/// The verdict on a single moment of a run of a stability test.
+/// The verdict on a run of a stability test at a single simulated time.
 #[derive(Clone, Copy, Debug)]
 pub struct SeenVerdict {
-    /// Name and unit of the error.
+    /// Name and unit of the measured error, as text.
     pub name: &'static str,
-    /// Value of the error; 0 for the right answer.
+    /// Value of the measured error; 0 for the right answer.
     pub error: f64,
-    /// Largest error at which the verdict is that the method holds the scene.
+    /// Largest error with which the result counts as right.
     pub limit: f64,
 }
 
 impl SeenVerdict {
-    /// True if the state at this moment agrees with the right answer.
+    /// True if the error is small enough for the result to count as right.
     pub fn is_right(&self) -> bool {
         self.error <= self.limit
     }
 }
 
 impl Challenge {
-    /// Returns the stability test that knows the right answer of the scene with the given name.
+    /// Returns the stability test that defines the right answer of the scene with the given name; `None` if there is no
+    /// such test.
     pub fn seen_in(scene: &str) -> Option<&'static Self> {
         let info = SceneInfo::named(scene)?;
         let is_of =
@@ -72,13 +73,14 @@ impl Challenge {
         CHALLENGES.iter().filter(is_of).find(|challenge| challenge.seen.is_some())
     }
 
-    /// Returns the right answer of the test's scene as a sentence.
+    /// Returns a sentence with the right answer of the test's scene; `None` if the graphical window shows no error for
+    /// the scene.
     pub fn right_answer(&self) -> Option<&'static str> {
         self.seen.map(|(right, _)| right)
     }
 
-    /// Returns the verdict on the moment `now` of a run of the test's scene that began with `start`. Returns `None` if
-    /// the moment is too early for a verdict.
+    /// Returns the verdict on the snapshot `now` of a run of the test's scene. `start` is the simulation at the
+    /// beginning of the run. Returns `None` if it is too early for a verdict, or if the number of grains has changed.
     pub fn verdict(&self, start: &Simulation, now: &Snapshot) -> Option<SeenVerdict> {
         let (_, SeenError { name, of }) = self.seen.filter(|_| now.observables.step > 0)?;
         let is_whole = start.world().grains.len() == now.grains.len();
@@ -108,7 +110,8 @@ impl Challenge {
         Self { further, ..self }
     }
 
-    /// Returns the error of a trial; infinite if the state is no longer finite.
+    /// Runs a trial (one solver variant at one difficulty) and returns its error; infinite if positions or velocities
+    /// become NaN or infinite.
     fn error(&self, trial: &Trial) -> Result<f64> {
         match (self.error)(trial) {
             Ok(error) if error.is_nan() => Ok(f64::INFINITY),
@@ -231,10 +234,10 @@ pub static CHALLENGES: [Challenge; 29] = [
         .further(&[2000.0, 10000.0]),
 ];
 
-/// Name of the variant that does not change the settings of a scene.
+/// Name of the variant that runs a scene with its own settings.
 const DEFAULT: &str = "default";
 
-/// Applies a variant, which is a change of the stepper or the solver, to a scene.
+/// Applies a variant, which is a named change of the stepper or the solver, to the settings of a scene.
 fn step_by(variant: &Change, scene: &mut Scene) {
     if variant.name != DEFAULT {
         sweep_instead(&mut scene.solver);
@@ -242,8 +245,8 @@ fn step_by(variant: &Change, scene: &mut Scene) {
     variant.apply(scene);
 }
 
-/// Replaces the default solver settings of a scene by the settings for Gauss–Seidel sweeps. Then all methods have the
-/// same task, and their results are comparable.
+/// Replaces the default stopping test, tolerance and friction model of a scene by those for Gauss–Seidel sweeps. Then
+/// all solver methods solve the same problem to the same tolerance, and their results are comparable.
 fn sweep_instead(solver: &mut SolverSettings) {
     let (default, sweeps) = (SolverSettings::DEFAULT, SolverSettings::SWEEPS);
     if solver.stop == default.stop {
@@ -257,8 +260,8 @@ fn sweep_instead(solver: &mut SolverSettings) {
     }
 }
 
-/// All variants of the stability tests: the default, every solver method, every stepper without a solver method,
-/// further friction models, and settings that remedy a known failure.
+/// All solver variants with which the stability tests are run: the default solver, every solver method, every stepper
+/// without a solver method, further friction models, and settings that prevent a known failure.
 static VARIANTS: LazyLock<Vec<Change>> = LazyLock::new(|| {
     let solver = |name, method, ordering, friction_model| {
         let default = SolverChanges::default();
@@ -280,11 +283,12 @@ static VARIANTS: LazyLock<Vec<Change>> = LazyLock::new(|| {
     all
 });
 
-/// A trial: one variant at one value of the driving parameter of a stability test.
+/// A trial: one run of a stability test, with one solver variant and one value of the driving parameter (the parameter
+/// that makes the test more difficult).
 #[derive(Clone, Copy, Debug)]
 pub struct Trial {
     variant: &'static Change,
-    /// Value of the driving parameter.
+    /// Value of the driving parameter (the parameter that makes the test more difficult), in its unit.
     level: f64,
 }
 
@@ -294,7 +298,8 @@ impl Trial {
         scene.simulation()
     }
 
-    /// Starts the trial with at most `sweeps` sweeps per step, also if the variant sets another number.
+    /// Returns the simulation of the trial in its initial state, with at most `sweeps` sweeps per step, even if the
+    /// solver variant sets another number.
     fn start_within(&self, sweeps: u32, mut scene: Scene) -> Result<Simulation> {
         step_by(self.variant, &mut scene);
         scene.solver.max_sweeps = sweeps;
@@ -316,39 +321,41 @@ fn longest_way(simulation: &Simulation, scene: &Scene) -> f64 {
     longest_way_to(scene.grains.iter().map(|grain| grain.position).zip(now), scene.mean_diameter)
 }
 
-/// Returns the longest distance, in mean diameters d, among pairs of positions before and now.
+/// Returns the longest displacement, in mean diameters, from pairs of positions (before, now). `diameter` is the mean
+/// diameter, m.
 fn longest_way_to(places: impl Iterator<Item = (DVec2, DVec2)>, diameter: f64) -> f64 {
     places.map(|(before, now)| before.distance(now)).fold(0.0, f64::max) / diameter
 }
 
-/// Returns the speed √(2 E_kin/M) in units of √(g d), with the kinetic energy E_kin and the mass M of all grains,
-/// gravity g and mean diameter d.
+/// Returns the root mean square speed of the grains, √(2 E_kin/M), in units of √(g d), with the kinetic energy E_kin
+/// and the mass M of all grains, gravity g and mean diameter d.
 fn jitter(simulation: &Simulation) -> f64 {
     jitter_of(simulation.world(), simulation.observables().kinetic_energy)
 }
 
-/// Returns the speed √(2 E_kin/M) in units of √(g d) for a world with the kinetic energy E_kin (J) and the total mass
-/// M, gravity g and mean diameter d.
+/// Returns the root mean square speed of the grains, √(2 E_kin/M), in units of √(g d), from their kinetic energy E_kin
+/// (J). The total mass M, gravity g and the mean diameter d are taken from `world`.
 fn jitter_of(world: &World, kinetic_energy: f64) -> f64 {
     let mass: f64 = world.grains.masses.iter().sum();
     let scale = world.gravity.magnitude() * world.mean_diameter;
     (2.0 * kinetic_energy / (mass * scale)).sqrt()
 }
 
-/// Returns the energy m g d, J, with the mass m of the first disc, gravity g and mean diameter d.
+/// Returns the unit of energy of the stability tests, m g d, J, with the mass m of the first disc, gravity g and mean
+/// diameter d.
 fn energy_scale(simulation: &Simulation) -> f64 {
     let world = simulation.world();
     world.grains.masses[0] * world.gravity.magnitude() * world.mean_diameter
 }
 
-/// Returns the larger of two numbers: the longest displacement of any grain since the initial state in `scene`, in mean
-/// diameters d, and the remaining speed, in √(g d) with gravity g. The result is 0 for a scene at rest.
+/// Returns a measure of motion, which is 0 for a scene at rest: the larger of the longest displacement of any grain
+/// since the initial state in `scene`, in mean diameters d, and the root mean square speed, in √(g d) with gravity g.
 fn unrest(simulation: &Simulation, scene: &Scene) -> f64 {
     longest_way(simulation, scene).max(jitter(simulation))
 }
 
-/// Returns the load on the fixed bodies along the y axis, N: the sum over their contacts of the normal force N times
-/// the y component n_y of the normal.
+/// Returns the vertical force with which all bodies that are not grains, such as the floor, push the grains, N;
+/// positive upwards. It is the sum of normal force times y component of the normal over the contacts with these bodies.
 fn force_on_ground(simulation: &Simulation) -> f64 {
     let numbering = Numbering::of(simulation.world());
     let list = simulation.contacts();
@@ -358,7 +365,8 @@ fn force_on_ground(simulation: &Simulation) -> f64 {
     impulse / simulation.parameters().time_step_secs
 }
 
-/// Returns the threshold above which `holds` is true, searched between `low` and `high` by bisection of their ratio.
+/// Returns the number above which `holds` is true. It is searched between `low` and `high` by `halvings` bisections on
+/// a logarithmic scale.
 fn threshold(
     [mut low, mut high]: [f64; 2],
     halvings: u32,

@@ -1,5 +1,6 @@
-//! Measures the errors of stability tests with moving scenes: sliding friction, impacts, invariances, and sudden
-//! changes. Each function runs a trial and returns an error that is 0 for the right answer.
+//! Measures the errors of stability tests with moving grains: sliding friction, impacts, invariances, and sudden
+//! changes. Each function runs a trial (one solver variant at one difficulty) and returns an error that is 0 for the
+//! right answer.
 
 use glam::DVec2;
 use rand::seq::SliceRandom;
@@ -15,14 +16,14 @@ use crate::world::{Boundary, Parameters};
 
 // Sliding friction must not lift a disc, and must follow a change of pressure at once.
 
-/// Duration of the test of a sliding disc, as a multiple of the time in which friction stops the disc.
+/// Duration of the test of a sliding disc, as a multiple of the time after which friction should have stopped the disc.
 const WATCHED: f64 = 1.2;
-/// Duration of the blow on two discs, s.
+/// Duration of the test in which two sliding discs are hit from above, s.
 const BLOW_SECS: f64 = 0.1;
 
-/// Returns the larger of two errors of a sliding disc: its largest distance from the initial level, in diameters, and
-/// the relative error of its sliding distance. The error of the distance is reduced by half the distance of one step,
-/// by which time stepping schemes may differ.
+/// Returns the larger of two errors of a disc that slides until friction stops it: the largest change of its height, in
+/// diameters, and the relative error of its sliding distance. From the second error, half the distance of the first
+/// step is subtracted, because correct time stepping schemes may differ by this distance.
 pub(super) fn dilatancy(trial: &Trial) -> Result<f64> {
     let mut scene = scenes::dilatancy();
     scene.parameters.time_step_secs = trial.level;
@@ -43,8 +44,8 @@ pub(super) fn dilatancy(trial: &Trial) -> Result<f64> {
 }
 
 /// Returns the larger of two errors of two discs that slide on the floor and are hit from above. The first is the error
-/// of their position along the floor, in diameters, due to friction that does not follow the pressure at the same time.
-/// The second is the error of their final speed, relative to the loss of speed by the blow.
+/// of their position along the floor, in diameters. It arises if the friction follows the increased pressure too late
+/// or too early. The second is the error of their final speed, divided by the speed that the blow takes away.
 pub(super) fn blow(trial: &Trial) -> Result<f64> {
     let mut scene = scenes::blow();
     scene.parameters.time_step_secs = trial.level;
@@ -75,15 +76,15 @@ pub(super) fn blow(trial: &Trial) -> Result<f64> {
 
 // Impacts: bounces of a disc, rows of balls, and walls that a disc can jump over in one step.
 
-/// Number of runs of the thin wall. The runs differ in the phase: the time within a step at which the disc reaches the
-/// wall.
+/// Number of runs in the test of a disc that flies against a thin wall. The runs differ in the phase: the time within a
+/// step at which the disc reaches the wall.
 const PHASES: u32 = 10;
 const AFTER_SECS: f64 = 0.1;
 
-/// Returns the largest error of a bouncing disc. The first error is the error of the height of the first bounce,
-/// relative to the height of the fall. For restitution ρ < 1 the second error is the remaining speed after all bounces,
-/// relative to the speed of the first impact. For ρ = 1 the second error is the relative error of the energy after ten
-/// times the duration of the fall.
+/// Returns the larger of two errors of a bouncing disc. The first is the error of the height of the first bounce,
+/// divided by the height of the fall. The second depends on the restitution ρ: for ρ < 1 it is the speed after the time
+/// in which all bounces should have ended, divided by the speed of the first impact; for ρ = 1 it is the relative error
+/// of the energy after ten times the duration of the fall.
 pub(super) fn bounce(trial: &Trial) -> Result<f64> {
     let restitution = trial.level;
     let scene = scenes::bounce(restitution);
@@ -118,7 +119,8 @@ pub(super) fn bounce(trial: &Trial) -> Result<f64> {
     Ok(first.max(last))
 }
 
-/// Returns the relative error of the last ball's speed in Newton's cradle.
+/// Returns the relative error of the speed of the last ball in Newton's cradle after the impact. The ball should have
+/// the speed that the first ball had before.
 pub(super) fn newtons_cradle(trial: &Trial) -> Result<f64> {
     let scene = scenes::balls(trial.count());
     let right = scene.grains[0].velocity.x;
@@ -128,8 +130,8 @@ pub(super) fn newtons_cradle(trial: &Trial) -> Result<f64> {
     Ok((velocities[velocities.len() - 1].x / right - 1.0).abs())
 }
 
-/// Returns the fraction of runs in which the disc goes through the wall. The runs differ in the time within a step at
-/// which the disc reaches the wall.
+/// Returns the fraction of runs in which a fast disc goes through a thin wall. The runs differ in the time within a
+/// step at which the disc reaches the wall.
 pub(super) fn thin_wall(trial: &Trial) -> Result<f64> {
     let mut through = 0;
     for phase in 0..PHASES {
@@ -147,11 +149,12 @@ pub(super) fn thin_wall(trial: &Trial) -> Result<f64> {
 const FAR_ROWS: usize = 4;
 const FAR_SECS: f64 = 0.1;
 const SHUFFLED_ROWS: usize = 6;
-/// Largest component of the initial velocities of the heap whose grains are numbered in two ways, m/s.
+/// Largest component of the random initial velocities of grains, in the test that a different numbering of the grains
+/// does not change the result, m/s.
 const SPEED: f64 = 0.05;
 
-/// Returns the largest difference between the displacements of a grain in a run far from the origin and in the same run
-/// at the origin, in mean diameters.
+/// Runs a heap at the origin and the same heap far from the origin. Returns the largest difference between the
+/// displacements of a grain in the two runs, in mean diameters.
 pub(super) fn far(trial: &Trial) -> Result<f64> {
     let [here, there] =
         [0.0, trial.level].map(|distance| scenes::heap_far_away(FAR_ROWS, distance));
@@ -167,8 +170,8 @@ pub(super) fn far(trial: &Trial) -> Result<f64> {
     Ok(differences.fold(0.0, f64::max) / diameter)
 }
 
-/// Returns the largest difference of the velocities after a step between two numberings of the same grains, relative to
-/// the largest velocity.
+/// Computes one step of a heap with two different numberings of its grains. Returns the largest difference between the
+/// two velocities of a grain after the step, divided by the largest velocity.
 pub(super) fn shuffle(trial: &Trial) -> Result<f64> {
     let mut random = Pcg64::seed_from_u64(7);
     let mut scene = scenes::heap(SHUFFLED_ROWS);
@@ -194,22 +197,23 @@ pub(super) fn shuffle(trial: &Trial) -> Result<f64> {
 
 // Sudden changes: a grain is removed, the time step changes, or all sliders move at random.
 
-/// Number of steps before and after a sudden change.
+/// Number of steps before, and number of steps after, the sudden change in a test (a removed grain, or another time
+/// step).
 const BEFORE: u64 = 50;
 const AFTER: u64 = 30;
-/// Time step before the sudden change of the time step, s.
+/// Time step in the test of a sudden change of the time step, before the change, s.
 const SMALL_STEP_SECS: f64 = 2e-4;
 const ROWS: usize = 4;
-/// Half the side of the box around the heap, in mean diameters d.
+/// Half the side length of the box around the heap, in the test with randomly moved sliders, in mean diameters d.
 const BOX: f64 = 12.0;
-/// Simulated time between two changes of the sliders, s.
+/// Simulated time between two random changes of all sliders, in the test with randomly moved sliders, s.
 const CHANGE_SECS: f64 = 0.05;
-/// Number of sweeps per step while the sliders move. It is so small that the graphical window could show the run in
-/// real time.
+/// Most sweeps per step in the test with randomly moved sliders. The number is so small that the graphical window could
+/// show the run in real time.
 const LIVE_SWEEPS: u32 = 200;
 
-/// Returns the largest kinetic energy after a heavy disc is removed from a column, relative to the weight of one of the
-/// column's discs times the mean diameter (m g d).
+/// Removes a heavy disc from the top of a column at rest, and returns the largest kinetic energy afterwards, divided by
+/// the weight of a disc of the column times the mean diameter (m g d).
 pub(super) fn lift_off(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(scenes::lift_off(trial.level))?;
     simulation.take_steps(BEFORE)?;
@@ -223,8 +227,8 @@ pub(super) fn lift_off(trial: &Trial) -> Result<f64> {
     Ok(energy)
 }
 
-/// Returns the error of a heap at rest whose time step grows: the larger of the longest displacement of any grain, in
-/// mean diameters d, and the remaining speed, in √(g d) with gravity g.
+/// Increases the time step of a heap at rest suddenly, and returns the motion that arises: the larger of the longest
+/// displacement of any grain, in mean diameters d, and the root mean square speed, in √(g d) with gravity g.
 pub(super) fn time_step_switch(trial: &Trial) -> Result<f64> {
     let mut scene = scenes::heap(ROWS);
     scene.parameters.time_step_secs = SMALL_STEP_SECS;
@@ -236,8 +240,9 @@ pub(super) fn time_step_switch(trial: &Trial) -> Result<f64> {
     Ok(unrest(&simulation, &scene))
 }
 
-/// Returns the number of grains that have left their box after some seconds, in which every slider moves at random and
-/// a grain is pulled towards a random point.
+/// Simulates a heap in a closed box, as if a user moved the window's sliders (Bond number, time step, restitution,
+/// friction) at random and pulled a grain towards a random point. Returns the number of grains that are outside the box
+/// at the end.
 pub(super) fn sliders(trial: &Trial) -> Result<f64> {
     let mut scene = scenes::heap(ROWS);
     scene.solver.max_sweeps = LIVE_SWEEPS;

@@ -1,6 +1,6 @@
 //! Measures the errors of stability tests with scenes that must stay at rest, or must yield at the right load: columns,
-//! piles, cohesive rows, and discs in too little space. Each function runs a trial and returns an error that is 0 for
-//! the right answer.
+//! piles, cohesive rows, and discs in a space that is too small. Each function runs a trial (one solver variant at one
+//! difficulty) and returns an error that is 0 for the right answer.
 
 use super::{Trial, advance, force_on_ground, jitter, longest_way, threshold, unrest};
 use crate::error::Result;
@@ -9,17 +9,18 @@ use crate::scene::{Scene, cradle};
 use crate::sim::Simulation;
 use crate::world::Parameters;
 
-// Columns: the load on the floor, and the sinking of the top. A step that is not solved leaves a speed, so that a
-// column sinks as if its discs were soft: the apparent elasticity of a solver that has not converged.
+// Columns: the load on the floor, and the sinking of the top. A step that is not solved accurately leaves the discs
+// with a speed, so that a column sinks as if its discs were soft: the apparent elasticity of a solver that has not
+// converged.
 
 const COLUMN_SECS: f64 = 0.1;
-/// Number of sweeps per step in tests that do not vary it. It is small, as in the graphical window, which must show a
-/// run in real time.
+/// Most sweeps per step in tests that do not vary this number. It is small, as in the graphical window, which must show
+/// a run in real time.
 const FEW_SWEEPS: u32 = 100;
 const SAGGING_DISCS: usize = 20;
 
-/// Returns the largest error of the force of a column on the floor in the last quarter of the run, relative to the
-/// weight.
+/// Returns the largest error of the force with which a column presses on the floor, in the last quarter of the run,
+/// divided by the weight of the column.
 pub(super) fn column(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(with_sweeps(FEW_SWEEPS, scenes::column(trial.count())))?;
     let world = simulation.world();
@@ -33,7 +34,8 @@ pub(super) fn column(trial: &Trial) -> Result<f64> {
     Ok(worst)
 }
 
-/// Returns a column of `count` discs whose steps have `sweeps` sweeps (or substeps) each, without a warm start.
+/// Returns the scene of a column of `count` discs, with solver settings for `sweeps` sweeps (or substeps) per step
+/// without a warm start.
 pub(super) fn sagging(count: usize, sweeps: u32) -> Scene {
     let mut scene = scenes::column(count);
     scene.solver.max_sweeps = sweeps;
@@ -43,17 +45,18 @@ pub(super) fn sagging(count: usize, sweeps: u32) -> Scene {
     scene
 }
 
-/// Returns the distance by which the top of a column sinks, in mean diameters d.
+/// Runs a column with few sweeps per step, and returns the distance by which its top sinks during the run, in mean
+/// diameters d.
 pub(super) fn sag(trial: &Trial) -> Result<f64> {
     sunk_in(trial, &sagging(SAGGING_DISCS, trial.count() as u32))
 }
 
-/// Returns the distance by which a heavy disc on a light disc sinks, in mean diameters d.
+/// Returns the distance by which a heavy disc that lies on a light disc sinks during the run, in mean diameters d.
 pub(super) fn mass_ratio(trial: &Trial) -> Result<f64> {
     sunk_in(trial, &with_sweeps(FEW_SWEEPS, scenes::mass_ratio(trial.level)))
 }
 
-/// Returns the distance by which a large disc on two small discs sinks, in mean diameters d.
+/// Returns the distance by which a large disc that lies on two small discs sinks during the run, in mean diameters d.
 pub(super) fn size_ratio(trial: &Trial) -> Result<f64> {
     sunk_in(trial, &with_sweeps(FEW_SWEEPS, scenes::logs(trial.level)))
 }
@@ -69,7 +72,8 @@ fn sunk_in(trial: &Trial, scene: &Scene) -> Result<f64> {
     Ok(sunk(&simulation, scene))
 }
 
-/// Returns the displacement of the last grain since the initial state in `scene`, in mean diameters d.
+/// Returns the displacement of the last grain, such as the top disc of a column, since the initial state in `scene`, in
+/// mean diameters d.
 pub(super) fn sunk(simulation: &Simulation, scene: &Scene) -> f64 {
     let last = scene.grains.len() - 1;
     let [before, now] = [scene.grains[last].position, simulation.world().grains.positions[last]];
@@ -83,17 +87,18 @@ const STANDING_SECS: f64 = 0.2;
 const SMALL_ROWS: usize = 4;
 /// Friction coefficient below which a pile of three equal logs slides apart: tan 15° = 2 − √3.
 const FRICTION_OF_LOGS: f64 = 0.267_949_192_431_122_7;
-/// Displacement at the end of the test above which a pile counts as sliding, in mean diameters d.
+/// Longest displacement of a grain at the end of a test, from which on the pile counts as sliding, in mean diameters d.
 const SLID: f64 = 0.02;
 const SLIDING_SECS: f64 = 0.2;
-/// Ranges in which friction coefficients and angles are searched, and number of bisections. A range goes from the right
-/// value divided by its factor to the right value times this factor. The bisections end at a precision of 1 % for
-/// friction and 0.5 % for angles.
+/// Factors that define the range in which the friction coefficient or slope angle at which a pile slides is searched,
+/// and number of bisections. The range goes from the right value divided by the factor to the right value times the
+/// factor. After the bisections, friction is known to 1 % and angles to 0.5 %.
 const FRICTION_RANGE: f64 = 4.0;
 const ANGLE_RANGE: f64 = 2.0;
 const PILE_HALVINGS: u32 = 8;
 
-/// Returns the longest displacement of any grain within a simulated time (s), in mean diameters d.
+/// Runs a scene for the simulated time `secs` (s), and returns the longest displacement of any grain, in mean diameters
+/// d.
 fn way_in(trial: &Trial, secs: f64, scene: Scene) -> Result<f64> {
     let mut simulation = trial.start(scene.clone())?;
     advance(&mut simulation, secs)?;
@@ -105,17 +110,17 @@ fn with_time_step(trial: &Trial, mut scene: Scene) -> Scene {
     scene
 }
 
-/// Returns the longest displacement of any grain of a heap that must stay at rest, in mean diameters d.
+/// Runs a heap that must stay at rest, and returns the longest displacement of any grain, in mean diameters d.
 pub(super) fn repose(trial: &Trial) -> Result<f64> {
     way_in(trial, STANDING_SECS, with_time_step(trial, scenes::heap(ROWS)))
 }
 
-/// Returns the relative error of the friction coefficient at which three piled logs slide apart.
+/// Returns the relative error of the friction coefficient below which a pile of three logs slides apart.
 pub(super) fn friction_limit(trial: &Trial) -> Result<f64> {
     least_friction(trial, &scenes::logs(1.0), FRICTION_OF_LOGS)
 }
 
-/// Returns the relative error of the friction coefficient at which the keystone of an arch slips through.
+/// Returns the relative error of the friction coefficient below which the keystone of an arch slips through.
 pub(super) fn arch(trial: &Trial) -> Result<f64> {
     least_friction(trial, &scenes::arch(), scenes::FRICTION_OF_ARCH)
 }
@@ -164,8 +169,8 @@ fn slides(trial: &Trial, scene: Scene) -> Result<bool> {
     Ok(way_in(trial, SLIDING_SECS, scene)? >= SLID)
 }
 
-/// Returns the larger of two numbers after very many steps of a heap at rest: the longest displacement of any grain, in
-/// mean diameters d, and the remaining speed, in √(g d) with gravity g.
+/// Runs a heap at rest for very many steps, and returns the larger of two numbers at the end: the longest displacement
+/// of any grain, in mean diameters d, and the root mean square speed, in √(g d) with gravity g.
 pub(super) fn rest(trial: &Trial) -> Result<f64> {
     let scene = scenes::heap(SMALL_ROWS);
     let mut simulation = trial.start(scene.clone())?;
@@ -175,17 +180,18 @@ pub(super) fn rest(trial: &Trial) -> Result<f64> {
 
 // Very many contacts at rest, with few sweeps per step.
 
-/// Number of sweeps per step, or of iterations of a method without sweeps. The graphical window has time for about this
-/// many.
+/// Most sweeps per step in the tests with very many contacts (iterations for a method without sweeps). The graphical
+/// window has time for about this many sweeps.
 const WINDOW_SWEEPS: u32 = 40;
-/// Number of steps in the tests with very many contacts. The first step begins without impulses. In free fall, a grain
-/// would move by 0.2 diameters in these steps.
+/// Number of steps in the tests with very many contacts. The first step begins with all contact impulses 0. In free
+/// fall, a grain would move by 0.2 diameters in these steps.
 const STEPS: u64 = 20;
-/// Number of discs in every other row of the lattice, and number of rows. The lattice has 3,900 contacts.
+/// Size of the lattice of discs in the test with very many contacts: number of discs in every other row, and number of
+/// rows. The lattice has 3,900 contacts.
 const LATTICE: [usize; 2] = [37, 36];
 
-/// Returns the larger of the remaining motion in a lattice of discs and the residual of its last step. The motion is
-/// the larger of the longest displacement, in mean diameters d, and the remaining speed, in √(g d) with gravity g.
+/// Runs a lattice of discs that must stay at rest, and returns the largest of three numbers: the longest displacement,
+/// in mean diameters d; the root mean square speed, in √(g d) with gravity g; and the residual of the last step.
 pub(super) fn hyperstatic(trial: &Trial) -> Result<f64> {
     let [columns, rows] = LATTICE;
     let scene = scenes::lattice(columns, rows, trial.level);
@@ -194,8 +200,8 @@ pub(super) fn hyperstatic(trial: &Trial) -> Result<f64> {
     Ok(unrest(&simulation, &scene).max(simulation.observables().residual))
 }
 
-/// Returns the remaining motion in a heap with a given number of grains: the larger of the longest displacement, in
-/// mean diameters d, and the remaining speed, in √(g d) with gravity g.
+/// Runs a heap that must stay at rest, with the number of grains that the trial gives. Returns the larger of two
+/// numbers: the longest displacement, in mean diameters d, and the root mean square speed, in √(g d) with gravity g.
 pub(super) fn size(trial: &Trial) -> Result<f64> {
     let scene = scenes::heap_of(trial.count());
     let mut simulation = trial.start_within(WINDOW_SWEEPS, scene.clone())?;
@@ -207,22 +213,27 @@ pub(super) fn size(trial: &Trial) -> Result<f64> {
 // step.
 
 const CHAIN: usize = 8;
-/// Duration of the test of a chain, s. A chain that is overloaded by 1 % opens in a third of this duration.
+/// Duration of the test whether a hanging chain breaks, s. If the load is 1 % above the strength, the chain opens in a
+/// third of this duration.
 const CHAIN_SECS: f64 = 0.04;
-/// Time in which the chain hangs at rest before the test, s. Its Bond number then is [`SURE`] times the breaking Bond
-/// number, so that the chain holds. With a much larger Bond number, springs would recoil in the test.
+/// Time in which the chain hangs at rest before the test, s. During this time, its Bond number is [`SURE`] times the
+/// Bond number at which it breaks, so that the chain holds. With a much larger Bond number, bonds with springs would
+/// recoil when the Bond number is reduced for the test.
 const HANG_SECS: f64 = 0.04;
 const SURE: f64 = 1.5;
-/// Number of bisections of the breaking Bond number, which determine it to a factor of 4^(1/2^8), that is, 0.5 %.
+/// Number of bisections with which the Bond number is searched at which a chain breaks. They determine it to a factor
+/// of 4^(1/2^8), that is, 0.5 %.
 const CHAIN_HALVINGS: u32 = 9;
-/// Duration of the tests of bridge and cantilever, s. If they are torn off, they fall by 30 diameters in this duration.
+/// Duration of the tests of a cohesive bridge and a cohesive cantilever, s. If the bridge or the cantilever is torn
+/// off, it falls by 30 diameters in this duration.
 const WATCH_SECS: f64 = 0.25;
 pub(super) const CANTILEVER: i32 = 4;
 const BRIDGE: i32 = 10;
-/// Time step of the shock, s. At this time step the bond opens in the paper, because the solver has not converged.
+/// Time step in the test of the paper's cradle (a disc hits two bonded discs), s. At this time step the bond opens in
+/// the paper, because the paper's solver has not converged.
 const SHOCK_STEP_SECS: f64 = 5e-4;
 
-/// Returns the relative error of the Bond number at which a chain breaks.
+/// Returns the relative error of the Bond number below which a hanging chain breaks.
 pub(super) fn chain(trial: &Trial) -> Result<f64> {
     let right = scenes::breaking_bond(CHAIN);
     let breaking = threshold([0.25 * right, 4.0 * right], CHAIN_HALVINGS, |bond| {
@@ -236,18 +247,20 @@ pub(super) fn chain(trial: &Trial) -> Result<f64> {
     Ok((breaking / right - 1.0).abs())
 }
 
-/// Returns the longest displacement of any grain of a cantilever, in mean diameters d.
+/// Runs a cohesive cantilever that must stay at rest, and returns the longest displacement of any grain, in mean
+/// diameters d.
 pub(super) fn cantilever(trial: &Trial) -> Result<f64> {
     way_in(trial, WATCH_SECS, with_time_step(trial, scenes::cantilever(CANTILEVER)))
 }
 
-/// Returns the longest displacement of any grain of a bridge, in mean diameters d.
+/// Runs a cohesive bridge that must stay at rest, and returns the longest displacement of any grain, in mean diameters
+/// d.
 pub(super) fn bridge(trial: &Trial) -> Result<f64> {
     way_in(trial, WATCH_SECS, with_time_step(trial, scenes::bridge(BRIDGE)))
 }
 
-/// Returns the gap between the discs i and j of the paper's cradle after the shock, in diameters. If the steps are
-/// solved well, the gap stays closed.
+/// Runs the paper's cradle, in which disc k hits two bonded discs i and j. Returns the gap between i and j at the end,
+/// in diameters. If the steps are solved accurately, the bond holds, and the gap is 0.
 pub(super) fn shock(trial: &Trial) -> Result<f64> {
     let mut scene = cradle();
     scene.parameters.time_step_secs = SHOCK_STEP_SECS;
@@ -258,14 +271,15 @@ pub(super) fn shock(trial: &Trial) -> Result<f64> {
     Ok(((places[1].x - places[0].x) / scene.mean_diameter - 1.0).abs())
 }
 
-// Discs in too little space.
+// Discs in a space that is too small.
 
 const RECOVERY_SECS: f64 = 0.3;
 const SETTLING_SECS: f64 = 0.2;
 const WATCHED_STEPS: u64 = 100;
 
-/// Returns the larger of two numbers for two overlapping discs: the fraction of the overlap that remains after 0.3 s,
-/// and the largest kinetic energy until then, relative to m g d (weight of a disc times mean diameter).
+/// Runs a scene with overlapping discs for 0.3 s, and returns the larger of two numbers: the fraction of the overlap
+/// that remains, and the largest kinetic energy during the run, divided by m g d (weight of a disc times mean
+/// diameter).
 pub(super) fn overlap(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(scenes::overlapped(trial.level))?;
     let scale = super::energy_scale(&simulation);
@@ -277,9 +291,9 @@ pub(super) fn overlap(trial: &Trial) -> Result<f64> {
     Ok(left.max(energy))
 }
 
-/// Returns the larger of two numbers for discs in a box that is too small: the fraction of the steps that were not
-/// solved to their tolerance, and the mean remaining speed over the last hundred steps, in √(g d) with gravity g and
-/// mean diameter d.
+/// Runs discs in a box that is too small for them, and returns the larger of two numbers: the fraction of the steps
+/// that were not solved to their tolerance, and the root mean square speed of the discs, averaged over the last hundred
+/// steps, in √(g d) with gravity g and mean diameter d.
 pub(super) fn squeeze(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(scenes::squeeze(trial.level))?;
     let (mut unsolved, mut speeds) = (0u64, 0.0);
@@ -294,9 +308,9 @@ pub(super) fn squeeze(trial: &Trial) -> Result<f64> {
     Ok(share.max(speeds / WATCHED_STEPS as f64))
 }
 
-/// Returns the larger of two numbers after walls have moved in and the grains have had time to come to rest: the
-/// largest distance of a grain from its right position, in mean diameters d, and the remaining speed, in √(g d) with
-/// gravity g.
+/// Moves walls inwards, which press grains together, and waits for the grains to come to rest. Returns the larger of
+/// two numbers: the largest distance of a grain from its only possible position, in mean diameters d, and the root mean
+/// square speed, in √(g d) with gravity g.
 pub(super) fn moving_walls(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(with_time_step(trial, scenes::press()))?;
     advance(&mut simulation, scenes::pressing_secs() + SETTLING_SECS)?;

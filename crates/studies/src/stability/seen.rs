@@ -1,6 +1,6 @@
-//! Measures the errors of stability tests at a single moment of a run, for the program's graphical window. Each error
-//! is 0 for the right answer, and has the same limits as its test. Before the first step, and before the scene has
-//! reached the state to be judged, there is no error.
+//! Measures the errors of stability tests at a single simulated time of a run, for the program's graphical window. Each
+//! error is 0 for the right answer, and is compared with the limits of its test. Errors are only defined after the
+//! first step, and after the time at which the scene should have reached the right answer.
 
 use glam::DVec2;
 
@@ -8,13 +8,13 @@ use super::{jitter_of, longest_way_to};
 use crate::scene::stability as scenes;
 use crate::sim::{Simulation, Snapshot};
 
-/// A measure of error of a stability test that can be evaluated at a single moment of a run.
+/// A measure of the error of a stability test that can be evaluated at a single simulated time.
 #[derive(Clone, Copy, Debug)]
 pub struct SeenError {
-    /// Name and unit of the error.
+    /// Name and unit of the error, as text.
     pub name: &'static str,
-    /// Function that returns the error from the start of the run and the present moment; `None` if the moment cannot be
-    /// judged.
+    /// Function that returns the error from the simulation at the start of the run and the present snapshot; `None` if
+    /// it is too early to judge the run.
     pub(super) of: fn(&Simulation, &Snapshot) -> Option<f64>,
 }
 
@@ -22,10 +22,11 @@ const fn error(name: &'static str, of: fn(&Simulation, &Snapshot) -> Option<f64>
     SeenError { name, of }
 }
 
-/// Error of scenes that must stay as they are: the largest displacement of a grain.
+/// Error of scenes that must stay at rest: the largest displacement of a grain, in diameters.
 pub(super) const MOVED: SeenError =
     error("largest displacement in diameters", |start, now| Some(moved(start, now)));
-/// Error of scenes that must come to rest: the remaining speed.
+/// Error of scenes that must come to rest: the root mean square speed of the grains after 0.2 s, in √(g d), with
+/// gravity g and mean diameter d.
 pub(super) const RESTLESS: SeenError =
     error("remaining speed in √(g d)", |start, now| after(0.2, now, || restless(start, now)));
 pub(super) const KINETIC: SeenError = error("kinetic energy in m g d", |start, now| {
@@ -104,7 +105,7 @@ fn restless(start: &Simulation, now: &Snapshot) -> f64 {
     jitter_of(start.world(), now.observables.kinetic_energy)
 }
 
-/// Returns the error of a moment if the simulated time `secs` (s) is reached, otherwise `None`.
+/// Returns the result of `error` if the snapshot `now` is at or after the simulated time `secs` (s), otherwise `None`.
 fn after(secs: f64, now: &Snapshot, error: impl FnOnce() -> f64) -> Option<f64> {
     (now.observables.time_secs >= secs).then(error)
 }

@@ -1,5 +1,5 @@
-//! Computes the verdicts on every variant of the solver, for every stability test and every value of its driving
-//! parameter. Presents them as data, as CSV, in words and as a picture.
+//! Computes the table of verdicts on every solver variant, in every stability test and at every value of its driving
+//! parameter (the parameter that makes the test more difficult). Writes the table as CSV, as text and as a picture.
 
 use std::fmt;
 
@@ -11,15 +11,16 @@ use crate::chart::{self, Axis, Chart, INK, Layer, Rgb, Sheet};
 use crate::error::{Error, Result};
 use crate::harness::Change;
 
-/// Verdict on a method in a stability test. The verdicts are ordered from the best to the worst.
+/// Verdict on a solver variant in a stability test. The verdicts are ordered from the best to the worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StabilityVerdict {
-    /// The answer is right.
+    /// The result of the run is right: its error is at most the first limit of the test.
     Holds,
-    /// The answer is inaccurate, but the scene stays intact.
+    /// The result of the run is inaccurate, but the scene stays intact: the error is between the two limits of the
+    /// test.
     Degrades,
-    /// The answer is wrong.
+    /// The result of the run is wrong: its error is above the second limit of the test.
     Fails,
     /// The method does not support a part of the scene, such as rolling friction, and says so.
     Refuses,
@@ -37,7 +38,7 @@ impl StabilityVerdict {
         }
     }
 
-    /// Returns the verdict as a single word.
+    /// Returns the verdict as a single word, such as "holds" or "fails".
     pub fn name(self) -> &'static str {
         match self {
             Self::Holds => "holds",
@@ -48,16 +49,17 @@ impl StabilityVerdict {
     }
 }
 
-/// A row of the table of stability tests: the result of one variant in one test at one value of the driving parameter.
+/// A row of the table of stability tests: the result of one solver variant in one test, at one value of the driving
+/// parameter (the parameter that makes the test more difficult).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StabilityCell {
     /// Name of the stability test.
     pub scene: String,
     /// Name of the variant of the solver or stepper.
     pub method: String,
-    /// Value of the driving parameter of the test.
+    /// Value of the test's driving parameter (the parameter that makes the test more difficult).
     pub level: f64,
-    /// Verdict on the variant.
+    /// Verdict on the solver variant in this run.
     pub verdict: StabilityVerdict,
     /// Error with two digits, because further digits differ between builds of the program. Empty if the method refuses the
     /// scene.
@@ -67,12 +69,12 @@ pub struct StabilityCell {
 /// The results of all stability tests.
 #[derive(Clone, Debug, Default)]
 pub struct StabilityTable {
-    /// Results, sorted by test, variant and value of the driving parameter.
+    /// Results of the runs, sorted by test, then by solver variant, then by the value of the test's driving parameter.
     pub cells: Vec<StabilityCell>,
 }
 
 impl StabilityTable {
-    /// Runs every variant in the given stability tests, on all cores.
+    /// Runs every solver variant in the given stability tests, on all cores. `progress` is called after each run.
     ///
     /// # Errors
     /// If a scene is invalid.
@@ -92,7 +94,7 @@ impl StabilityTable {
         Ok(Self { cells })
     }
 
-    /// Returns the number of cells that [`StabilityTable::run`] computes.
+    /// Returns the number of runs that [`StabilityTable::run`] computes.
     pub fn count(challenges: &[&'static Challenge], quick: bool) -> usize {
         Self::plan(challenges, quick).len()
     }
@@ -133,8 +135,8 @@ impl StabilityTable {
         Ok(Self { cells: cells.map_err(|error| Error::file("table.csv", error))? })
     }
 
-    /// Returns the results of a variant in a stability test, one per value of the driving parameter, from harmless to
-    /// harmful.
+    /// Returns the results of a solver variant in a stability test, one per value of the driving parameter, from the
+    /// easiest to the most difficult value.
     fn levels(&self, challenge: &Challenge, variant: &Change) -> Vec<&StabilityCell> {
         let of_both =
             |cell: &&StabilityCell| cell.scene == challenge.name && cell.method == variant.name;
@@ -148,7 +150,8 @@ impl StabilityTable {
     }
 }
 
-/// Returns the worst verdict over all values of the driving parameter, and the first value with this verdict.
+/// Returns the worst verdict among the results `levels` of one solver variant in one test, and the first value of the
+/// driving parameter with this verdict; `None` if all verdicts are "holds".
 fn summary(levels: &[&StabilityCell]) -> (StabilityVerdict, Option<f64>) {
     let worst = levels.iter().map(|cell| cell.verdict).max().unwrap_or(StabilityVerdict::Holds);
     let first =
@@ -176,8 +179,8 @@ const SCENE_WIDTH: usize = 17;
 const CELL_WIDTH: usize = 16;
 
 impl fmt::Display for StabilityTable {
-    /// Writes one line per stability test and one column per variant: the worst verdict, and the first value of the
-    /// driving parameter with this verdict.
+    /// Writes one line per stability test and one column per solver variant. A cell contains the worst verdict, and the
+    /// first value of the test's driving parameter with this verdict.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(out, "{:SCENE_WIDTH$}", "")?;
         for variant in VARIANTS.iter() {
@@ -198,7 +201,7 @@ impl fmt::Display for StabilityTable {
     }
 }
 
-/// Formats a number in its shortest form.
+/// Formats a value of a driving parameter in its shortest form, as in 1e−4 or 20.
 fn number(value: f64) -> String {
     if value != 0.0 && !(1e-2..1e4).contains(&value.abs()) {
         format!("{value:e}").replace('-', "−")
@@ -207,9 +210,10 @@ fn number(value: f64) -> String {
     }
 }
 
-/// Number of columns side by side. More columns would be too narrow for their text.
+/// Number of columns (solver variants) side by side in the picture of the table. More columns would be too narrow for
+/// their text.
 const COLUMNS: usize = 10;
-/// Width of the picture, height of a row, and space for the text below the table, pixels.
+/// Width of the picture of the table, height of a row, and height of the space for text below the table, pixels.
 const WIDTH: u32 = 1200;
 const ROW: u32 = 32;
 const BELOW: u32 = 150;
@@ -221,7 +225,8 @@ pub(super) fn colour(verdict: f64) -> Rgb {
     COLOURS[(verdict as usize).min(3)]
 }
 
-/// Draws the table as a picture: blocks of columns, each block below its headers.
+/// Draws the table of verdicts as a picture. The columns (solver variants) are divided into blocks, which are drawn one
+/// below the other.
 pub fn picture(table: &StabilityTable) -> Sheet {
     let challenges = table.challenges();
     // Each block has two lines of headers, because names with two words take two lines.

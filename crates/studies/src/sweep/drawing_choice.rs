@@ -1,4 +1,4 @@
-//! Defines the chart that a study file requests: its axis, curves and panels.
+//! Defines how a study file describes the chart of a sweep: its x axis, curves and panels.
 
 use serde::Deserialize;
 

@@ -333,7 +333,8 @@ fn hash(said: &impl Serialize, scene: &str) -> Result<blake3::Hasher> {
     Ok(hasher)
 }
 
-/// Returns half of a hash as hexadecimal digits. With these 128 bits, two runs practically never have the same key.
+/// Returns the first half of a hash as hexadecimal digits, which are used as a key. With these 128 bits, two runs
+/// practically never have the same key.
 fn short(hasher: &blake3::Hasher) -> String {
     hasher.finalize().to_hex()[..32].to_owned()
 }

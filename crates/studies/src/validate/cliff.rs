@@ -1,5 +1,4 @@
-//! Validates columns of cohesive grains: stronger cohesion makes the columns spread less, and limits the height of a
-//! stable cliff.
+//! Validates columns of cohesive grains: with stronger cohesion they spread less, and a higher cliff stays standing.
 //!
 //! Consider a packing of discs of diameter d with the solid fraction φ, Z contacts per grain, and isotropic directions
 //! of the contacts. Then φZ/(πd) contacts cross a unit of length. Each contact bears the cohesion force C₀, so the
@@ -54,17 +53,17 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     })
 }
 
-/// Returns the upper bound of the height of a cliff by Mohr and Coulomb, in diameters.
+/// Returns the largest possible height of a stable cliff by Mohr and Coulomb, in diameters, for the Bond number `bond`.
 fn bound(bond: f64) -> f64 {
     let angle = TAN_OF_FRICTION.atan();
     let steepness = (0.25 * std::f64::consts::PI + 0.5 * angle).tan();
     0.5 * COORDINATION * bond * TAN_OF_FRICTION * steepness
 }
 
-/// Returns the Bond number above which columns made from the same seed remain standing: the geometric mean of the last
-/// Bond number at which a column falls and the first at which a column stands; NaN if there is no such pair. At large
-/// Δt, columns with even stronger cohesion may fall again. This is a finding of Abramian and Staron (2020) and not part
-/// of Mohr's theory.
+/// Returns the Bond number above which columns made from the same seed remain standing. It is the geometric mean of two
+/// neighbouring Bond numbers of the study: the smallest at which a column stands, and the next smaller one; NaN if
+/// there is no such pair. At large Δt, columns with even stronger cohesion may fall again. This is a finding of
+/// Abramian and Staron (2020) and not part of Mohr's theory.
 fn standing_from(of_seed: &Measurements) -> f64 {
     let runs = &of_seed.0;
     let Some(first) = runs.iter().position(|case| case.reading("slump") < STANDS) else {
@@ -75,8 +74,8 @@ fn standing_from(of_seed: &Measurements) -> f64 {
     (falls * runs[first].at("bond")).sqrt()
 }
 
-/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
-/// lower end of the accepted band, published value, upper end | source.
+/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
+/// lower end of the band of values that agree, published value, upper end of the band | source.
 const PUBLISHED: &str = "
     rank correlation of run-out and Bond | -1 -1 -0.7 | recalled: Abramian et al. 2020, Gans et al. 2023: it falls
     rank correlation of roughness and Bond, of those that fall | 0.5 1 1 \

@@ -1,30 +1,31 @@
-//! Validates a gas of cohesive discs without gravity and friction: the dependence of a bond's loss of energy on the
-//! time step Δt.
+//! Validates a gas of cohesive discs without gravity and friction: the energy that collisions lose by cohesion, and its
+//! dependence on the time step Δt and on the contact law.
 //!
-//! Consider N discs of mass m. Their temperature is T = ½ m⟨v²⟩, at first T₀, and their energy is N T. They collide N R
-//! √(T/T₀) times per second, with R = √π n d χ √(T₀/m) (`validate::cooling`). Here n is the number of discs per area, d
-//! the diameter, and χ the pair correlation at contact. In collisions the approach speed v of a pair has the mean
-//! √(πT/m) and the mean square 4T/m. The effective mass of a pair is m_ij = m/2. ρ is the restitution.
+//! Consider N discs of mass m. Their temperature is T = ½ m⟨v²⟩, at first T₀, and their energy is N T. In total they
+//! collide N R √(T/T₀) times per second, with R = √π n d χ √(T₀/m) (derived in `validate::cooling`). Here n is the
+//! number of discs per area, d the diameter, and χ the pair correlation at contact. In collisions the approach speed v
+//! of a pair has the mean √(πT/m) and the mean square 4T/m. The effective mass of a pair is m_ij = m/2. ρ is the
+//! restitution.
 //!
-//! **`range`, ρ = 1.** Each collision makes a bond, and breaking the bond takes the work W = C₀ δ_c, with the cohesion
-//! force C₀ and the debonding distance δ_c. So dT/dt = −R W √(T/T₀):
+//! **Stepper `range`, ρ = 1.** Each collision makes a bond, and breaking the bond takes the work W = C₀ δ_c, with the
+//! cohesion force C₀ and the debonding distance δ_c (bonds pull up to this gap). So dT/dt = −R W √(T/T₀):
 //!
 //! > T = T₀ (1 − t/t₀)²,  t₀ = 2 T₀/(R W),  until T is about W.
 //!
-//! A pair with less energy than W is captured. This happens in the fraction W/T of the collisions, and the next
+//! A pair whose energy is less than W stays bonded. This happens in the fraction W/T of the collisions, and the next
 //! collision of such a pair breaks its bond.
 //!
-//! **`moreau`, touch tolerance 0.** A pair overlaps as a step begins, at the distance L of its centres, and bounces in
-//! this step without a loss by cohesion: in the contact law of `docs/theory.md`, u = 0 and σ > 0. For ρ = 1 the
-//! velocity of the pair is then the mirror image of its velocity before. So at the end of the step the pair is as far
-//! apart as it was one step before the overlap, and does not touch.
+//! **Stepper `moreau`, touch tolerance 0.** A pair bounces in the first step that begins with an overlap. In this step,
+//! cohesion takes no energy: in the contact law of `docs/theory.md`, u = 0 and σ > 0. For ρ = 1 the velocity of the
+//! pair is reversed. So at the end of the step the pair is as far apart as it was one step before the overlap. It no
+//! longer touches, and cohesion does not act in later steps.
 //!
 //! > Without a loss by restitution, cohesion of any strength takes no energy: T = T₀.
 //!
-//! For ρ < 1 the gap one step before the overlap is g, evenly distributed in 0 … vΔt. After the bounce the gap is g −
-//! (1 − ρ) vΔt. So in the fraction 1 − ρ of the collisions (if ρ ≥ ½) the pair still touches and opens with the speed w
-//! = ρ v. In the next step cohesion takes the capture speed c = C₀Δt/m_ij, and the energy ½ m_ij (2 w c − c²). With the
-//! loss (1 − ρ²) T by restitution and x = √(T₀/T),
+//! For ρ < 1, let g be the gap one step before the overlap, which is evenly distributed in 0 … vΔt. After the bounce
+//! the gap is g − (1 − ρ) vΔt. So in the fraction 1 − ρ of the collisions (if ρ ≥ ½) the pair still touches, and opens
+//! with the speed w = ρ v. In the next step, cohesion reduces this speed by the capture speed c = C₀Δt/m_ij, which
+//! takes the energy ½ m_ij (2 w c − c²). With the loss (1 − ρ²) T by restitution and x = √(T₀/T),
 //!
 //! > dx/dt = ½ R (1 − ρ²) + ¼ R (1 − ρ) (√π ρ k x − ½ k² x²),  k = c √(m/T₀).
 //!
@@ -32,7 +33,8 @@
 //!
 //! > 1/τ = ½ π ρ (1 − ρ) n d χ C₀Δt/m_ij:  τ Δt is constant.
 //!
-//! The loss by restitution is measured in the same gas without cohesion. A factor of the cohesive term is fitted.
+//! The loss by restitution is measured in the same gas without cohesion. The measured effect of cohesion is fitted by
+//! this equation, with an additional factor of the cohesive term, which should be 1.
 
 use std::f64::consts::PI;
 
@@ -60,17 +62,19 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// Cohesion force divided by the effective mass, C₀/m_ij, m/s². With this value, breaking a bond of `range` takes a
-/// fortieth of the initial temperature T₀, and the capture speed is at most a fifth of the thermal speed √(2T₀/m).
+/// Cohesion force divided by the effective mass of a pair, C₀/m_ij, m/s². With this value, breaking a bond of the
+/// stepper `range` takes a fortieth of the initial temperature T₀ (an energy), and the capture speed (the opening speed
+/// that one step of cohesion stops) is at most a fifth of the thermal speed √(2T₀/m), with the mass m of a disc.
 const COHESION: f64 = 5.0;
 /// The two time steps of the experiment, s.
 const SHORT: f64 = 2e-3;
 const LONG: f64 = 4e-3;
-/// Durations of the runs. Under `range`, the unit is the time in which breaking bonds would take all energy. Under
-/// `moreau`, the unit is 2/(R (1 − ρ²)), with the collision rate R per disc and the restitution ρ.
+/// Durations of the runs, dimensionless. With the stepper `range`, the unit is the time in which breaking bonds would
+/// take all energy. With the stepper `moreau`, the unit is 2/(R (1 − ρ²)), with the collision rate R per disc and the
+/// restitution ρ.
 const OF_BONDS: f64 = 0.5;
 const OF_RESTITUTION: f64 = 3.0;
-/// Number of moments at which the temperature is measured.
+/// Number of simulated times at which the temperature is measured in a run.
 const MOMENTS: u32 = 120;
 
 fn cases(effort: Effort) -> Vec<ExperimentCase> {
@@ -111,16 +115,17 @@ struct GasRun {
 }
 
 impl GasRun {
-    /// Returns the number R of collisions per disc and second at the initial temperature T₀, 1/s, for a given initial
-    /// thermal speed √(2T₀/m), m/s, with the mass m of a disc.
+    /// Returns the theoretical number R of collisions at the initial temperature T₀, per disc and second, 1/s.
+    /// `thermal_speed` is the initial thermal speed √(2T₀/m), m/s, with the mass m of a disc.
     fn rate(&self, thermal_speed: f64) -> f64 {
         collisions_per_distance(f64::from(self.discs)) * thermal_speed / 2f64.sqrt()
     }
 
-    /// Returns the time t₀, s, in which breaking bonds would take all energy of the gas, for a given initial thermal
-    /// speed √(2T₀/m), m/s, with the initial temperature T₀ and the mass m of a disc. If W is the work to break a bond,
-    /// T₀/W is the square of this speed divided by C₀δ_c/m_ij, with the cohesion force C₀, the debonding distance δ_c
-    /// and the effective mass m_ij.
+    /// Returns the theoretical time t₀, s, in which breaking bonds would take all energy of the gas. `thermal_speed` is
+    /// the initial thermal speed √(2T₀/m), m/s, with the initial temperature T₀ and the mass m of a disc. The formula
+    /// is t₀ = 2 T₀/(R W), with the collision rate R per disc and the work W to break a bond. T₀/W is the square of the
+    /// thermal speed divided by C₀δ_c/m_ij, with the cohesion force C₀, the debonding distance δ_c and the effective
+    /// mass m_ij.
     fn bond_time(&self, thermal_speed: f64) -> f64 {
         let work = COHESION * DEBONDING_DISTANCE * DIAMETER;
         2.0 * thermal_speed.powi(2) / (self.rate(thermal_speed) * work)
@@ -133,7 +138,8 @@ impl GasRun {
         2.0 * OF_RESTITUTION / (self.rate(THERMAL_SPEED) * (1.0 - self.restitution.powi(2)))
     }
 
-    /// Runs the gas with a cohesion force of `cohesion` times the effective mass (m/s²), and returns its temperatures.
+    /// Runs the gas with a cohesion force of `cohesion` (m/s²) times the effective mass of a pair, and returns the
+    /// measured decrease of its temperature.
     fn cooled(&self, cohesion: f64) -> Result<CooledGas> {
         let mut scene = gas(self.discs as usize, self.seed);
         let half = 0.5 * side(f64::from(self.discs));
@@ -178,7 +184,8 @@ impl GasRun {
 
     /// Returns the ratio f of the measured effect of cohesion to the predicted effect, by least squares. With the
     /// temperature T, its initial value T₀ and x = √(T₀/T), it is the factor f in x − 1 − a t = f ∫ ¼ R (1 − ρ) (√π ρ k
-    /// x − ½ k² x²) dt. a is dx/dt without cohesion (`without`, 1/s). The comment of the module explains R, ρ and k.
+    /// x − ½ k² x²) dt. a is dx/dt without cohesion (`without`, 1/s). R is the collision rate per disc, ρ the
+    /// restitution, and k the capture speed times √(m/T₀), with the mass m of a disc.
     fn factor(&self, points: &[(f64, f64)], without: f64, thermal_speed: f64) -> f64 {
         let rho = self.restitution;
         let k = 2f64.sqrt() * COHESION * self.time_step_secs / thermal_speed;
@@ -198,9 +205,10 @@ impl GasRun {
     }
 }
 
-/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
-/// lower end of the accepted band, published value, upper end | source. Times have the same bands as Haff's law. The
-/// factors have wider bands, because only a tenth of the collisions of 2,000 discs determines them.
+/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
+/// lower end of the band of values that agree, published value, upper end of the band | source. The bands of times are
+/// as wide as in the experiment on Haff's law. The rates 1/τ have wider bands, because only a tenth of the collisions
+/// of 2,000 discs determines them.
 const PUBLISHED: &str = "
     range: t₀ over that of kinetic theory, short Δt | 0.9 1 1.1 | derived: Enskog's rate, work of a bond
     range: t₀ over that of kinetic theory, long Δt | 0.9 1 1.1 | derived: Enskog's rate, work of a bond

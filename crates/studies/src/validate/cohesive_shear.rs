@@ -1,9 +1,9 @@
-//! Validates plane shear of cohesive grains: the effect of cohesion on friction and solid fraction at one inertial
-//! number I (`validate::shear`).
+//! Validates plane shear of cohesive grains: the effect of cohesion on the friction and the solid fraction of a sheared
+//! layer, at one inertial number I (defined in `validate::shear`).
 //!
-//! Grains of diameter d that attract each other with the force C₀ under the pressure P have a second dimensionless
-//! number in addition to I, η = C₀/(P d). With C₀ = Bond·m g/2 for two grains of mass m, and P in units of m g/d, η =
-//! Bond/(2P).
+//! Flows of grains of diameter d that attract each other with the force C₀, under the pressure P, have a second
+//! dimensionless number in addition to I, the cohesion η = C₀/(P d). With C₀ = Bond·m g/2 for two grains of mass m, and
+//! P in units of m g/d, η = Bond/(2P).
 //!
 //! If the contact law defines the work W that breaks a bond, there is a third number, E = W/(m γ̇² d²) with the shear
 //! rate γ̇. It is the ratio of this work to the kinetic energy with which grains pass each other. Under `range` the
@@ -31,14 +31,15 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 };
 
 pub(super) const INERTIAL: f64 = 0.08;
-/// Values of the dimensionless cohesion η = C₀/(P d) that count as weak and as strong cohesion. C₀ is the cohesion
-/// force, P the pressure and d the diameter.
+/// Values of the dimensionless cohesion η = C₀/(P d) that represent weak and strong cohesion. C₀ is the cohesion force,
+/// P the pressure on the layer and d the diameter of a grain.
 pub(super) const WEAK: f64 = 1.0;
 const STRONG: f64 = 30.0;
 
-/// Values of the cohesion η = C₀/(P d) and of the bond energy E = W/(m γ̇² d²) of the layers with a prescribed bond
-/// energy. C₀ is the cohesion force, P the pressure, W the work to break a bond, γ̇ the shear rate, and m and d are
-/// mass and diameter of a grain. Time steps of 1 ms resolve the breaking of the weakest of these bonds.
+/// Values of the dimensionless cohesion η = C₀/(P d) and of the dimensionless bond energy E = W/(m γ̇² d²) in those
+/// layers for which the work W to break a bond is prescribed. C₀ is the cohesion force, P the pressure, γ̇ the shear
+/// rate, and m and d are mass and diameter of a grain. Time steps of 1 ms resolve the breaking of the weakest of these
+/// bonds.
 const FORCES: [f64; 2] = [3.0, 10.0];
 const ENERGIES: [f64; 4] = [1.0, 3.0, 10.0, 30.0];
 
@@ -61,8 +62,8 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     layers(effort, variant, &kinds)
 }
 
-/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
-/// lower end of the accepted band, published value, upper end | source.
+/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
+/// lower end of the band of values that agree, published value, upper end of the band | source.
 const PUBLISHED: &str = "
     T/N at η = 1 over that without cohesion | 0.85 1 1.2 | recalled: Rognon et al. 2006: weak cohesion leaves it
     φ at η = 1 less that without cohesion | -0.04 -0.01 0 | recalled: Rognon et al. 2006: weak cohesion dilates
@@ -102,7 +103,9 @@ fn judge(measured: &Measurements) -> Vec<Measured> {
     quantities
 }
 
-/// Returns the change of friction with the energy of a bond at the same force, and with the force at the same energies.
+/// Measures how the friction of sheared layers depends on the bonds. Returns three quantities with one value per seed:
+/// the rank correlations of friction and bond energy at the two cohesion forces, and the mean friction at the larger
+/// force divided by that at the smaller force.
 fn of_energies(all: &Measurements) -> Vec<Measured> {
     if all.0.is_empty() {
         return Vec::new();

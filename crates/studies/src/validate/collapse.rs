@@ -1,5 +1,5 @@
 //! Validates columns of dry grains that collapse and spread: the run-out and the final height as functions of the
-//! aspect ratio.
+//! aspect ratio (initial height divided by half the width).
 
 use super::experiment::*;
 use super::fit::power_law;
@@ -32,15 +32,16 @@ const FRICTION: f64 = 0.5;
 /// Aspect ratio (height divided by half the width) of a column up to which the run-out is proportional to the aspect
 /// ratio.
 const LINEAR_TO: f64 = 2.0;
-/// Duration of a run after the release of the column, in units of √(H₀/g), with the height H₀ of the column and gravity
-/// g.
+/// Duration of a run after the gates beside the column are removed, in units of √(H₀/g), with the height H₀ of the
+/// column and gravity g.
 const TIMES: f64 = 6.0;
-/// Simulated time at which the gates are removed, s.
+/// Simulated time at which the gates beside the column are removed, s.
 const RELEASE_SECS: f64 = 0.02;
-/// Level of the floor, in diameters: the height of the lowest points of grains that lie in the hollows between the
-/// discs of the floor.
+/// Level of the rough floor from which heights are measured, in diameters: the height of the lowest points of grains
+/// that lie in the hollows between the discs of the floor.
 const FLOOR: f64 = 0.37;
-/// Widths of the windows in which the surface of a heap is compared with a straight line, in diameters.
+/// Widths of the two windows in which the roughness of a heap's surface is measured, as the deviation from a straight
+/// line, in diameters.
 const WINDOWS: [f64; 2] = [4.0, 12.0];
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
@@ -65,7 +66,8 @@ pub(super) struct CollapsingColumn {
 }
 
 impl CollapsingColumn {
-    /// Lets the column settle between walls, removes the gates, and measures the final heap.
+    /// Lets the grains of the column fall and come to rest between walls, replaces the walls by gates, removes the
+    /// gates, and measures the final heap.
     pub(super) fn run(&self, variant: StepVariant) -> Result<RunReadings> {
         let half = half_width(self.grains, self.aspect);
         let settled = settled(&self.between_walls(half, variant))?;
@@ -95,7 +97,8 @@ impl CollapsingColumn {
         ]))
     }
 
-    /// Returns the scene of the column's grains above the floor, loosely packed between two walls.
+    /// Returns a scene with the grains of the column loosely packed between two walls, from where they fall on the
+    /// floor. `half` is half the distance of the walls, in diameters.
     fn between_walls(&self, half: f64, variant: StepVariant) -> Scene {
         let mut grains = loose(self.grains, 2.0 * half, self.seed);
         for grain in &mut grains {
@@ -141,8 +144,8 @@ fn joined(moment: &Moment) -> Vec<GrainState> {
     grains.iter().zip(roots).filter(|(_, root)| *root == largest).map(|(grain, _)| *grain).collect()
 }
 
-/// Returns the extent of the grains from the middle, as the mean of both sides, and the height of their highest point,
-/// m.
+/// Returns the horizontal extent of the grains from the middle of the column, averaged over both sides, and the height
+/// of their highest point, m.
 fn reach_and_top(grains: &[GrainState]) -> [f64; 2] {
     let (mut left, mut right, mut top) = (0.0f64, 0.0f64, 0.0f64);
     for grain in grains {
@@ -153,8 +156,8 @@ fn reach_and_top(grains: &[GrainState]) -> [f64; 2] {
     [0.5 * (left + right), top]
 }
 
-/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
-/// lower end of the accepted band, published value, upper end | source.
+/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
+/// lower end of the band of values that agree, published value, upper end of the band | source.
 const PUBLISHED: &str = "
     run-out over a, a ≤ 2, simulated | 1.9 2.5 3.1 | recalled: Staron, Hinch 2005: 2.5
     run-out over a, a ≤ 2, in a channel | 0.9 1.2 1.5 | recalled: Lube et al. 2005: 1.2

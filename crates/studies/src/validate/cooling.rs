@@ -2,21 +2,21 @@
 //! 401, 1983).
 //!
 //! Let T = ½ m⟨v²⟩ be the temperature in the plane, with the mass m and the mean square velocity ⟨v²⟩ of a disc. Each
-//! collision dissipates (1 − e²) T on average: the relative velocity along the normal has the variance 2T/m, its mean
-//! square over collisions is 4T/m, and the energy ¼ m (1 − e²) times this square is lost. A disc collides ω = 2√π n d χ
-//! √(T/m) times per second (Enskog), with n discs of diameter d per area, and the pair correlation at contact χ = (1 −
-//! 7φ/16)/(1 − φ)² at the solid fraction φ (D. Henderson 1975). Two discs share a collision. For N discs with the
-//! energy E = N T, dE/dt = −N √π n d χ (1 − e²) T √(T/m).
+//! collision dissipates (1 − e²) T on average: the relative velocity of two discs along the normal has the variance
+//! 2T/m, its mean square over collisions is 4T/m, and a collision loses the energy ¼ m (1 − e²) times this mean square.
+//! A disc collides ω = 2√π n d χ √(T/m) times per second (Enskog), with n discs of diameter d per area, and the pair
+//! correlation at contact χ = (1 − 7φ/16)/(1 − φ)² at the solid fraction φ (D. Henderson 1975). Each collision counts
+//! for two discs. For N discs with the energy E = N T, dE/dt = −N √π n d χ (1 − e²) T √(T/m).
 //!
 //! The walls have the same restitution as the discs. A unit length of wall is hit n_w √(T/2πm) times per second. Here
-//! n_w = n (1 + 2φχ) is the density of discs at the wall, which bears the pressure. For discs that hit the wall with
-//! the normal velocity v_n, ½ m ⟨v_n²⟩ = T, and (1 − e²) T is lost. With the length L_w of the walls as seen by the
-//! centres of the discs, the total is
+//! n_w = n (1 + 2φχ) is the number of discs per area next to the wall, which follows from the pressure on the wall. For
+//! discs that hit the wall with the normal velocity v_n, ½ m ⟨v_n²⟩ = T, and a hit loses (1 − e²) T on average. With
+//! the length L_w of the walls, measured along the line that the centres of touching discs can reach, the total loss is
 //!
 //! > dT/dt = −2 T √(T/T₀)/τ,  2/τ = (1 − e²) √(T₀/m) (√π n d χ + L_w n_w/(√(2π) N)),
 //!
-//! so that T = T₀/(1 + t/τ)². Distributions of the velocity stay close to Maxwell's: at e = 0.9 the fourth cumulant is
-//! −0.03 and changes the rate by half a per cent (T. P. C. van Noije, M. H. Ernst 1998).
+//! so that T = T₀/(1 + t/τ)². The distribution of velocities stays close to Maxwell's: at e = 0.9 its fourth cumulant
+//! is −0.03, which changes the cooling rate by half a per cent (T. P. C. van Noije, M. H. Ernst 1998).
 
 use std::f64::consts::{PI, TAU};
 
@@ -48,11 +48,12 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 
 pub(super) const RESTITUTION: f64 = 0.9;
 const SOLID_FRACTION: f64 = 0.1;
-/// Thermal speed √(2T₀/m) at the start, m/s. At this speed a disc moves by a hundredth of its diameter in 1e-3 s.
+/// Thermal speed √(2T₀/m) at the start, m/s, with the initial temperature T₀ and the mass m of a disc. At this speed a
+/// disc moves by 1e-4 m, a hundredth of its diameter, in 1e-3 s.
 pub(super) const THERMAL_SPEED: f64 = 0.1;
-/// Duration of a run, in units of the cooling time τ.
+/// Duration of a run, in units of the cooling time τ of Haff's law, T = T₀/(1 + t/τ)².
 const TIMES: f64 = 6.0;
-/// Number of moments at which the temperature is measured.
+/// Number of simulated times at which the temperature is measured in a run.
 const MOMENTS: u32 = 120;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
@@ -65,23 +66,24 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     })
 }
 
-/// Returns the side of the box that contains the discs, m.
+/// Returns the side length of the square box in which `discs` discs have the solid fraction of the experiment, m.
 pub(super) fn side(discs: f64) -> f64 {
     (discs * 0.25 * PI * DIAMETER * DIAMETER / SOLID_FRACTION).sqrt()
 }
 
-/// Returns the pair correlation χ of the discs at contact.
+/// Returns the pair correlation χ of the discs at contact, dimensionless: the factor by which collisions are more
+/// frequent than in a dilute gas.
 fn contact_value() -> f64 {
     (1.0 - 7.0 / 16.0 * SOLID_FRACTION) / (1.0 - SOLID_FRACTION).powi(2)
 }
 
-/// Returns √π n d χ, 1/m, with n discs of diameter d per area and the pair correlation χ at contact: the number of
-/// collisions of pairs per disc and per distance √(T/m).
+/// Returns √π n d χ, 1/m, with n discs of diameter d per area and the pair correlation χ at contact. Multiplied by the
+/// speed √(T/m), this is the number of collisions per second, divided by the number of discs.
 pub(super) fn collisions_per_distance(discs: f64) -> f64 {
     PI.sqrt() * discs / side(discs).powi(2) * DIAMETER * contact_value()
 }
 
-/// Returns the cooling time τ of Haff's law, s. The comment of the module gives the formula.
+/// Returns the theoretical cooling time τ of Haff's law, T = T₀/(1 + t/τ)², s. It includes collisions with the walls.
 fn time_secs(discs: f64) -> f64 {
     let at_wall = discs / side(discs).powi(2) * (1.0 + 2.0 * SOLID_FRACTION * contact_value());
     let of_walls = 4.0 * (side(discs) - DIAMETER) * at_wall / (TAU.sqrt() * discs);
@@ -89,7 +91,8 @@ fn time_secs(discs: f64) -> f64 {
     2.0 / ((1.0 - RESTITUTION.powi(2)) * root * (collisions_per_distance(discs) + of_walls))
 }
 
-/// Returns a scene with discs on a regular grid in a box. Their velocities are drawn from Maxwell's distribution.
+/// Returns a scene with discs on a regular grid in a square box, without gravity. Their initial velocities are drawn
+/// from Maxwell's distribution.
 pub(super) fn gas(discs: usize, seed: u64) -> Scene {
     let side = side(discs as f64);
     let columns = (discs as f64).sqrt().ceil();
@@ -143,8 +146,8 @@ fn cool(discs: usize, seed: u64, variant: StepVariant) -> Result<RunReadings> {
     Ok(run.with([("exponent", exponent), ("time", 1.0 / slope(&roots) / expected)]))
 }
 
-/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
-/// lower end of the accepted band, published value, upper end | source.
+/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
+/// lower end of the band of values that agree, published value, upper end of the band | source.
 const PUBLISHED: &str = "
     exponent p of T = T₀ (1 + t/τ)^−p | 1.85 2 2.15 | exact: Haff 1983
     τ over that of kinetic theory | 0.9 1 1.1 | recalled: Enskog's collision rate, Henderson 1975, walls included

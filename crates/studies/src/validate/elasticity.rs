@@ -1,23 +1,25 @@
-//! Validates the apparent elasticity of Contact Dynamics with unsolved steps (T. Unger, L. Brendel, D. E. Wolf, J.
-//! Kertész, Phys. Rev. E 65, 061305, 2002).
+//! Validates the apparent elasticity of rigid discs in Contact Dynamics if the steps are not solved accurately (T.
+//! Unger, L. Brendel, D. E. Wolf, J. Kertész, Phys. Rev. E 65, 061305, 2002).
 //!
-//! Discs of mass m and diameter d form a row on a wall. A step of length Δt consists of N sweeps that start from the
-//! impulses of the previous step. Let v be the velocity of a long wave, and x the change of v in a step by the
-//! difference between the present impulses and the impulses at rest. Impulses with x = −v would end the motion. The
-//! sweeps multiply the distance of x from −v by a factor S. So with x' and v' after the step
+//! Discs of mass m and diameter d form a row on a wall. In each step of length Δt, the solver makes N sweeps that start
+//! from the impulses of the previous step. Consider a long wave along the row. Let v be the velocity amplitude of the
+//! discs, and x the change of v per step that the present impulses cause, compared with the impulses at rest. Impulses
+//! with x = −v would end the motion. The sweeps reduce the distance x + v from this solution by a factor S. So with x'
+//! and v' after the step
 //!
 //! > x' = −v + S (x + v),  v' = v + x' = S (x + v),
 //!
-//! which is a matrix with trace 2S and determinant S: a damped wave that decreases by √S and rotates by θ per step,
-//! with cos θ = √S. For a wave of wave number k, sweeps act as diffusion, S = exp(−q N (kd)²), with a coefficient q.
-//! For small kd this is the row of springs κ = q m N/Δt² and dashpots γ = q m N/Δt of Unger et al., with the wave speed
-//! c = √(qN) d/Δt and the decay rate 1/τ = q N (kd)²/2Δt. Period and damping therefore each determine q. The longest
-//! wave on n discs has kd = π/2n.
+//! which is a matrix with trace 2S and determinant S. Its solution is a damped wave whose amplitude is multiplied by √S
+//! in each step, and whose phase advances by θ per step, with cos θ = √S. On a wave of wave number k, sweeps act like
+//! diffusion, S = exp(−q N (kd)²), with a coefficient q. For small kd this wave is the wave on a row of springs with
+//! the stiffness κ = q m N/Δt² and dashpots with the coefficient γ = q m N/Δt, as found by Unger et al. Its propagation
+//! speed is c = √(qN) d/Δt and its decay rate 1/τ = q N (kd)²/2Δt. So q can be computed both from the period and from
+//! the damping of the wave. The longest wave on n discs has kd = π/2n.
 //!
-//! The value of q depends on the method. One parallel (Jacobi) sweep multiplies the wave by cos kd, so q = ½. With the
-//! mass splitting of `jacobi` it is half of this value, because a disc with two contacts is split in two. A chain has
-//! no loops, so every order of Gauss–Seidel that is the same in every sweep multiplies the wave by cos² kd (D. M. Young
-//! 1971), and q = 1.
+//! The value of q depends on the solver method. One parallel (Jacobi) sweep multiplies the wave by cos kd, so q = ½.
+//! The method `jacobi` of this program splits the mass of a disc among its contacts, which halves q, because a disc has
+//! two contacts. A row has no loops, so a sweep of Gauss–Seidel multiplies the wave by cos² kd if its order is the same
+//! in every sweep (D. M. Young 1971), and q = 1.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -40,23 +42,26 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// Time step, s. The number of steps per period does not depend on the time step. With a smaller value, the row sags
-/// less.
+/// Time step, s. The number of steps per period of the wave does not depend on the time step. With a smaller time step,
+/// the row sags less under gravity.
 const TIME_STEP_SECS: f64 = 1e-4;
-/// Gap below which discs count as touching, in diameters.
+/// Gap below which neighbouring discs of the row are in contact, in diameters.
 const TOUCHES_WITHIN: f64 = 1e-2;
-/// Number of periods to wait, until shorter waves have decayed, and number of periods to observe.
+/// Number of periods of the longest wave to wait until shorter waves have decayed, and number of periods in which the
+/// wave is then measured.
 const PERIODS: [f64; 2] = [1.0, 3.0];
 
-/// A solver method with the order in which its sweeps visit the contacts.
+/// A solver method, the order in which its sweeps visit the contacts, and the theoretical coefficient q with which its
+/// sweeps spread velocities like diffusion.
 #[derive(Clone, Copy, Debug)]
 struct SweepVariant {
     method: Method,
     ordering: Ordering,
-    /// Coefficient q: the diffusion of the velocities of a row per sweep, in units of d² (diameter squared). It is ½ if
-    /// all contacts are updated simultaneously, and half of this value with mass splitting, which splits discs with two
-    /// contacts in two. It is 1 for sweeps in a fixed order, because a row has no loops (D. M. Young 1971: each sweep
-    /// of Gauss–Seidel reduces an error as much as two of Jacobi).
+    /// Theoretical coefficient q of diffusion: one sweep spreads the velocities along a row of discs like diffusion,
+    /// with this coefficient in units of d² (diameter squared). It is ½ if all contacts are updated simultaneously
+    /// (Jacobi), and half of this value if the mass of a disc is split between its two contacts. It is 1 for
+    /// Gauss–Seidel sweeps whose order is the same in every sweep, because a row has no loops (D. M. Young 1971: each
+    /// sweep of Gauss–Seidel reduces an error as much as two of Jacobi).
     q: f64,
 }
 
@@ -87,12 +92,13 @@ fn cases(effort: Effort) -> Vec<ExperimentCase> {
     cases
 }
 
-/// Returns kd of the longest wave on a row: the wave number k times the diameter d.
+/// Returns the wave number k of the longest wave on a row of `discs` discs, times the diameter d.
 fn wave_number(discs: usize) -> f64 {
     FRAC_PI_2 / discs as f64
 }
 
-/// Returns the number of steps per period of the longest wave, as predicted from the coefficient q of diffusion.
+/// Returns the theoretical number of steps per period of the longest wave on a row of discs, computed from the solver
+/// method's diffusion coefficient q.
 fn period(variant: &SweepVariant, discs: usize, sweeps: u32) -> f64 {
     let shrinkage = (-variant.q * f64::from(sweeps) * wave_number(discs).powi(2)).exp();
     TAU / shrinkage.sqrt().acos()
@@ -102,7 +108,9 @@ fn steps(variant: &SweepVariant, discs: usize, sweeps: u32) -> f64 {
     (PERIODS[0] + PERIODS[1]) * period(variant, discs, sweeps)
 }
 
-/// Excites the longest wave of a row of discs, and measures the period of the wave and the coefficient q of diffusion.
+/// Simulates a row of discs that begins without contact impulses, so that gravity along the row excites the longest
+/// wave. Measures the period of the wave, and the solver method's diffusion coefficient q, once from the period and
+/// once from the damping.
 fn ring(variant: &SweepVariant, discs: usize, sweeps: u32) -> Result<RunReadings> {
     let mut scene = column_on_line(discs);
     scene.gap_tolerance = TOUCHES_WITHIN * scene.mean_diameter;
@@ -136,8 +144,8 @@ fn ring(variant: &SweepVariant, discs: usize, sweeps: u32) -> Result<RunReadings
     })
 }
 
-/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
-/// lower end of the accepted band, published value, upper end | source.
+/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
+/// lower end of the band of values that agree, published value, upper end of the band | source.
 const PUBLISHED: &str = "
     q of jacobi, from the period | 0.245 0.25 0.255 | derived: half of ½ by mass splitting
     q of jacobi, from the damping | 0.245 0.25 0.255 | derived: half of ½ by mass splitting

@@ -1,5 +1,5 @@
-//! Defines experiments. An experiment consists of cases to be computed, and of published quantities with which their
-//! results are compared.
+//! Defines experiments, which compare simulations with publications. An experiment consists of cases (runs to compute)
+//! and of published quantities with which the results are compared.
 
 use super::variants::StepVariant;
 use crate::error::Result;
@@ -13,9 +13,10 @@ pub(super) struct Experiment {
     /// Description of the experiment, with references.
     pub about: &'static str,
     pub cases: ExperimentCases,
-    /// Published quantities, one row each, in the form that [`PublishedQuantity::new`] parses.
+    /// Table of published quantities as text, one row per quantity, in the form that [`PublishedQuantity::new`] reads.
     pub published: &'static str,
-    /// Function that returns the measured values of each row, from the cases of one solver variant.
+    /// Function that computes, from the results of all cases with one solver variant, the measured values of each
+    /// published quantity, in the order of `published`.
     pub judge: fn(&Measurements) -> Vec<Measured>,
 }
 
@@ -25,19 +26,20 @@ impl Experiment {
     }
 }
 
-/// The cases of an experiment, for a quick or a full pass.
+/// Function that returns the cases (runs to compute) of an experiment, for a quick or a full pass.
 pub(super) enum ExperimentCases {
-    /// Cases that use solver methods of their own, whichever methods the user chooses.
+    /// The experiment prescribes the solver methods of its cases, and ignores the methods that the user chooses.
     Own(fn(Effort) -> Vec<ExperimentCase>),
-    /// Cases for each solver variant that the user chooses. The function returns no cases for a variant that the
-    /// experiment cannot use.
+    /// The cases are run with each solver variant that the user chooses. The function returns no cases for a variant
+    /// that the experiment cannot use.
     Chosen(fn(Effort, StepVariant) -> Vec<ExperimentCase>),
 }
 
 pub(super) struct ExperimentCase {
-    /// Parameters that distinguish this case from the other cases of the same experiment and solver variant.
+    /// Names and values of the parameters that distinguish this case from the other cases of the same experiment and
+    /// solver variant.
     pub at: Vec<(&'static str, f64)>,
-    /// Expected computing cost, in a unit that all cases share: grains times steps.
+    /// Expected computing time, in a unit that all cases share: number of grains times number of steps.
     pub cost: f64,
     pub run: Box<dyn Fn() -> Result<RunReadings> + Send + Sync>,
 }
@@ -52,7 +54,7 @@ impl ExperimentCase {
     }
 }
 
-/// Returns one case for each value and each seed, with the seeds from 1 to `seeds`.
+/// Returns one case (a run to compute) for each of `values` and each seed from 1 to `seeds`.
 pub(super) fn seeded<T: Copy>(
     values: &[T],
     seeds: u32,
@@ -62,16 +64,16 @@ pub(super) fn seeded<T: Copy>(
     values.iter().flat_map(of).map(|(value, seed)| case(value, seed)).collect()
 }
 
-/// Kind of source of a published number.
+/// Origin of a published number: how reliable it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SourceKind {
     /// The number was read in the source, or in a review that quotes the source.
     Read,
-    /// The number was recalled. Nobody has looked it up, so it gets no verdict.
+    /// The number was written down from memory. Nobody has looked it up, so it gets no verdict.
     Memory,
-    /// The number was derived for the scene, with approximations that the experiment names.
+    /// The number was derived from theory for the simulated scene, with approximations that the experiment names.
     Derived,
-    /// The number was derived for the scene, without approximations.
+    /// The number was derived from theory for the simulated scene, without approximations.
     Exact,
 }
 
@@ -88,14 +90,15 @@ impl SourceKind {
     }
 }
 
-/// Result of the comparison of a measured value with the published value.
+/// Verdict on a measured value: the result of its comparison with the published value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Agreement {
     Agrees,
     Differs,
-    /// The interval of the measured value is not fully inside or outside the band, or there is no value.
+    /// The confidence interval of the measured value is partly inside and partly outside the published band, or there
+    /// is no measured value.
     NotDecided,
-    /// The published number was recalled and not read.
+    /// The published number was written down from memory and has not been looked up.
     NoVerdict,
 }
 
@@ -110,19 +113,19 @@ impl Agreement {
     }
 }
 
-/// Values of a published quantity, measured by one solver variant: a description of the system, and one value per seed
-/// or run.
+/// Values of a published quantity, measured in simulations with one solver variant: a description of the simulated
+/// system, and one value per seed or run.
 pub(super) type Measured = (String, Vec<f64>);
 
-/// A published quantity, and its mean as measured by one solver variant.
+/// A published quantity, and its mean in simulations with one solver variant.
 #[derive(Clone, Debug)]
 pub(super) struct PublishedQuantity {
     pub name: &'static str,
     pub system: String,
     /// The published value, or the centre of the published values.
     pub published: f64,
-    /// Band of values that count as equal to the published value. Its width is the spread of published values, or the
-    /// uncertainty due to the experiment's size and its idealisations.
+    /// Band of values that agree with the published value: lower and upper end. Its width is the spread of published
+    /// values, or the uncertainty due to the size of the simulated system and its idealisations.
     pub band: [f64; 2],
     pub kind: SourceKind,
     /// Reference to the publication, or the derivation of the number.
@@ -131,9 +134,10 @@ pub(super) struct PublishedQuantity {
 }
 
 impl PublishedQuantity {
-    /// Parses a row of a table of published values: name | low end of the band, published value, high end | kind of
-    /// source: source. The interval of a `rank correlation` is limited to 1, because no correlation is larger. Returns
-    /// `None` if the row has another form.
+    /// Reads a row of a table of published values, and computes the mean of the measured `values`. The row has the
+    /// form: name | lower end of the band, published value, upper end | kind of source: source. The confidence interval
+    /// of a `rank correlation` is limited to −1 … 1, because a correlation cannot be larger. Returns `None` if the row
+    /// has another form.
     pub(super) fn new(row: &'static str, (system, values): Measured) -> Option<Self> {
         let mut cells = row.split(" | ").map(str::trim);
         let (name, numbers, (kind, source)) =
@@ -158,7 +162,7 @@ impl PublishedQuantity {
         (self.published != 0.0).then(|| (self.measured.mean / self.published - 1.0).abs())
     }
 
-    /// Returns the verdict that is valid if all runs succeeded.
+    /// Returns the verdict on the measured value, provided that all runs succeeded.
     pub(super) fn verdict(&self) -> Agreement {
         let (Mean { low, high, .. }, band) = (self.measured, self.band);
         if self.kind == SourceKind::Memory {

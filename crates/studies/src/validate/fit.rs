@@ -1,17 +1,18 @@
-//! Fits laws to measurements.
+//! Fits laws, such as a damped wave or a power law, to measured points.
 
 use crate::statistics::{mean, slope};
 
-/// A damped wave x_n = c rⁿ cos(nθ + φ), with the number n of the step, as described by its change per step.
+/// The change per step of a damped wave x_n = c rⁿ cos(nθ + φ), where n is the number of the step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DampedWave {
-    /// Angle θ by which the wave rotates per step, rad.
+    /// Angle θ by which the phase of the wave advances per step, rad.
     pub angle: f64,
     /// Factor r by which the amplitude of the wave changes per step.
     pub shrinkage: f64,
 }
 
-/// Fits a damped wave x_n = c rⁿ cos(nθ + φ) to evenly spaced values, by G. de Prony's recursion over `lag` = m values,
+/// Fits a damped wave x_n = c rⁿ cos(nθ + φ) to evenly spaced values. The fit uses G. de Prony's recursion between
+/// values at the distance `lag` = m,
 ///
 /// > x_{n+m} = 2 r^m cos(mθ) x_n − r^{2m} x_{n−m},
 ///
@@ -38,8 +39,8 @@ pub(super) fn damped_wave(values: &[f64], lag: usize) -> DampedWave {
 }
 
 /// Returns the power p and the time τ of the law y = y₀ (1 + t/τ)^−p that best fits points (t, y) in the logarithm of
-/// y. All y are positive, and t increases from 0. For a given τ the law is linear in ln(1 + t/τ), so the fit is a
-/// straight line.
+/// y. All y must be positive, and t must increase from 0. For a given τ, ln y is a linear function of ln(1 + t/τ), so p
+/// follows from a straight line; τ is searched.
 pub(super) fn cooling_law(points: &[(f64, f64)]) -> [f64; 2] {
     let line = |tau: f64| {
         let line: Vec<(f64, f64)> =
@@ -50,8 +51,8 @@ pub(super) fn cooling_law(points: &[(f64, f64)]) -> [f64; 2] {
     [-line(tau).0, tau]
 }
 
-/// Returns the number with the smallest misfit, on a geometric grid around a first guess. The grid is refined three
-/// times.
+/// Returns the number for which the function `misfit` is smallest, searched on a geometric grid around the first guess
+/// `guess`. The grid is refined three times.
 pub(super) fn nearest(guess: f64, misfit: impl Fn(f64) -> f64) -> f64 {
     let (mut best, mut ratio) = (guess, 1e3f64);
     for _ in 0..4 {
@@ -63,7 +64,8 @@ pub(super) fn nearest(guess: f64, misfit: impl Fn(f64) -> f64) -> f64 {
     best
 }
 
-/// Returns the slope of the least-squares line through points (x, y), and the remaining sum of squares.
+/// Returns the slope of the least-squares line through points (x, y), and the sum of the squared deviations of y from
+/// this line.
 pub(super) fn line_through(points: &[(f64, f64)]) -> (f64, f64) {
     let slope = slope(points);
     let (x_mean, y_mean) = middle(points);
@@ -71,13 +73,14 @@ pub(super) fn line_through(points: &[(f64, f64)]) -> (f64, f64) {
     (slope, points.iter().map(left).sum())
 }
 
-/// Returns the means of both coordinates of points (x, y). This point lies on the least-squares line.
+/// Returns the mean x and the mean y of points (x, y). The least-squares line passes through this mean point.
 pub(super) fn middle(points: &[(f64, f64)]) -> (f64, f64) {
     let mean = |of: fn(&(f64, f64)) -> f64| mean(&points.iter().map(of).collect::<Vec<_>>()).mean;
     (mean(|point| point.0), mean(|point| point.1))
 }
 
-/// Returns the power law that best fits points (x, y) in their logarithms: its exponent, and its value at x = 1.
+/// Returns the power law that best fits points (x, y) in the logarithms of x and y: its exponent, and its value at x =
+/// 1.
 pub(super) fn power_law(points: &[(f64, f64)]) -> (f64, f64) {
     let logarithms: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
     let exponent = slope(&logarithms);
@@ -85,8 +88,8 @@ pub(super) fn power_law(points: &[(f64, f64)]) -> (f64, f64) {
     (exponent, (y - exponent * x).exp())
 }
 
-/// Returns the rank correlation of two columns (C. Spearman 1904). Equal values share their mean rank. The result is
-/// NaN if a value is NaN, or if all values of a column are equal.
+/// Returns the rank correlation of x and y in pairs (x, y) (C. Spearman 1904). Equal values get their mean rank. The
+/// result is NaN if a value is NaN, or if all x or all y are equal.
 pub(super) fn rank_correlation(pairs: &[(f64, f64)]) -> f64 {
     // Twice the rank of each value, counted from the middle of the column.
     let ranks = |of: fn(&(f64, f64)) -> f64| -> Vec<f64> {

@@ -1,4 +1,5 @@
-//! Validates a narrow closed silo: the fraction of the weight that its walls carry (H. A. Janssen 1895).
+//! Validates a narrow closed silo: how much of the weight of the grains its bottom carries, and how much its walls (H.
+//! A. Janssen 1895).
 //!
 //! Consider grains of the bulk density ρ_b between two walls at a distance W, with the friction coefficient μ_w at the
 //! walls. Let the horizontal pressure be K times the vertical pressure p, and let the friction at the walls be fully
@@ -40,15 +41,16 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 const FRICTION: f64 = 0.5;
 /// Distance W between the walls, in diameters.
 const WIDTH: f64 = 8.0;
-/// Number of grains in a square whose side is the distance W between the walls, at a solid fraction of 0.82.
+/// Number of grains that fill a square, whose side is the distance W between the walls, at a solid fraction of 0.82.
 const GRAINS_OF_SQUARE: f64 = 1.04 * WIDTH * WIDTH;
-/// Distance by which the bottom is lowered, in diameters, and the fraction of this distance after which weighing
-/// begins.
+/// Distance by which the bottom of the silo is lowered, in diameters, and the fraction of this distance after which the
+/// load on the bottom is measured.
 const LOWERED: f64 = 0.5;
 const WEIGHED_FROM: f64 = 0.2;
-/// Speed of the bottom, in √(g d), with gravity g and diameter d.
+/// Speed with which the bottom of the silo is lowered, in √(g d), with gravity g and diameter d.
 const SPEED: f64 = 0.02;
-/// Heights of the fillings whose loads are compared, in units of the distance W between the walls.
+/// Two filling heights of the silo whose loads on the bottom are compared, in units of the distance W between the
+/// walls.
 const HIGH: f64 = 5.0;
 const HALF_AS_HIGH: f64 = 2.5;
 
@@ -96,21 +98,22 @@ fn weigh(grains: usize, seed: u64, variant: StepVariant) -> Result<RunReadings> 
     ]))
 }
 
-/// Returns the load on the bottom, N.
+/// Returns the vertical force between the grains and the bottom of the silo, N.
 fn on_bottom(simulation: &Simulation) -> f64 {
     let contacts = simulation.moment().contacts.into_iter();
     let of_bottom = contacts.filter(|contact| contact.other == OtherBody::Boundary(0));
     of_bottom.map(|contact| contact.force.y).sum()
 }
 
-/// Returns the fraction of the weight that the bottom carries, for a filling of height `heights`·λ with Janssen's
-/// length λ.
+/// Returns the fraction of the weight that the bottom of the silo carries according to Janssen. `heights` is the
+/// filling height divided by Janssen's length λ.
 fn share(heights: f64) -> f64 {
     -(-heights).exp_m1() / heights
 }
 
-/// Returns Janssen's length λ, fitted by least squares to the carried fractions at several heights, and the remaining
-/// root mean square deviation.
+/// Fits Janssen's law to points (filling height, fraction of the weight that the bottom carries) by least squares.
+/// Returns Janssen's length λ, in the unit of the heights, and the root mean square deviation of the fractions from the
+/// law.
 fn length_of(points: &[(f64, f64)]) -> [f64; 2] {
     let misfit = |length: f64| -> f64 {
         let square = |(height, found): &(f64, f64)| (found - share(height / length)).powi(2);
@@ -120,8 +123,8 @@ fn length_of(points: &[(f64, f64)]) -> [f64; 2] {
     [length, misfit(length)]
 }
 
-/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
-/// lower end of the accepted band, published value, upper end | source.
+/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
+/// lower end of the band of values that agree, published value, upper end of the band | source.
 const PUBLISHED: &str = "
     K of Janssen's λ = W/(2 μ_w K) | 0.35 0.7 1.1 | recalled: Janssen 1895; K of 0.4 … 1 for grains
     deviation of the share from Janssen's law, r.m.s. | 0 0.03 0.1 | recalled: Janssen 1895

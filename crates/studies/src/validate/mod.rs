@@ -1,15 +1,15 @@
-//! Compares simulations with published experiments. For chosen solver methods, time steps and efforts (numbers of
-//! sweeps or tolerances), it measures published quantities with confidence intervals, judges their agreement, and
-//! reports the cost.
+//! Compares simulations with published experiments. For each chosen solver method, time step and effort (number of
+//! sweeps or tolerance), it measures published quantities with confidence intervals, judges whether they agree with the
+//! publications, and reports the computing time.
 //!
 //! Each experiment has one file and one row in [`EXPERIMENTS`]. A verdict compares the whole measured interval with a
 //! band around the published value. The quantity agrees if the interval lies inside the band, differs if the interval
-//! lies outside the band, and is not decided otherwise. Published numbers that were recalled and not read are marked as
-//! such and have wide bands.
+//! lies outside the band, and is not decided otherwise. Published numbers that were written down from memory and not
+//! looked up are marked as such and have wide bands.
 //!
 //! The folder of results contains `report.md`, `quantities.csv`, a figure (`errors.png`, `.svg`, `.csv`), and the
-//! folder `measured/`. In that folder, each program and processor has its own journals of finished runs. So the same
-//! command resumes if it was stopped.
+//! folder `measured/`. In the latter, each build of the program and each processor has its own journals of finished
+//! runs. If a command is stopped, the same command resumes its work from these journals.
 
 mod cliff;
 mod cohesive_cooling;
@@ -46,7 +46,7 @@ use crate::output::print_text;
 use crate::sim::Stepper;
 use crate::solver::Method;
 
-/// All experiments, in the order of the report.
+/// All experiments (comparisons with publications), in the order of the report.
 static EXPERIMENTS: [Experiment; 12] = [
     elasticity::EXPERIMENT,
     cooling::EXPERIMENT,

@@ -1,9 +1,10 @@
-//! Validates static packings of discs: their solid fraction, coordination number, and distribution of forces.
+//! Validates static packings of discs: their solid fraction, coordination number, and distribution of contact forces.
 //!
-//! Discs fall through a medium into a box and come to rest. N supported discs, without rattlers, have 2N equations of
-//! balance without friction and 3N with friction. Frictionless rigid discs have exactly as many contacts as these
-//! equations need, N_c = 2N, so the number of contacts per disc is Z = 2N_c/N = 4. With friction a contact carries two
-//! force components, so the minimum is N_c = 3N/2, Z = 3. A contact with a wall counts like a contact between discs.
+//! Discs fall through a medium into a box and come to rest. Let N be the number of discs that carry forces, without
+//! rattlers (loose discs). Their equilibrium has 2N equations without friction and 3N with friction. Frictionless rigid
+//! discs have exactly as many contacts as equations, N_c = 2N, so the number of contacts per disc is Z = 2N_c/N = 4.
+//! With friction a contact carries two force components, so the smallest possible number of contacts is N_c = 3N/2, and
+//! Z = 3. A contact with a wall counts like a contact between discs.
 //!
 //! Forces are divided by the mean force at the same height, because in a box under gravity the mean grows with depth.
 
@@ -29,13 +30,14 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// Friction coefficient that represents the limit of infinite friction.
+/// Friction coefficient with which packings of discs with infinite friction are simulated approximately.
 const LARGE_FRICTION: f64 = 10.0;
-/// Fraction of the mean force above which a contact counts as bearing a force.
+/// Contact force above which a contact counts as bearing a force, as a fraction of the mean contact force.
 const BEARS_FROM: f64 = 1e-6;
-/// Distance from walls and surface within which grains are left out, in diameters.
+/// Distance from the walls and the surface of the packing within which grains are left out of the solid fraction, in
+/// diameters. Below the surface, twice this distance is left out.
 const MARGIN: f64 = 2.5;
-/// Height of the layers over which forces are averaged, in diameters.
+/// Height of the horizontal layers over which contact forces are averaged, in diameters.
 const LAYER: f64 = 3.0;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
@@ -82,7 +84,7 @@ fn pack(
     ]))
 }
 
-/// Returns the contacts that bear a force and do not involve a rattler, a grain that transmits no force.
+/// Returns the contacts that bear a force and in which neither body is a rattler (a loose grain).
 fn bearing<'a>(moment: &'a Moment, is_rattler: &[bool]) -> Vec<&'a ContactState> {
     let sum: f64 = moment.contacts.iter().map(|contact| contact.force.length()).sum();
     let least = BEARS_FROM * sum / moment.contacts.len() as f64;
@@ -97,8 +99,9 @@ fn bearing<'a>(moment: &'a Moment, is_rattler: &[bool]) -> Vec<&'a ContactState>
     moment.contacts.iter().filter(bears).collect()
 }
 
-/// Returns the constant β of the tail P(f) ∝ exp(−βf) of normal forces f above 1, where 1 is the mean at the same
-/// height. For an exponential tail the mean of f − 1 is 1/β.
+/// Returns the constant β of the exponential tail P(f) ∝ exp(−βf) in the distribution of the normal forces f. Forces
+/// are divided by the mean force at the same height, and the tail consists of the forces f > 1. For an exponential tail
+/// the mean of f − 1 is 1/β.
 fn tail(bearing: &[&ContactState]) -> f64 {
     let mut layers: BTreeMap<i64, Vec<f64>> = BTreeMap::new();
     for contact in bearing {
@@ -115,8 +118,8 @@ fn tail(bearing: &[&ContactState]) -> f64 {
     1.0 / mean(&beyond).mean
 }
 
-/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
-/// lower end of the accepted band, published value, upper end | source.
+/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
+/// lower end of the band of values that agree, published value, upper end of the band | source.
 const PUBLISHED: &str = "
     φ without friction | 0.82 0.84 0.86 | read: reported for nearly monodisperse discs
     Z without friction | 3.9 4 4.1 | read: 2D = 4: isostatic

@@ -1,4 +1,4 @@
-//! Presents the results of the comparison with experiments in words, as a table and as a figure.
+//! Presents the results of the comparison with publications in words, as a table and as a figure.
 
 use std::fmt::Write as _;
 
@@ -137,8 +137,8 @@ fn of_variant(runs: &ExperimentRuns) -> String {
     text
 }
 
-/// Draws two charts, the error and the speed, with one row for each experiment and one point in a row for each solver
-/// variant.
+/// Draws two charts: the error relative to published values, and the speed in simulated seconds per second. Each
+/// experiment has one row, and each solver variant one point in the row.
 pub(super) fn sheet(all: &[ExperimentRuns], machine: &str) -> Sheet {
     let variants = distinct(all.iter().filter_map(|runs| runs.variant));
     let names = distinct(all.iter().map(|runs| runs.experiment.name));
@@ -186,16 +186,17 @@ pub(super) fn sheet(all: &[ExperimentRuns], machine: &str) -> Sheet {
     Sheet { size: (1300, 120 + 46 * names.len() as u32), charts, caption }
 }
 
-/// Returns the mean relative error of the quantities of an experiment by one solver variant, limited to the range of
-/// the axis. The error is NaN if a quantity has no value, because the mean of the other quantities would be too
-/// favourable.
+/// Returns the relative error of one solver variant in an experiment: the mean over the experiment's quantities,
+/// limited to the range of the chart's axis. The error is NaN if a quantity has no measured value, because the mean of
+/// the other quantities would be too favourable.
 fn error(runs: &ExperimentRuns) -> f64 {
     let errors = runs.judged().into_iter().filter_map(|(quantity, _)| quantity.error());
     mean(&errors.collect::<Vec<_>>()).mean.clamp(LEAST_ERROR, MOST_ERROR)
 }
 
-/// Returns name, colour and style of a solver variant in the charts. There is one colour per method and time step.
-/// Numbers of sweeps are filled discs and tolerances are rings; the size grows with the effort.
+/// Returns the name, the colour and the style of a solver variant's points in the charts. There is one colour per
+/// method and time step. Variants with a number of sweeps are drawn as filled discs, variants with a tolerance as
+/// rings; each further effort (number of sweeps or tolerance) of a method has a larger symbol.
 fn look_of(variant: &StepVariant, variants: &[StepVariant]) -> (String, Rgb, Look) {
     let kinds = distinct(variants.iter().map(|one| (one.method, one.time_step_secs)));
     let kind = (variant.method, variant.time_step_secs);

@@ -1,5 +1,5 @@
-//! Validates slopes: the angle of the surface in a rotating drum, the angle at which a layer begins to flow, and the
-//! increase of both angles with cohesion.
+//! Validates slopes of grains: the angle of the surface in a rotating drum, the angle at which a layer on a tilted
+//! plane begins to flow, and the increase of both angles with cohesion.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -27,12 +27,12 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// Numbers that stand for the scenes drum and incline in the parameters of a case.
+/// Numbers that represent the two scenes, the drum and the tilted plane, among the parameters of a run.
 const DRUM: f64 = 0.0;
 const INCLINE: f64 = 1.0;
 /// Simulated time from which on the slope in the drum is measured, s. The drum has then turned by three radians.
 const STEADY_SECS: f64 = 1.5;
-/// Displacement above which the layer on the incline counts as flowing, in diameters.
+/// Displacement of the centre of mass along the tilted plane from which on a layer counts as flowing, in diameters.
 const FLOWN: f64 = 0.5;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
@@ -55,7 +55,8 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     cases
 }
 
-/// Returns the scene with the sizes of its grains in random order.
+/// Returns the scene after the radii of its grains have been exchanged at random, so that each seed gives another
+/// initial state.
 pub(super) fn shuffled(mut scene: Scene, seed: u64) -> Scene {
     let mut radii: Vec<f64> = scene.grains.iter().map(|grain| grain.radius).collect();
     radii.shuffle(&mut Pcg64::seed_from_u64(seed));
@@ -91,8 +92,8 @@ fn tilt(scene: &Scene) -> Result<RunReadings> {
     Ok(run.with([("angle", angle.to_degrees())]))
 }
 
-/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
-/// lower end of the accepted band, published value, upper end | source.
+/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
+/// lower end of the band of values that agree, published value, upper end of the band | source.
 const PUBLISHED: &str = "
     angle without cohesion, drum, degrees | 18 25 32 | recalled: slopes of discs with μ = 0.5: 20° … 30°
     rank correlation of angle and Bond, drum | 0.5 1 1 | recalled: it grows with cohesion

@@ -1,4 +1,4 @@
-//! Runs the experiments: every case of every experiment by every solver variant.
+//! Computes the runs of the experiments: every case of every experiment with every solver variant.
 
 use super::experiment::*;
 use super::variants::{SolveBudget, StepVariant};
@@ -7,7 +7,7 @@ use crate::harness::{Case, Runner, Threads};
 
 pub(super) struct ExperimentRuns {
     pub experiment: &'static Experiment,
-    /// Solver variant of the runs; `None` if the experiment uses methods of its own.
+    /// Solver variant of the runs; `None` if the experiment prescribes its solver methods.
     pub variant: Option<StepVariant>,
     pub cases: Vec<MeasuredCase>,
 }
@@ -17,8 +17,8 @@ impl ExperimentRuns {
         words(self.variant)
     }
 
-    /// Returns the reason why no verdict is possible, if there is one: some runs failed, and the remaining runs are not
-    /// a fair sample.
+    /// Returns the reason why no verdict is possible, in words: some runs failed, so the remaining runs are not a fair
+    /// sample. Returns `None` if no run failed.
     pub(super) fn spoilt(&self) -> Option<String> {
         let blew_up = self.cases.iter().filter(|case| case.run.blew_up).count();
         let lost = self.cases.iter().filter(|case| case.run.lost_grains > 0).count();
@@ -43,7 +43,8 @@ impl ExperimentRuns {
         self.experiment.rows().zip((self.experiment.judge)(&sound)).filter_map(judge).collect()
     }
 
-    /// True if the steps have no tolerance, but only a maximum number of sweeps.
+    /// True if the steps of these runs are not solved to a tolerance: the solver makes a given number of sweeps, or the
+    /// stepper has no tolerance.
     pub(super) fn has_sweeps_alone(&self) -> bool {
         self.variant.is_none_or(|StepVariant { stepper, budget, .. }| {
             !stepper.reads("solver") || matches!(budget, SolveBudget::Sweeps(_))
@@ -59,7 +60,7 @@ impl ExperimentRuns {
         simulated / self.wall_secs()
     }
 
-    /// Returns the fraction of steps that missed their tolerance.
+    /// Returns the fraction of the steps of all runs that were not solved to their tolerance.
     pub(super) fn unsolved(&self) -> f64 {
         let sum = |number: fn(&RunReadings) -> u64| {
             self.cases.iter().map(|case| number(&case.run)).sum::<u64>() as f64
@@ -72,7 +73,8 @@ fn words(variant: Option<StepVariant>) -> String {
     variant.map_or("methods of its own".to_owned(), |variant| variant.words())
 }
 
-/// Runs the cases that are not finished, and returns the runs of all cases in the order of the report.
+/// Computes the runs of `experiments` with every one of `variants`, except runs that are already finished. Returns all
+/// runs in the order of the report.
 pub(super) fn run_all(
     experiments: &[&'static Experiment],
     variants: &[StepVariant],

@@ -1,18 +1,19 @@
-//! Validates plane shear: friction and solid fraction, as functions of the inertial number, of grains between two rough
-//! plates. One plate moves along the layer under a constant pressure.
+//! Validates plane shear of a layer of grains between two rough plates, one of which moves along the layer under a
+//! constant pressure. Measures the friction and the solid fraction of the layer as functions of the inertial number.
 //!
-//! Rigid grains of mass m in a plane have no intrinsic time. The effect of a shear rate γ̇ under the pressure P, a
-//! force per length, therefore only depends on the inertial number I = γ̇ √(m/P). In the published definition γ̇ d
-//! √(ρ_g/P) with the diameter d, the density ρ_g refers to the disc's bounding square or to the disc itself, which
-//! makes a factor of up to 2/√π = 1.13 in I. The band of the slopes includes this factor.
+//! Rigid grains have no time scale of their own. The flow of grains of mass m in a plane, at the shear rate γ̇ and
+//! under the pressure P (a force per length), therefore only depends on the inertial number I = γ̇ √(m/P). In the
+//! published definition γ̇ d √(ρ_g/P) with the diameter d, the density ρ_g refers either to the disc itself or to its
+//! bounding square, which changes I by a factor of up to 2/√π = 1.13. The bands of the published slopes include this
+//! uncertainty.
 //!
 //! The shear rate γ̇ is the slope of the velocity over the height, away from the plates, where grains slip. The
 //! tangential force T and the normal force N are means over both plates.
 //!
-//! A transient in a layer of height H decays over a shear of (H/d)² I²/(π² T/N) heights, because momentum is
-//! transferred by the shear stress (T/N) P. This is eleven to eighteen heights at H = 37 d and I = 0.2. Layers
-//! therefore begin with the expected linear profile of velocity from plate to plate, and are sheared for three decay
-//! lengths before the measurement. Both plates must exert the same force, which checks that the flow is steady.
+//! A transient in a layer of height H decays while the plate moves by (H/d)² I²/(π² T/N) heights, because momentum is
+//! transferred by the shear stress (T/N) P. This is eleven to eighteen heights at H = 37 d and I = 0.2. Runs therefore
+//! begin with the expected linear velocity profile from plate to plate, and layers are sheared over three such decay
+//! lengths before the measurement. In a steady flow both plates exert the same force on the layer, which is checked.
 
 use std::f64::consts::PI;
 
@@ -47,24 +48,27 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 
 const FRICTION: f64 = 0.4;
 const RESTITUTION: f64 = 0.1;
-/// Pressure P, in m g/d, with mass m and diameter d of a grain and gravity g. √(m/P) is then 0.03 s.
+/// Pressure P on the layer, in m g/d, with mass m and diameter d of a grain and gravity g. The time √(m/P) in the
+/// inertial number is then 0.03 s.
 pub(super) const PRESSURE: f64 = 1.0;
 /// Approximate solid fraction of the layers, from which their height is computed.
 const DENSE: f64 = 0.79;
-/// Time in which the plate compresses the loose grains, s.
+/// Time at the start of a run in which the plate compresses the loose grains, s. The shear of the layer is counted from
+/// its end.
 const PRESSING_SECS: f64 = 0.5;
-/// Least shear of a layer before the measurement, and shear during the measurement: displacement of the plate divided
-/// by the height of the layer.
+/// Least shear of a layer before the measurement, and shear during the measurement. Shear is the displacement of the
+/// plate divided by the height of the layer.
 const STRAINS: [f64; 2] = [1.5, 3.0];
-/// Additional shear of a layer before the measurement, as a multiple of the shear over which a transient decays. That
-/// shear is computed with [`SLOWEST`].
+/// Additional shear of a layer before the measurement (displacement of the plate divided by the height of the layer),
+/// as a multiple of the shear over which a transient decays.
 const TIMES_TO_STEADY: f64 = 3.0;
-/// Friction T/N of a layer in which a transient decays slowly: tangential force divided by normal force.
+/// Friction T/N of a layer (tangential force divided by normal force) with which the decay of transients is computed.
 const SLOWEST: f64 = 0.4;
 const MOMENTS: u32 = 250;
-/// Number of moments from one measurement of the solid fraction to the next.
+/// The solid fraction is computed at every fifth time at which forces and shear rate are measured, because its
+/// computation takes longer.
 const MOMENTS_OF_CELLS: u32 = 5;
-/// Distance from a plate within which grains are left out, in diameters.
+/// Distance from a plate within which grains are left out of the measurements, in diameters.
 const MARGIN: f64 = 2.5;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
@@ -80,24 +84,25 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     layers(effort, variant, &speeds.iter().map(layer).collect::<Vec<_>>())
 }
 
-/// Parameters of a sheared layer.
+/// Parameters of a sheared layer of grains.
 #[derive(Clone, Debug)]
 pub(super) struct LayerKind {
-    /// Parameters by which the cases of this layer are identified.
+    /// Names and values of the parameters that identify this layer among the layers of an experiment.
     pub at: Vec<(&'static str, f64)>,
-    /// Nominal inertial number I.
+    /// Nominal inertial number I = γ̇ √(m/P), with the shear rate γ̇, the mass m of a grain and the pressure P. The
+    /// measured value differs a little.
     pub inertial: f64,
     /// Bond number.
     pub bond: f64,
-    /// Work that slowly breaks a bond, in m (γ̇ d)², with mass m, diameter d and shear rate γ̇; `None` for the work
-    /// that follows from the stepper's own parameters.
+    /// Prescribed work that slowly breaks a bond, in m (γ̇ d)², with mass m and diameter d of a grain and shear rate
+    /// γ̇; `None` to leave the stepper's parameters unchanged.
     pub breaking_energy: Option<f64>,
-    /// Friction cone, and touch tolerance in diameters d; `None` for the defaults.
+    /// Friction cone, and touch tolerance (the gap up to which contacts pull) in diameters d; `None` for the defaults.
     pub bounds: Option<(FrictionCone, f64)>,
 }
 
-/// Returns the cases of sheared layers. There are no cases if the stepper or the solver does not support walls that a
-/// force drives.
+/// Returns the cases (runs to compute) of sheared layers with one solver variant. There are no cases if the stepper or
+/// the solver does not support walls that are driven by a force.
 pub(super) fn layers(
     effort: Effort,
     variant: StepVariant,
@@ -146,8 +151,8 @@ impl ShearedLayer {
         self.kind.inertial / inertial_secs()
     }
 
-    /// Returns the shear until the flow is steady: displacement of the plate divided by the height of the layer. The
-    /// comment of the module gives the formula.
+    /// Returns the shear (displacement of the plate divided by the height of the layer) after which the flow counts as
+    /// steady. The comment of the module derives the formula.
     fn strains_to_steady(&self) -> f64 {
         let times = (self.height() * self.kind.inertial).powi(2) / (PI * PI * SLOWEST);
         STRAINS[0] + TIMES_TO_STEADY * times
@@ -176,7 +181,7 @@ impl ShearedLayer {
         scene
     }
 
-    /// Shears the layer until its flow is steady, and then measures the layer.
+    /// Shears the layer until its flow is steady, and then measures inertial number, friction and solid fraction.
     fn run(&self, variant: StepVariant) -> Result<RunReadings> {
         let mut run = WatchedRun::start(&self.scene(variant))?;
         let begin_secs = PRESSING_SECS + self.strains_to_steady() / self.rate();
@@ -206,7 +211,7 @@ impl ShearedLayer {
     }
 }
 
-/// Returns the time √(m/P) of a grain of mass m under the pressure P, s.
+/// Returns the time √(m/P) in the inertial number, s, with the mass m of a grain and the pressure P.
 fn inertial_secs() -> f64 {
     (DIAMETER / (GRAVITY * PRESSURE)).sqrt()
 }
@@ -222,13 +227,14 @@ fn on_plates(moment: &Moment, of_plate: u32) -> [DVec2; 2] {
     [on(false), on(true)]
 }
 
-/// Returns the two heights between which a layer is measured, m.
+/// Returns the lower and the upper height between which shear rate and solid fraction of a layer are measured, m.
 fn inside(moment: &Moment) -> [f64; 2] {
     let top = moment.surroundings.fixed_discs.iter().map(|disc| disc.position.y);
     [MARGIN * DIAMETER, top.fold(0.0, f64::max) - MARGIN * DIAMETER]
 }
 
-/// Returns the shear rate γ̇ of a layer, 1/s: the slope of the velocity over the height.
+/// Returns the measured shear rate γ̇ of a layer, 1/s: the slope of the grains' velocity along the layer over their
+/// height.
 fn rate(moment: &Moment) -> f64 {
     let [low, high] = inside(moment);
     let grains = moment.grains.iter().filter(|grain| (low..high).contains(&grain.position.y));
@@ -237,8 +243,8 @@ fn rate(moment: &Moment) -> f64 {
     slope(&points)
 }
 
-/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
-/// lower end of the accepted band, published value, upper end | source.
+/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
+/// lower end of the band of values that agree, published value, upper end of the band | source.
 const PUBLISHED: &str = "
     T/N, extended to I = 0 | 0.2 0.25 0.32 | recalled: da Cruz et al. 2005: 0.25
     slope of T/N in I | 0.6 1.1 1.6 | recalled: da Cruz et al. 2005: 1.1
@@ -264,8 +270,8 @@ fn judge(all: &Measurements) -> Vec<Measured> {
     values.map(|values| (system.clone(), values)).collect()
 }
 
-/// Returns the relative difference between the forces of the upper and the lower plate, in the layers with the largest
-/// value of a parameter. The difference is not 0 while one plate still accelerates the flow.
+/// Returns the relative difference between the tangential forces of the two plates, for each layer with the largest
+/// value of the parameter `name`. The difference is not 0 while one plate still accelerates the flow.
 pub(super) fn imbalances(all: &Measurements, name: &str) -> Vec<f64> {
     let most = all.values(name).last().copied().unwrap_or(f64::NAN);
     all.with(name, most).readings("imbalance")
@@ -279,8 +285,9 @@ mod tests {
     use crate::sim::Stepper;
     use crate::solver::Method;
 
-    /// Checks that breaking a bond takes the prescribed energy E. Under `range` E = η (δ_c/d)/I², with η = Bond/(2P),
-    /// the debonding distance δ_c, the diameter d and the inertial number I.
+    /// Checks that breaking a bond takes the prescribed work, and that the debonding distance δ_c of the stepper
+    /// `range` then gives the expected dimensionless energy E = η (δ_c/d)/I², with the cohesion η = Bond/(2P), the
+    /// pressure P in m g/d, the diameter d and the inertial number I.
     #[test]
     fn a_bond_takes_the_energy_that_its_layer_asks_for() {
         let (bond, energy, inertial) = (6.0, 3.0, 0.08);

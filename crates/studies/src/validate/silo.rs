@@ -29,15 +29,16 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 };
 
 const FRICTION: f64 = 0.5;
-/// Discharged mass fractions at which the measurement begins and ends.
+/// Discharged fractions of the total mass at which the measurement of the discharge rate begins and ends.
 const OUT: [f64; 2] = [0.08, 0.4];
-/// Simulated time at which the plate below the orifice falls, s.
+/// Simulated time at which the plate that closes the orifice is removed, s.
 const RELEASE_SECS: f64 = 0.02;
-/// Width of the orifice in the test with stronger gravity, in diameters, and the factor of gravity.
+/// Width of the orifice in the test with stronger gravity, in diameters, and the factor by which gravity is increased
+/// in this test.
 const OF_GRAVITY: f64 = 8.0;
 const TIMES_GRAVITY: f64 = 4.0;
-/// Value of the constant k that the test of the exponent assumes in the law Q ∝ (W − k d)^{3/2}, with the discharge
-/// rate Q, the width W of the orifice and the diameter d.
+/// Value of the constant k in the law Q ∝ (W − k d)^{3/2} that is assumed when the exponent 3/2 is measured. Q is the
+/// discharge rate, W the width of the orifice and d the diameter.
 const TAKEN_K: f64 = 1.4;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
@@ -99,8 +100,8 @@ fn discharge(
     Ok(run.with([("rate", rate / unit)]))
 }
 
-/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
-/// lower end of the accepted band, published value, upper end | source.
+/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
+/// lower end of the band of values that agree, published value, upper end of the band | source.
 const PUBLISHED: &str = "
     k of (W − k d) | 0.8 1.4 2 | recalled: Beverloo et al. 1961: 1.3 … 1.5
     exponent of Q in W − 1.4 d | 1.3 1.5 1.7 | recalled: Beverloo et al. 1961 in the plane: 1.5

@@ -5,11 +5,11 @@ use crate::scene::stability::DIAMETER;
 use crate::sim::GrainState;
 use crate::statistics::mean;
 
-/// Horizontal distance between two points of the surface, in diameters.
+/// Horizontal distance between neighbouring points at which the height of the surface is measured, in diameters.
 const SPACING: f64 = 0.5;
 
-/// Returns the heights of the surface, in diameters, at points half a diameter apart. The points extend from the middle
-/// to both sides, as far as there are discs below.
+/// Returns the heights of the upper surface of a heap, in diameters, at points half a diameter apart, from left to
+/// right. The points extend from x = 0 to both sides, as far as there are discs below them.
 pub(super) fn profile(grains: &[GrainState]) -> Vec<f64> {
     let above = |x: f64| {
         let arcs = grains.iter().filter_map(|grain| {
@@ -28,10 +28,10 @@ pub(super) fn profile(grains: &[GrainState]) -> Vec<f64> {
     heights
 }
 
-/// Returns the roughness of a profile, in diameters: the root mean square deviation from the least-squares line in
-/// windows of `window` diameters. The roughness is NaN if the profile is shorter than a window. For a self-affine
-/// profile it grows as a power of the window (J. Schmittbuhl, J.-P. Vilotte, S. Roux, Phys. Rev. E 51, 131, 1995,
-/// "variable bandwidth").
+/// Returns the roughness of a surface with these heights, in diameters: the root mean square deviation of the heights
+/// from the least-squares line within windows of the width `window` (diameters), averaged over all windows. The
+/// roughness is NaN if the surface is shorter than a window. For a self-affine surface it grows as a power of the
+/// window's width (J. Schmittbuhl, J.-P. Vilotte, S. Roux, Phys. Rev. E 51, 131, 1995, "variable bandwidth").
 pub(super) fn roughness(heights: &[f64], window: f64) -> f64 {
     let count = (window / SPACING).round() as usize + 1;
     let squares: Vec<f64> = heights
@@ -64,7 +64,8 @@ mod tests {
         assert!(roughness(&slope[..5], 10.0).is_nan());
     }
 
-    /// Checks the exponent of the roughness of a random walk, which is self-affine with the exponent ½.
+    /// Checks that the roughness of a random walk grows with the square root of the window's width. A random walk is
+    /// self-affine with the exponent ½.
     #[test]
     fn a_random_walk_is_rougher_by_the_root_of_the_window() {
         use rand::{RngExt, SeedableRng};

@@ -1,4 +1,5 @@
-//! Lists the solver variants of experiments: solver methods, each with every time step and every effort.
+//! Lists the solver variants with which experiments are run: every chosen solver method, with every time step and every
+//! effort (number of sweeps or tolerance).
 
 use std::fmt::{Debug, Display};
 
@@ -7,17 +8,17 @@ use crate::scene::Scene;
 use crate::sim::Stepper;
 use crate::solver::{Method, SolverSettings};
 
-/// Largest number of sweeps per step if a step is solved to a residual.
+/// Largest number of sweeps per step if the steps are solved to a tolerance of the residual.
 const MOST_SWEEPS: u32 = 1_000;
 
-/// Default efforts (numbers of sweeps per step) of a solver method other than `auto`.
+/// Default efforts (numbers of sweeps per step) of solver methods other than `auto`, if the user gives no efforts.
 const UNASKED: [SolveBudget; 2] = [SolveBudget::Sweeps(20), SolveBudget::Sweeps(100)];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SolveBudget {
-    /// Makes a fixed number of sweeps per step, without a limit of the residual.
+    /// Makes this number of sweeps in each step, whatever the residual is.
     Sweeps(u32),
-    /// Solves each step to this residual, with at most [`MOST_SWEEPS`] sweeps.
+    /// Makes sweeps until the residual is at most this value, but at most [`MOST_SWEEPS`] sweeps per step.
     Residual(f64),
     /// Solves each step to the default tolerance of the estimated velocity error.
     Default,
@@ -71,8 +72,8 @@ impl StepVariant {
     }
 }
 
-/// Returns the variants of every requested solver method with every requested time step and effort. An empty list
-/// stands for the defaults.
+/// Returns one variant for each combination of a solver method, a time step and an effort (number of sweeps or
+/// tolerance) that the user chooses. An empty list stands for the defaults.
 ///
 /// # Errors
 /// If a value is outside its range, is given twice, or is not used by the stepper. The error names the first such

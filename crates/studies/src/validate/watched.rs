@@ -14,14 +14,17 @@ use crate::scene::stability::DIAMETER;
 use crate::sim::{Moment, Simulation, Tally};
 use crate::world::{Boundary, Grain};
 
-/// Relative spread of diameters, which are uniform in d·[1 − SPREAD, 1 + SPREAD] with the mean diameter d.
+/// Relative spread of the diameters, which are distributed uniformly in d·[1 − SPREAD, 1 + SPREAD] with the mean
+/// diameter d.
 const SPREAD: f64 = 0.2;
-/// Terminal speed of discs that fall through a medium, in √(g d), with gravity g and mean diameter d.
+/// Terminal speed of discs that fall through a viscous medium to form an initial state, in √(g d), with gravity g and
+/// mean diameter d.
 const TERMINAL_SPEED: f64 = 0.5;
-/// Mean kinetic energy below which discs count as at rest, in m g d (weight of a disc times mean diameter).
+/// Mean kinetic energy of a disc below which the discs count as at rest, in m g d (weight of a disc times mean
+/// diameter).
 const REST_ENERGY: f64 = 1e-8;
 
-/// A run in progress, with the sums over its steps so far.
+/// A run in progress, with statistics of its steps so far.
 pub(super) struct WatchedRun {
     pub simulation: Simulation,
     tally: Tally,
@@ -32,7 +35,7 @@ impl WatchedRun {
         Ok(Self { simulation: scene.simulation()?, tally: Tally::default() })
     }
 
-    /// Computes steps until a simulated time (s), and calls `after` after each step.
+    /// Computes steps until the simulated time `secs` (s), and calls `after` after each step.
     pub(super) fn run_until(
         &mut self,
         secs: f64,
@@ -46,7 +49,7 @@ impl WatchedRun {
         Ok(())
     }
 
-    /// Returns the result of the run, with the given readings (named numbers).
+    /// Returns the result of the run: the given measured numbers with their names, and statistics of the run's steps.
     pub(super) fn with<const COUNT: usize>(&self, readings: [(&str, f64); COUNT]) -> RunReadings {
         RunReadings {
             readings: named(readings),
@@ -59,8 +62,9 @@ impl WatchedRun {
     }
 }
 
-/// Lets the discs of a scene fall through a medium for the time that the highest disc needs. Then the medium is
-/// removed, and the run continues until the discs are at rest, or for the same time again.
+/// Lets the discs of a scene fall through a viscous medium for the time that the highest disc needs to reach the
+/// bottom. Then the medium is removed, and the run continues until the discs are at rest, but at most for the same time
+/// again.
 pub(super) fn settled(scene: &Scene) -> Result<WatchedRun> {
     let mut run = WatchedRun::start(scene)?;
     let world = run.simulation.world();
@@ -81,7 +85,7 @@ pub(super) fn settled(scene: &Scene) -> Result<WatchedRun> {
     Ok(run)
 }
 
-/// Returns the grains of a run at their present positions, at rest.
+/// Returns the grains of a run at their present positions, with all velocities 0.
 pub(super) fn at_rest(run: &WatchedRun) -> Vec<Grain> {
     let grains = &run.simulation.world().grains;
     let rest = |index| {
@@ -91,7 +95,8 @@ pub(super) fn at_rest(run: &WatchedRun) -> Vec<Grain> {
     (0..grains.len()).map(rest).collect()
 }
 
-/// Returns a wall: a half-space whose boundary goes through the point (x, y), in diameters.
+/// Returns a wall: a half-space whose boundary goes through the point (x, y), in diameters. `normal` points out of the
+/// wall.
 pub(super) fn wall(x: f64, y: f64, normal: DVec2) -> Boundary {
     Boundary::HalfSpace { point: DIAMETER * DVec2::new(x, y), normal }
 }
@@ -102,8 +107,8 @@ pub(super) fn open_box(width: f64) -> Vec<Boundary> {
     vec![wall(0.0, 0.0, DVec2::Y), wall(-half, 0.0, DVec2::X), wall(half, 0.0, -DVec2::X)]
 }
 
-/// Returns discs of random sizes on a randomly disturbed lattice, row by row from below, in the middle of a box that is
-/// open above and `width` diameters wide.
+/// Returns discs of random sizes for a box that is open above and `width` diameters wide. The discs fill the box row by
+/// row from below, without contacts, on a randomly disturbed lattice.
 pub(super) fn loose(count: usize, width: f64, seed: u64) -> Vec<Grain> {
     let spacing = 1.05 * (1.0 + SPREAD);
     let columns = (width / spacing).floor().max(1.0);
@@ -120,7 +125,7 @@ pub(super) fn loose(count: usize, width: f64, seed: u64) -> Vec<Grain> {
     (0..count).map(place).collect()
 }
 
-/// Returns the mean kinetic energy of a disc, in m g d (weight of a disc times mean diameter).
+/// Returns the mean kinetic energy of a disc in the present state, in m g d (weight of a disc times mean diameter).
 pub(super) fn mean_energy(simulation: &Simulation) -> f64 {
     let world = simulation.world();
     let mass: f64 = world.grains.masses.iter().sum();
@@ -135,7 +140,8 @@ pub(super) fn centre_of_mass(simulation: &Simulation) -> DVec2 {
     pairs.map(|(mass, place)| *mass * *place).sum::<DVec2>() / mass
 }
 
-/// Returns the solid fraction of the cells of those grains whose centres are inside a region.
+/// Returns the solid fraction in a region: the total area of those grains whose centres are in the region, divided by
+/// the total area of their cells (the cell of a grain is the region nearer to it than to any other grain).
 pub(super) fn solid_fraction(moment: &Moment, is_inside: impl Fn(DVec2) -> bool) -> f64 {
     let (mut discs, mut cells) = (0.0, 0.0);
     for (grain, measures) in moment.grains.iter().zip(&measure(moment).grains) {

@@ -1,10 +1,11 @@
-//! Validates the friction of a sheared layer with weak cohesion, η = C₀/(P d) = 1, with different friction cones and
-//! touch tolerances. C₀ is the cohesion force, P the pressure and d the diameter.
+//! Validates the friction of a sheared layer of grains with weak cohesion, η = C₀/(P d) = 1, for different friction
+//! cones and touch tolerances (gaps up to which contacts pull). C₀ is the cohesion force, P the pressure and d the
+//! diameter.
 //!
-//! `validate::cohesive_shear` finds more friction at η = 1 than without cohesion. Three causes are possible. The
+//! `validate::cohesive_shear` finds more friction at η = 1 than without cohesion. Three causes are possible. First, the
 //! shifted cone bounds friction by μ(N + C₀) with the normal force N, so that sliding contacts bear up to μC₀ more.
-//! Cohesion at touch tolerance 0 ends within one step, and so depends on Δt. A larger touch tolerance lets open
-//! contacts pull, and bear friction in the shifted cone.
+//! Second, at touch tolerance 0 cohesion acts within one step only, so its effect depends on Δt. Third, with a larger
+//! touch tolerance, contacts that are slightly open pull, and in the shifted cone they also bear friction.
 
 use super::cohesive_shear::{INERTIAL, WEAK};
 use super::experiment::*;
@@ -24,7 +25,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// Friction cones and touch tolerances, in diameters d.
+/// Compared friction cones, each with a touch tolerance (the gap up to which contacts pull) in diameters d.
 const BOUNDS: [(FrictionCone, f64); 4] = [
     (FrictionCone::Shifted, 0.0),
     (FrictionCone::Compressive, 0.0),
@@ -48,8 +49,9 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     layers(effort, variant, &kinds)
 }
 
-/// Published values with which the results are compared. Each row is for one quantity that [`judge`] measures: name |
-/// lower end of the accepted band, published value, upper end | source. The rows are in the order of [`BOUNDS`].
+/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
+/// lower end of the band of values that agree, published value, upper end of the band | source. The rows are in the
+/// order of [`BOUNDS`].
 const PUBLISHED: &str = "
     T/N over that without cohesion, shifted cone, tolerance 0 \
         | 0.85 1 1.2 | recalled: Rognon et al. 2006: weak cohesion leaves it

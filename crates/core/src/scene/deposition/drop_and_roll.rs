@@ -1,11 +1,12 @@
 //! Drop and roll: a quick method to generate a pile.
 //!
 //! Discs are dropped one by one, and each rolls until two other bodies support it ([`dropped`]). Almost all grains of
-//! this packing are in stable positions, because each of the two supports carries the weight of one side. Only the
-//! contact forces are missing. They spread by about one layer per sweep, so the pile first oscillates up and down as
-//! a whole, for a number of steps that grows with the number of its layers. A medium damps this motion. With less
-//! damping the pile keeps oscillating, and with more it creeps. Then the medium becomes thin, so that grains that
-//! have lost their supports can fall. The medium is removed before the pile counts as at rest.
+//! this packing are in stable positions, with one support on either side of the grain's centre. Only the contact
+//! forces are missing when the simulation begins. They spread by about one layer of grains per sweep of the solver, so
+//! the pile first oscillates up and down as a whole, for a number of steps that grows with the number of its layers. A
+//! medium, which reduces all velocities in each step, damps this motion. With less damping the pile keeps oscillating,
+//! and with more it creeps. When the pile no longer oscillates, the medium becomes thin, so that grains that have lost
+//! their supports can fall. The medium is removed before the pile counts as at rest.
 
 use glam::DVec2;
 use rand::{RngExt, SeedableRng};
@@ -23,49 +24,52 @@ use crate::sim::Simulation;
 use crate::solver::SolverSettings;
 use crate::world::{Disc, Grain, Parameters};
 
-/// Number of random positions that are tried for each disc. The disc takes the position at which it comes to rest
-/// lowest. With one trial, the deposit has slopes that avalanche for many steps when the simulation begins. More than
-/// a few trials change little.
+/// Number of random drop positions that are tried for each disc. Of these, the disc takes the one at which it comes to
+/// rest lowest. With one trial, the deposit has slopes that avalanche for many steps when the simulation begins. More
+/// than a few trials change little.
 const TRIES: usize = 4;
-/// Fraction of its height by which a pile is compressed before it settles, so that all contacts touch. With a smaller
-/// fraction, the errors of the first steps (gΔt² = 8e-5 d) open contacts. With a larger fraction, the remaining
-/// overlaps are larger.
+/// Fraction of the height by which a pile is compressed before it settles, so that all contacts touch. With a smaller
+/// fraction, the errors of the first steps (gΔt² = 8e-5 d) open contacts. With a larger fraction, the overlaps that
+/// remain at rest are larger.
 const PRESSED: f64 = 2e-4;
-/// Time step while the pile settles, s. It stays constant. A longer time step later would open the contacts again,
-/// because the errors of a step are proportional to the square of its length and would exceed the overlaps.
+/// Time step while the pile settles, s. It stays constant. If it were made longer when the pile is nearly at rest,
+/// contacts would open again, because the position errors of a step are proportional to the square of its length and
+/// would exceed the overlaps.
 const TIME_STEP_SECS: f64 = 2e-4;
-/// Largest number of sweeps per step. Many steps, each of which starts from the forces of the previous step, help the
-/// pile more than many sweeps in each step.
+/// Largest number of sweeps of the solver per step. Many steps, each of which starts from the contact forces of the
+/// previous step, bring the pile to rest faster than many sweeps in each step.
 const SWEEPS: u32 = 20;
-/// Relative change of the impulses in a sweep at which the solve of a step stops.
+/// Tolerance of the solver: the solve of a step stops when a sweep changes the contact impulses by less than this,
+/// relative to their size.
 const TOLERANCE: f64 = 1e-7;
-/// Fraction of the velocities that the thick medium removes per step, times the number of layers: twice the frequency
-/// of the slowest oscillation. With half of this value the pile oscillates, and with twice the value it creeps. Both
-/// double the time to settle.
+/// Damping by the thick medium: the fraction by which it reduces all velocities per step, multiplied by the number of
+/// layers of grains in the pile. The value is twice the frequency of the slowest oscillation. With half of this value
+/// the pile oscillates, and with twice the value it creeps. Both double the time to settle.
 const DAMPING_BY_LAYERS: f64 = 7.0;
-/// Largest fraction of the velocities that the medium removes per step.
+/// Largest fraction by which the thick medium reduces the velocities per step, however few layers the pile has.
 const MOST_DAMPING: f64 = 0.2;
 /// Median speed of the grains, in √(g·d) (g: gravity, d: mean diameter), below which the pile no longer oscillates
 /// and the medium becomes thin.
 const STILL_SPEED: f64 = 1e-3;
 /// Terminal speed of a grain that falls through the thin medium, in √(g·d) (g: gravity, d: mean diameter).
 const TERMINAL_SPEED: f64 = 0.5;
-/// Mean kinetic energy of a grain, in m g d (mass, gravity, mean diameter), below which the medium is removed. After
-/// that, a pile whose energy stays below ten times this value is at rest.
+/// Mean kinetic energy of a grain, in m g d (mass, gravity, mean diameter), below which the medium is removed if no
+/// grain falls. After that, the pile is at rest if its energy stays below ten times this value.
 const REST_ENERGY: f64 = 1e-7;
-/// Speed, in √(g·d) (g: gravity, d: mean diameter), above which a grain counts as falling. In a pile at rest at most
-/// one grain per [`GRAINS_A_MOVING_ONE`] grains is faster.
+/// Speed, in √(g·d) (g: gravity, d: mean diameter), above which a grain counts as falling. A pile counts as at rest if
+/// at most one of [`GRAINS_A_MOVING_ONE`] grains is faster.
 const REST_SPEED: f64 = 1e-2;
-/// Number of grains for each grain that may still move in a pile at rest. In a large pile, grains somewhere always
+/// A pile counts as at rest if at most one of this many grains still moves. In a large pile, grains somewhere always
 /// tip over, so waiting for the last grain would take longer the larger the pile is.
 const GRAINS_A_MOVING_ONE: usize = 10_000;
 const STEPS_PER_LOOK: u32 = 10;
-/// Number of steps after which the generation of the pile fails: a constant, and an addition per layer of the pile.
+/// Number of steps after which the generation of a pile that is not at rest fails: a constant, and an addition per
+/// layer of grains.
 const LIMIT_STEPS: [f64; 2] = [10_000.0, 100.0];
 
-/// Drops discs one by one at random positions between two walls at ±`half_width` onto fixed discs, and lets each roll
-/// until it is supported. Returns the discs in their final positions, in the order of `radii`. The radii are in m and
-/// above 0. `half_width` is in m and at least the largest radius.
+/// Drops discs one by one at random positions between two walls at ±`half_width` onto the fixed discs `base`, and lets
+/// each roll until other bodies support it. Returns the discs in their final positions, in the order of `radii`. The
+/// radii are in m and above 0. `half_width` is in m and at least the largest radius.
 pub fn drop_and_roll(
     radii: &[f64],
     base: &[Disc],
@@ -159,7 +163,7 @@ pub(super) fn settled(
     }
 }
 
-/// The medium that damps the velocities of the grains while the pile settles.
+/// The medium that damps the velocities of the grains while the pile settles: thick at first, then thin, then none.
 #[derive(Clone, Copy)]
 enum Medium {
     /// Medium so thick that the pile cannot oscillate up and down as a whole.
@@ -172,7 +176,7 @@ enum Medium {
 }
 
 impl Medium {
-    /// Returns the fraction of the velocities that the medium removes per step.
+    /// Returns the fraction by which the medium reduces all velocities per step.
     fn damping(self) -> f64 {
         match self {
             Self::Thick { damping } => damping,
@@ -182,11 +186,12 @@ impl Medium {
     }
 }
 
-/// Measures of the motion of the grains: their mean kinetic energy in m g d, and speeds of centres or rims in √(g·d),
-/// with the mass m of a grain, gravity g and the mean diameter d.
+/// Measures of the motion of all grains: their mean kinetic energy, in m g d, and their largest and median speed, in
+/// √(g·d), with the mass m of a grain, gravity g and the mean diameter d. The speed of a grain is the larger of the
+/// speeds of its centre and its rim.
 struct GrainSpeeds {
     energy: f64,
-    /// Speed of the fastest grain, not counting the few grains that may move in a pile at rest.
+    /// Speed of the fastest grain, apart from the few grains that may still move in a pile at rest.
     fastest: f64,
     median_speed: f64,
 }
@@ -209,8 +214,8 @@ impl GrainSpeeds {
         self.energy <= energy && self.fastest <= REST_SPEED
     }
 
-    /// Returns the speed relative to the speed of a pile at rest: the larger of two ratios, one by the kinetic energy
-    /// and one by the fastest grain.
+    /// Returns the present speed divided by the speed below which the pile is at rest: the larger ratio of two, for
+    /// the kinetic energy (as a square root) and for the fastest grain.
     fn over_rest(&self) -> f64 {
         (self.energy / REST_ENERGY).sqrt().max(self.fastest / REST_SPEED)
     }

@@ -1,9 +1,9 @@
-//! Rain: the method by which the initial state that is shipped with Slump was generated.
+//! Rain: the method of generating a pile by which the initial state that is shipped with Slump was made.
 //!
 //! The discs start at rest on a loose lattice above the base, with random displacements, and fall through a medium.
 //! The medium limits their speed to the terminal speed √(g·d)/2. So they land with overlaps of at most the terminal
-//! speed times the time step, whatever the height of the box is. When the pile has formed, the medium is removed.
-//! Then the pile settles without cohesion under the contact laws of the paper's runs.
+//! speed times the time step, whatever the height of the box is. When the pile has formed, the medium is removed. Then
+//! the pile settles without cohesion under the contact laws of the paper's runs.
 
 use glam::DVec2;
 use rand::{RngExt, SeedableRng};
@@ -18,7 +18,7 @@ use crate::scene::paper::{DIAMETER, GRAVITY};
 use crate::solver::SolverSettings;
 use crate::world::Grain;
 
-/// Time step while the pile settles, s. The overlaps of the initial state are proportional to it.
+/// Time step while the pile settles, s. The overlaps of the grains in the initial state are proportional to it.
 const TIME_STEP_SECS: f64 = 1e-4;
 /// Speed in √(g·d) (g: gravity, d: mean diameter). A pile is at rest if all its grains have been slower than this
 /// speed for [`REST_SECS`].
@@ -72,7 +72,7 @@ pub(super) fn settled(
     Ok(Settled::of(simulation))
 }
 
-/// Returns discs on a lattice with random displacements, row by row from the bottom.
+/// Returns the discs from which the rain starts, on a lattice with random displacements, row by row from the bottom.
 pub(super) fn lattice(rain: &NewPile) -> Vec<Grain> {
     let columns = rain.columns();
     let mut random = Pcg64::seed_from_u64(rain.seed);

@@ -1,6 +1,6 @@
-//! Path of one dropped disc: it falls, rolls over other discs, and comes to rest where two discs, or one disc and a
-//! wall, support it (W. M. Visscher, M. Bolsterli, *Random packing of equal and unequal spheres in two and three
-//! dimensions*, 1972; W. S. Jodrey, E. M. Tory, *Simulation of random packing of spheres*, 1979).
+//! Computes the path of one dropped disc: the disc falls, rolls over other discs, and comes to rest where two discs,
+//! or one disc and a wall, support it (W. M. Visscher, M. Bolsterli, *Random packing of equal and unequal spheres in
+//! two and three dimensions*, 1972; W. S. Jodrey, E. M. Tory, *Simulation of random packing of spheres*, 1979).
 //!
 //! The path is computed from geometry, without time steps. Let a disc of radius r roll on a disc i of radius r_i with
 //! the centre c_i. Its centre is on the circle of radius R = r + r_i about c_i, at an angle φ from the vertical. The
@@ -25,11 +25,11 @@ use glam::DVec2;
 use crate::number::Parts;
 use crate::world::Disc;
 
-/// Fraction of the sum of two radii that counts as rounding. A rolling disc may overlap a disc that it passes by this
-/// much, and a falling disc may land this much above the point where its fall began. With the value 0, a disc between
-/// two discs that leave it exactly enough room would roll from one to the other endlessly. And a disc that falls off
-/// at the point where it touches the next disc would fall through that disc. Each fall still ends at least a
-/// millionth of the sum of the radii lower than it began.
+/// Length, as a fraction of the sum of two radii, that counts as a rounding error. A rolling disc may overlap a disc
+/// that it passes by this length, and a falling disc may land this length above the point where its fall began. With
+/// the value 0, a disc between two discs that leave it exactly enough room would roll from one to the other endlessly.
+/// And a disc that falls off one disc at the point where it touches the next disc would fall through that next disc.
+/// Each fall still ends at least a millionth of the sum of the radii lower than it began.
 const GRAZING: f64 = 1e-12;
 
 /// The surface onto which discs are dropped: fixed discs, discs that were dropped before, a floor and two walls. The
@@ -46,9 +46,9 @@ pub struct Deposit {
 }
 
 impl Deposit {
-    /// Returns an empty box with a floor at the height `floor` and walls at ±`half_width`, for discs with radii of at
-    /// most `largest_radius`. All numbers are finite and in m. `largest_radius` is above 0, and `half_width` is at
-    /// least `largest_radius`.
+    /// Returns a deposit without discs: a box with a floor at the height `floor` and walls at ±`half_width`, for discs
+    /// with radii of at most `largest_radius`. All numbers are finite and in m. `largest_radius` is above 0, and
+    /// `half_width` is at least `largest_radius`.
     pub fn new(floor: f64, half_width: f64, largest_radius: f64) -> Self {
         let column_width = 2.0 * largest_radius;
         let count = (2.0 * half_width / column_width).ceil() as usize + 2;
@@ -62,7 +62,8 @@ impl Deposit {
         }
     }
 
-    /// Adds a disc. A disc that is outside the walls by more than the width of a column is never an obstacle.
+    /// Adds a disc to the deposit. A disc that is outside the walls by more than the width of a column is never an
+    /// obstacle for a dropped disc.
     pub fn add(&mut self, disc: Disc) {
         let index = self.discs.len() as u32;
         let column = self.column(disc.position.x);
@@ -79,8 +80,8 @@ impl Deposit {
     }
 
     /// Finds the highest point at the coordinate `x` (m), not above `highest` (m), at which a falling disc lands on
-    /// another disc. The disc `left`, from which it falls, does not count. Returns the height of the falling disc's
-    /// centre and the index of the disc below it, or `None` if it falls to the floor.
+    /// another disc. The disc `left`, off which it falls, is ignored. Returns the height of the falling disc's centre
+    /// (m) and the index of the disc on which it lands, or `None` if it falls to the floor.
     fn landing(
         &self,
         x: f64,
@@ -139,10 +140,10 @@ impl Deposit {
     }
 }
 
-/// A body on which a disc at rest is supported: another disc, a wall or the floor.
+/// A body that supports a disc at rest: another disc, a wall or the floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Support {
-    /// The disc with this index in the deposit.
+    /// The disc with this index in the list of all discs.
     Disc(usize),
     /// The wall that is nearer to the disc.
     Wall,
@@ -150,7 +151,7 @@ pub enum Support {
     Floor,
 }
 
-/// Position of rest of a disc.
+/// Position of rest of a dropped disc, and the bodies that support the disc there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
     /// Centre of the disc, m.
@@ -159,11 +160,12 @@ pub struct Rest {
     pub supports: (Support, Option<Support>),
 }
 
-/// Angle, rad, by which a contact can seem to be behind a rolling disc because of rounding.
+/// Angle, rad, that allows for rounding: a rolling disc can still meet an obstacle whose contact angle is behind the
+/// present angle of the disc by less than this.
 const ROUNDING: f64 = 1e-9;
 
-/// Returns the position of rest of a disc that is dropped at the coordinate `x` (m) from above all other discs. The
-/// radius (m) is at most the largest radius of the deposit, and at `x` the disc is between the walls.
+/// Returns the position of rest of a disc that is dropped at the coordinate `x` (m) from above all other discs.
+/// `radius` (m) is at most the largest radius of the deposit, and a disc at `x` is between the walls.
 pub fn dropped(deposit: &Deposit, x: f64, radius: f64) -> Rest {
     let mut fall = FallingDisc { from: DVec2::new(x, f64::INFINITY), left: None, side: 1.0 };
     loop {
@@ -183,15 +185,15 @@ pub fn dropped(deposit: &Deposit, x: f64, radius: f64) -> Rest {
     }
 }
 
-/// A disc that starts to fall at `from` (m), off the disc `left`, after it has rolled to `side` (+1: right, −1:
-/// left).
+/// A disc that starts to fall at `from` (m), off the disc with the index `left`, after it has rolled to `side` (+1:
+/// right, −1: left).
 struct FallingDisc {
     from: DVec2,
     left: Option<usize>,
     side: f64,
 }
 
-/// A disc that rolls on the disc `on`, to the right (`side` +1) or to the left (−1).
+/// A disc that rolls on the disc with the index `on`, to the right (`side` +1) or to the left (−1).
 struct RollingDisc {
     radius: f64,
     centre: DVec2,
@@ -204,7 +206,7 @@ enum RollEnd {
     FallsOff(FallingDisc),
 }
 
-/// Obstacle that a rolling disc meets.
+/// The first obstacle that a rolling disc meets.
 #[derive(Clone, Copy)]
 enum Obstacle {
     Disc(usize),
@@ -213,7 +215,7 @@ enum Obstacle {
     Nothing,
 }
 
-/// Rolls a disc to one side, from disc to disc, until it is supported or falls off.
+/// Rolls a disc to one side, from disc to disc, until it meets a second support or falls off.
 fn rolled(deposit: &Deposit, mut roll: RollingDisc) -> RollEnd {
     loop {
         let RollingDisc { radius, on, side, .. } = roll;
@@ -283,8 +285,8 @@ fn first_met(deposit: &Deposit, roll: &RollingDisc) -> Obstacle {
     first.1
 }
 
-/// Returns the centre (m) of a disc that has rolled to its obstacle. Uses only square roots, because sines would
-/// differ between machines in their last digits.
+/// Returns the centre (m) of a rolling disc at the point where it meets its obstacle `met`. Uses only square roots,
+/// because sines would differ between machines in their last digits.
 fn place_at(deposit: &Deposit, roll: &RollingDisc, met: Obstacle) -> DVec2 {
     let &RollingDisc { radius, on, side, .. } = roll;
     let below = &deposit.discs()[on];

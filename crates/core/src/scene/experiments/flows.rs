@@ -14,11 +14,12 @@ use crate::world::{
 
 /// Number of grains of a column whose half-width R₀ and height H₀ are one diameter d each.
 const GRAINS_OF_SQUARE: f64 = 2.09;
-/// Distance by which each gate moves, m. With `GATE_SECS` (the time of this motion, s) its speed is 15 m/s.
+/// Distance by which each gate is pulled away from the column, m. With `GATE_SECS` (the time of this motion, s) the
+/// speed of the gate is 15 m/s.
 const GATE_WAY: f64 = 3.0;
 const GATE_SECS: f64 = 0.2;
-/// Half-width of the rough floor, relative to the longest known run-out of a collapsed column. Farther outside the
-/// floor is smooth.
+/// Half-width of the rough floor, divided by the largest half-width that collapsed columns of the same aspect ratio
+/// are known to reach. Farther outside the floor is smooth.
 const REACH: f64 = 1.3;
 
 /// Returns the half-width R₀, in diameters, of a column with this number of grains and the aspect ratio H₀/R₀ (H₀:
@@ -42,8 +43,8 @@ pub fn collapse() -> Scene {
     scene
 }
 
-/// Adds two gates and a floor to a scene of grains. `half` is the half-width of the column, in diameters. The gates
-/// start to move at the time `release_secs`.
+/// Adds two gates and a floor to a scene of grains, so that they form a column that collapses when the gates open.
+/// `half` is the half-width of the column, in diameters. The gates start to move at the time `release_secs` (s).
 pub fn collapse_of(mut scene: Scene, half: f64, release_secs: f64) -> Scene {
     let top = |grain: &Grain| grain.position.y + grain.radius;
     let aspect = scene.grains.iter().map(top).fold(0.0, f64::max) / (half * DIAMETER);
@@ -66,7 +67,8 @@ pub const SILO_WIDTH: f64 = 26.0;
 const SILO_HEIGHT: f64 = 60.0;
 /// Distance from the bottom of the silo down to the floor that catches the grains, in diameters.
 const FLOOR_DEPTH: f64 = 30.0;
-/// Distance by which the plate falls, m. With `PLATE_SECS` (the time of this motion, s) it falls faster than grains.
+/// Distance by which the plate that closes the orifice of the silo falls, m. With `PLATE_SECS` (the time of this
+/// motion, s) it falls faster than grains.
 const PLATE_WAY: f64 = 1.0;
 const PLATE_SECS: f64 = 0.1;
 
@@ -80,8 +82,8 @@ pub fn silo() -> Scene {
     scene
 }
 
-/// Adds a silo to a scene of grains. `orifice` is the width of its orifice, in diameters, which opens at the time
-/// `release_secs`.
+/// Adds a silo to a scene of grains. `orifice` is the width of its orifice, in diameters. The plate that closes the
+/// orifice falls away at the time `release_secs` (s).
 pub fn silo_of(mut scene: Scene, orifice: f64, release_secs: f64) -> Scene {
     let side = |sign: f64| Boundary::Polyline {
         points: vec![
@@ -103,16 +105,16 @@ pub fn silo_of(mut scene: Scene, orifice: f64, release_secs: f64) -> Scene {
 /// Width of the box that is tilted, in diameters. `INCLINE_HEIGHT` is the height of its walls.
 const INCLINE_WIDTH: f64 = 40.0;
 const INCLINE_HEIGHT: f64 = 30.0;
-/// Time for the grains to come to rest before the box is tilted, s.
+/// Simulated time during which the box is level, so that the grains come to rest, before it is tilted, s.
 pub const LEVEL_SECS: f64 = 0.4;
 /// Angular velocity at which the box is tilted, rad/s.
 pub const TILT_RATE: f64 = 0.12;
-/// Largest angle by which the box is tilted, rad.
+/// Angle at which the tilting of the box ends, rad.
 const STEEPEST: f64 = 0.72;
 
 /// Returns the scene of an incline: a layer of grains in a flat box with a rough bottom that is tilted slowly. The
-/// layer stays at rest up to some angle, and then its surface flows. The scene turns gravity instead of the box, so
-/// pictures show the view of someone who turns with the box.
+/// layer stays at rest up to some angle, and then its surface flows. The scene turns gravity instead of the box, so in
+/// pictures the box stays level.
 pub fn incline() -> Scene {
     let mut scene = of_loose_grains("incline", lattice(300, INCLINE_WIDTH, 1.2));
     let tilting_secs = STEEPEST / TILT_RATE;
@@ -131,10 +133,11 @@ pub fn incline() -> Scene {
 
 /// Inner radius of the drum, in diameters of a grain.
 const DRUM_RADIUS: f64 = 12.0;
-/// Number of sides of the drum's wall, and of the discs on the wall. The centres of neighbouring discs are about one
-/// diameter apart.
+/// Number of sides of the drum's polygonal wall, and number of the discs on this wall. The centres of neighbouring
+/// discs are about one diameter apart.
 const DRUM_SIDES: usize = 72;
-/// Angular velocity Ω of the drum, rad/s. With its radius R, Ω²R/g is 0.05, at which grains roll down a steady slope.
+/// Angular velocity Ω of the drum, rad/s. With the radius R of the drum, Ω²R/g is 0.05. At this value grains roll down
+/// a steady slope.
 const DRUM_RATE: f64 = 2.0;
 
 /// Returns the scene of a drum that turns about its axis and is two fifths full. Discs that turn with the drum make
@@ -167,11 +170,11 @@ pub fn drum() -> Scene {
 /// Half-width of the shaken box, in diameters. `BOX_HEIGHT` is its height.
 const HALF_WIDTH: f64 = 8.0;
 const BOX_HEIGHT: f64 = 30.0;
-/// Radius of the large grain, in diameters of the other grains.
+/// Radius of the one large grain in the shaken box, in diameters of the other grains.
 const LARGE: f64 = 1.5;
 /// Frequency at which the box is shaken, Hz.
 const FREQUENCY_HZ: f64 = 10.0;
-/// Largest acceleration of the box, in units of gravity g. Above 1 the grains are thrown up.
+/// Largest acceleration of the shaken box, in units of gravity g. If it is above 1, the grains are thrown up.
 const ACCELERATION: f64 = 3.0;
 
 /// Returns the scene of a shaken box with 120 grains and one large grain.

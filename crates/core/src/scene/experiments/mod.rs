@@ -18,15 +18,15 @@ use super::tones::tone_in_layers;
 
 use crate::world::{Boundary, Grain, Motion, MotionCourse};
 
-/// The golden ratio minus 1. The fractional parts of its multiples are spread evenly over the interval from 0 to 1,
-/// whatever their number is.
+/// The golden ratio minus 1. The fractional parts of its first n multiples are spread evenly over the interval from 0
+/// to 1 for every n.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Spacing of the grains on a lattice, in diameters.
+/// Distance between neighbouring grains of an initial lattice, in diameters.
 const SPACING: f64 = 1.22;
 
 /// Returns a scene whose grains start at the given positions. Their diameters are spread evenly over [0.8 d, 1.2 d],
-/// with the mean diameter d. The positions are in diameters and more than 1.2 apart.
+/// with the mean diameter d. The positions are in diameters, and no two are closer than 1.2 diameters.
 fn of_loose_grains(name: &str, places: impl Iterator<Item = DVec2>) -> Scene {
     let grain = |(index, place): (usize, DVec2)| {
         let part = (GOLDEN * index as f64).fract();
@@ -41,8 +41,8 @@ fn of_loose_grains(name: &str, places: impl Iterator<Item = DVec2>) -> Scene {
     scene
 }
 
-/// Returns the positions of `grains` grains, in diameters: rows from the height `lowest` upwards, each with as many
-/// grains as fit into `width`.
+/// Returns the initial positions of `grains` grains, in diameters: rows from the height `lowest` upwards, each with as
+/// many grains as fit into `width`.
 fn lattice(grains: usize, width: f64, lowest: f64) -> impl Iterator<Item = DVec2> {
     let columns = (width / SPACING).floor().max(1.0) as usize;
     let first = -0.5 * SPACING * (columns - 1) as f64;
@@ -57,7 +57,7 @@ fn place(x: f64, y: f64) -> DVec2 {
     DIAMETER * DVec2::new(x, y)
 }
 
-/// Returns a box without a lid and with its bottom on y = 0. The sizes are in diameters.
+/// Returns a box that is open at the top and has its bottom on y = 0. The sizes are in diameters.
 fn open_box(half_width: f64, height: f64) -> Boundary {
     let corners =
         [(-half_width, height), (-half_width, 0.0), (half_width, 0.0), (half_width, height)];

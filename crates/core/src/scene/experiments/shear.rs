@@ -7,26 +7,28 @@ use crate::scene::Scene;
 use crate::scene::stability::{DIAMETER, GRAVITY, floor, half_space};
 use crate::world::{Disc, Drive, Motion, MotionCourse, Periodic};
 
-/// Size of a shear cell: the width of the plates, and the lattice of the grains between them.
+/// Size of a shear cell (grains between two plates): the width of the plates, and the number of grains between them.
 #[derive(Clone, Copy, Debug)]
 pub struct ShearCell {
     /// Width of the cell in diameters. It is also the number of discs of each plate.
     pub wide: u8,
-    /// Number of columns of grains at the start.
+    /// Number of columns of grains in the initial lattice.
     pub columns: u8,
-    /// Number of rows of grains at the start.
+    /// Number of rows of grains in the initial lattice.
     pub rows: u8,
 }
 
 const CELL: ShearCell = ShearCell { wide: 24, columns: 19, rows: 12 };
-/// Spacing of rows at the start, in diameters.
+/// Vertical distance between neighbouring rows of grains at the start, in diameters.
 const ROW_SPACING: f64 = 1.22;
-/// Distance from the centres of a plate's discs to the nearest row of grains, in diameters.
+/// Distance at the start from the centres of a plate's discs to the centres of the nearest row of grains, in
+/// diameters.
 const PLATE_ROOM: f64 = 1.2;
-/// Pressure P on the upper plate, in m g/d (mass, gravity, diameter). The time √(m/P) is then 0.01 s.
+/// Pressure P on the upper plate, in m g/d (mass of a grain, gravity, diameter). The time √(m/P), in which this
+/// pressure accelerates a grain, is then 0.01 s.
 const SHEAR_PRESSURE: f64 = 10.0;
-/// Speed of the upper plate, m/s. The compressed grains are about 9 diameters high, and the inertial number I is
-/// 0.07.
+/// Speed of the upper plate along the lower plate, m/s. The compressed grains are about 9 diameters high, so the
+/// inertial number I = γ̇ √(m/P) is 0.07 (γ̇: shear rate, m: mass of a grain, P: pressure).
 const PLATE_SPEED: f64 = 0.6;
 
 /// Returns the scene of plane shear at constant pressure: grains between two rough plates in a periodic cell. The
@@ -44,8 +46,8 @@ pub fn shear() -> Scene {
     scene
 }
 
-/// Returns the scene of grains between two plates. `pressure` is the pressure on the upper plate in m g/d (mass,
-/// gravity, diameter), and `speed` is its speed in m/s.
+/// Returns the scene of grains that are sheared between two plates. `pressure` is the pressure on the upper plate in m
+/// g/d (mass of a grain, gravity, diameter), and `speed` is the speed of this plate in m/s.
 pub fn shear_of(cell: ShearCell, pressure: f64, speed: f64) -> Scene {
     let ShearCell { wide, columns, rows } = cell;
     let spacing = [f64::from(wide) / f64::from(columns), ROW_SPACING];
@@ -82,19 +84,19 @@ pub fn shear_of(cell: ShearCell, pressure: f64, speed: f64) -> Scene {
     scene
 }
 
-/// Number of columns of grains at the start in `shear_periodic`. `ROWS` is the number of rows. It is even, because
-/// every other row is shifted by half a spacing.
+/// Number of columns of grains at the start in the scene `shear-periodic`. `ROWS` is the number of rows. It is even,
+/// because every other row is shifted by half a spacing.
 const COLUMNS: u32 = 16;
 const ROWS: u32 = 14;
-/// Distance of neighbouring grains at the start, in diameters. It is slightly more than the largest diameter. The
-/// grains cover a fraction of 0.74 of the cell.
+/// Distance between the centres of neighbouring grains at the start, in diameters. It is slightly more than the
+/// largest diameter. The grains cover a fraction of 0.74 of the cell.
 const PERIODIC_SPACING: f64 = 1.11;
 /// Largest deviation of a diameter from the mean diameter, relative to the mean diameter.
 const SPREAD: f64 = 0.1;
-/// Shear rate γ̇, 1/s.
+/// Shear rate γ̇ of the scene `shear-periodic`, 1/s: change of the velocity along x per height.
 const SHEAR_RATE: f64 = 10.0;
 
-/// Returns the scene of shear without walls: grains in a cell with periodic borders, the upper of which slides along
+/// Returns the scene of shear without walls: grains in a cell with periodic borders, of which the upper slides along
 /// the lower (`world::periodic`).
 ///
 /// As long as grains are rigid and do not cohere, only the shear rate γ̇ sets a time scale. So at another shear rate
@@ -132,20 +134,22 @@ pub fn shear_periodic() -> Scene {
 }
 
 const GRAINS: usize = 300;
-/// Width of the box at the start, in diameters.
+/// Width of the initial lattice of grains in the biaxial test, in diameters.
 const WIDTH: f64 = 19.0;
-/// Distance from the lattice of grains to the walls, in diameters.
+/// Distance from the outer centres of the initial lattice of grains to the walls, in diameters.
 const ROOM: f64 = 0.75;
-/// Confining pressure, in m g/d (mass, gravity, diameter), at the height that the box has in the middle of the test.
+/// Pressure of the side walls on the grains, in m g/d (mass of a grain, gravity, diameter), at the height that the
+/// grains have in the middle of the test.
 const CONFINING_PRESSURE: f64 = 10.0;
 /// Height of the grains in the middle of the test, in diameters.
 const HEIGHT: f64 = 18.0;
-/// Distance by which the lid moves down at first, in diameters, while the sides compress the grains. `CLOSING_SECS`
-/// is the time of this motion, s.
+/// Distance by which the lid moves down in the first part of the test, in diameters, while the side walls compress the
+/// grains. `CLOSING_SECS` is the duration of this part, s.
 const CLOSING: f64 = 5.5;
 const CLOSING_SECS: f64 = 0.35;
-/// Distance by which the lid then moves on, in diameters. With `COMPRESSION_SECS` (the time of this motion, s) the
-/// inertial number γ̇ √(m/P) is 1.4e-3.
+/// Distance by which the lid moves down in the second part of the test, in diameters. With `COMPRESSION_SECS` (the
+/// duration of this part, s) the inertial number γ̇ √(m/P) is 1.4e-3 (γ̇: strain rate, m: mass of a grain, P:
+/// pressure).
 const COMPRESSION: f64 = 5.0;
 const COMPRESSION_SECS: f64 = 2.0;
 

@@ -10,12 +10,13 @@ use crate::world::Boundary;
 
 /// Number of discs per column.
 const HIGH: u8 = 6;
-/// Final spacing of the columns, in diameters.
+/// Distance between neighbouring columns at the end of the motion, in diameters.
 const NARROWEST: f64 = 0.6;
-/// Speed of each wall, m/s. At this speed the highest disc rises at most at half of √(g d) (g: gravity, d: diameter).
+/// Speed of each wall, m/s. With it the highest disc rises with a speed of at most ½√(g d) (g: gravity, d: diameter).
 const SPEED: f64 = 0.007;
 
-/// Returns the correct positions of the discs, in diameters, when the columns are `spacing` diameters apart.
+/// Returns the exact equilibrium positions of the discs, in diameters, when neighbouring columns are `spacing`
+/// diameters apart.
 fn places(spacing: f64) -> Vec<DVec2> {
     let height = (1.0 - spacing * spacing).sqrt();
     let column = |x: f64, lift: f64| {
@@ -27,17 +28,18 @@ fn places(spacing: f64) -> Vec<DVec2> {
 /// Returns the scene of a packing between two walls that move inward, without friction and open at the top.
 ///
 /// Three columns of discs are next to each other, and the middle column is higher by h (lengths in diameters).
-/// Columns at the distance s touch if s² + h² = 1. At the start h = 1/2, and an inner disc touches six other discs,
-/// so there are more contacts than degrees of freedom. As the walls push the columns together, h grows, and the discs
-/// within a column separate. Then each disc rests on two bodies below it (discs, a wall or the floor), which share
-/// its weight and the load above it. All contacts push, and there are as many contacts as degrees of freedom. So no
-/// disc can sink, and if the walls move slowly the positions are unique. The k-th disc of a column is at
+/// Neighbouring columns at the distance s touch if s² + h² = 1. At the start h = 1/2, and an inner disc touches six
+/// other discs, so there are more contacts than degrees of freedom. As the walls push the columns together, h grows,
+/// and the discs within a column separate. Then each disc rests on two bodies below it (discs, a wall or the floor),
+/// which share its weight and the load above it. All contacts push, and there are as many contacts as degrees of
+/// freedom. So no disc can sink, and if the walls move slowly the positions are unique. The k-th disc of a column is
+/// at
 ///
 /// > x = −s, 0 or s,  y = 1/2 + 2kh, and h higher in the middle column,
 ///
-/// as long as s > 1/2. At s = 1/2 the outer columns meet, and nothing can move any more. With more than three
-/// columns, a disc on the floor would be in contact only with the floor and with the discs that lean on it from both
-/// sides, and these would push it away.
+/// as long as s > 1/2. At s = 1/2 the outer columns meet, and nothing can move any more. With more than three columns,
+/// a disc on the floor would be in contact only with the floor and with the discs that lean on it from both sides, and
+/// these would push it away.
 pub fn press() -> Scene {
     let widest = 0.75f64.sqrt();
     let grains = places(widest).into_iter().map(|place| place * (1.0 - TOUCH));
@@ -54,12 +56,12 @@ pub fn press() -> Scene {
     scene
 }
 
-/// Returns the correct final positions of the discs, m, in the order of the scene.
+/// Returns the exact positions that the discs must have when the walls have stopped, m, in the order of the scene.
 pub fn pressed_places() -> Vec<DVec2> {
     places(NARROWEST).into_iter().map(|place| DIAMETER * place).collect()
 }
 
-/// Returns the time at which the walls reach their final positions, s.
+/// Returns the time at which the walls stop at their final positions, s.
 pub fn pressing_secs() -> f64 {
     DIAMETER * (0.75f64.sqrt() - NARROWEST) / SPEED
 }

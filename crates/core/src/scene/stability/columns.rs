@@ -6,13 +6,13 @@ use super::{DIAMETER, GRAVITY, TOUCH, disc, half_space, on_floor, view};
 use crate::scene::Scene;
 use crate::world::{Disc, Grain, Gravity, Physics};
 
-/// Returns the scene of a column of n discs with mass m. The floor carries n·m·g, and the k-th contact above the
-/// floor carries (n − k)·m·g.
+/// Returns the scene of a column of n discs with mass m. The contact with the floor carries n·m·g, and the k-th
+/// contact above it carries (n − k)·m·g.
 ///
-/// On this chain of contacts, Jacobi's iteration for the impulses is P_k ← (P_{k−1} + P_{k+1})/2, with P_{−1} = P_1
-/// at the floor and P_n = 0 at the top. Its modes cos kθ require cos nθ = 0, so the slowest mode decays by the factor
-/// cos(π/2n) per iteration. A chain has no loops, so every order of the contacts is consistent (D. M. Young, 1971),
-/// and in Gauss–Seidel the slowest mode decays by cos²(π/2n) per sweep.
+/// On this chain of contacts, Jacobi's iteration for the impulses is P_k ← (P_{k−1} + P_{k+1})/2, with P_{−1} = P_1 at
+/// the floor and P_n = 0 at the top. Its error consists of modes cos kθ with cos nθ = 0, so the slowest mode decays by
+/// the factor cos(π/2n) per iteration. A chain has no loops, so every order of the contacts is consistent (D. M.
+/// Young, 1971), and in Gauss–Seidel the slowest mode decays by cos²(π/2n) per sweep.
 pub fn column(count: usize) -> Scene {
     let place = |k: usize| (0.5 + k as f64) * (1.0 - TOUCH) - 0.5 * TOUCH;
     on_floor("column", (0..count).map(|k| disc(0.0, place(k))).collect())
@@ -32,9 +32,10 @@ pub fn column_on_line(count: usize) -> Scene {
     scene
 }
 
-/// Returns the scene of a heavy disc on a light disc. Let R be the ratio of their masses and W the Delassus operator
-/// of the two contacts. Gauss–Seidel reduces its error by the factor W₀₁²/(W₀₀W₁₁) = R/(R + 1) per sweep, so the
-/// number of sweeps is proportional to R.
+/// Returns the scene of a heavy disc on a light disc, which needs many sweeps. Let R be the ratio of their masses and
+/// W the Delassus operator of the two contacts, which maps impulses to changes of velocities. Gauss–Seidel reduces the
+/// error of the impulses by the factor W₀₁²/(W₀₀W₁₁) = R/(R + 1) per sweep, so the number of sweeps is proportional to
+/// R.
 pub fn mass_ratio(ratio: f64) -> Scene {
     let radius = 0.5 * ratio.sqrt();
     let heavy =
@@ -65,12 +66,13 @@ pub fn leaning_column(count: usize) -> Scene {
     scene
 }
 
-/// Number of discs below the heavy disc.
+/// Number of discs in the column below the heavy disc.
 const BELOW: usize = 5;
 
 /// Returns the scene of a column of five discs under a heavy disc, which is removed during the run. The heavy disc is
-/// `ratio` times as heavy as the other discs and is the last grain. The next step starts its iteration from the
-/// impulses that carried the heavy disc. These impulses must not throw the other discs up.
+/// `ratio` times as heavy as the other discs and is the last grain. The solve of the first step after the removal
+/// starts from the contact impulses that carried the heavy disc. In a correct step these impulses do not throw the
+/// other discs up.
 pub fn lift_off(ratio: f64) -> Scene {
     let mut scene = column(BELOW);
     scene.name = "lift-off".into();
@@ -98,8 +100,8 @@ pub fn logs(ratio: f64) -> Scene {
     on_floor("logs", vec![small(-half), small(half), large])
 }
 
-/// Returns the scene of two discs, one on top of the other, each of which overlaps the body below by `overlap`
-/// diameters. A correct solver separates them without throwing them up.
+/// Returns the scene of two discs, one on top of the other, each of which overlaps the disc or floor below it by
+/// `overlap` diameters. A correct solver separates the bodies without throwing the discs up.
 pub fn overlapped(overlap: f64) -> Scene {
     on_floor("overlap", vec![disc(0.0, 0.5 - overlap), disc(0.0, 1.5 - 2.0 * overlap)])
 }

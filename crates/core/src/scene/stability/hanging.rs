@@ -1,4 +1,4 @@
-//! Scenes of grains that are held only by cohesion: a hanging chain, a cantilever and a bridge.
+//! Scenes of grains that only cohesion keeps from falling: a hanging chain, a cantilever and a bridge.
 
 use glam::DVec2;
 
@@ -6,8 +6,8 @@ use crate::scene::Scene;
 use crate::scene::stability::{DIAMETER, disc, dry, view};
 use crate::world::{Disc, Grain};
 
-/// Overlap of neighbouring discs of the chain, in diameters, as in a pile at rest. Springs need some overlap to find
-/// their equilibrium.
+/// Initial overlap of neighbouring discs of the hanging chain, in diameters, about as in a pile at rest. Steppers with
+/// springs need some overlap to find the equilibrium.
 const OVERLAP: f64 = 1e-3;
 
 /// Returns the scene of a chain of n ≥ 2 equal discs of mass m that hang from a fixed disc. The contact with the
@@ -23,13 +23,13 @@ pub fn hanging_chain(count: usize, bond: f64) -> Scene {
     scene
 }
 
-/// Returns the Bond number below which a chain of `count` discs breaks.
+/// Returns the Bond number below which a hanging chain of `count` discs breaks.
 pub fn breaking_bond(count: usize) -> f64 {
     (count as f64).max(2.0 * (count as f64 - 1.0))
 }
 
-/// Distance of neighbouring discs of the cantilever and the bridge, in diameters. The discs overlap as in a pile at
-/// rest.
+/// Distance between the centres of neighbouring discs of the cantilever and the bridge, in diameters. The discs
+/// overlap about as in a pile at rest.
 const SPACING: f64 = 1.0 - 1e-4;
 /// Bond number of the cantilever and the bridge.
 const BOND: f64 = 100.0;
@@ -57,17 +57,17 @@ fn truss(name: &str, grains: Vec<Grain>, fixed: Vec<Grain>) -> Scene {
 
 /// Returns the scene of a cantilever: two rows of L discs each, fixed to a wall on one side.
 ///
-/// **Estimate.** The cantilever weighs 2L·m·g, and its weight acts L/2 diameters from the wall on average. So its
-/// rows carry a force of L²·m·g·d divided by their distance of 0.87 d. A contact carries up to 50 m·g at Bond 100. A
+/// **Estimate.** The cantilever weighs 2L·m·g, and its weight acts L/2 diameters from the wall on average. So its rows
+/// carry a force of L²·m·g·d divided by their distance of 0.87 d. A contact carries up to 50 m·g at Bond 100. A
 /// cantilever with L = 4 needs 18 m·g and is far from tearing. With L = 8 it needs 74 m·g and must tear.
 ///
 /// **Exact limit.** Without friction the cantilever is a truss of 4L bars (contacts) between 2L joints (discs), so it
 /// is statically determinate. Cut a bar of the upper row, with n discs of each row beyond the cut, and take moments
-/// about the disc of the lower row next to the cut. The lever arms are 1 + 2 + … + (n − 1) diameters in the lower
-/// row, and half a diameter more for each disc in the upper row. So the tension of the bar is (n² − n/2) m·g/(√3/2) =
-/// (2n² − n) m·g/√3. A diagonal bar that carries the 2n discs beyond it has the tension 4n·m·g/√3. At the wall n is L
-/// and the cohesion force is C₀ = Bond·m·g. At the next cut n is L − 1 and C₀ = Bond·(m/2)·g. All other bars carry
-/// less. So at every time step the cantilever does not tear if the Bond number is above
+/// about the disc of the lower row next to the cut. The lever arms are 1 + 2 + … + (n − 1) diameters in the lower row,
+/// and half a diameter more for each disc in the upper row. So the tension of the bar is (n² − n/2) m·g/(√3/2) = (2n²
+/// − n) m·g/√3. A diagonal bar that carries the 2n discs beyond it has the tension 4n·m·g/√3. At the wall n is L and
+/// the cohesion force is C₀ = Bond·m·g. At the next cut n is L − 1 and C₀ = Bond·(m/2)·g. All other bars have less
+/// tension. So at every time step the cantilever does not tear if the Bond number is above
 ///
 /// > Bond = max(2L² − L, 4L, 2(2(L−1)² − (L−1)), 8(L−1))/√3,
 ///
@@ -84,7 +84,8 @@ pub fn breaking_bond_of_cantilever(length: i32) -> f64 {
     times_root_3(n).max(2.0 * times_root_3(n - 1.0)) / 3f64.sqrt()
 }
 
-/// Returns the scene of a bridge: two rows of grains between two walls. The lower row has `length` grains.
+/// Returns the scene of a bridge: two rows of grains between two fixed discs on each side. The lower row has `length`
+/// grains.
 pub fn bridge(length: i32) -> Scene {
     let mut grains: Vec<_> = (0..length).map(lower).collect();
     grains.extend((0..length - 1).map(upper));

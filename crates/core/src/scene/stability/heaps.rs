@@ -10,7 +10,7 @@ use super::{DIAMETER, TOUCH, disc, dry, floor, half_space, view};
 use crate::scene::{Scene, rough_base};
 use crate::world::{Disc, direction};
 
-/// Initial position of the falling disc relative to the highest disc, in diameters.
+/// Initial position of the falling disc relative to the highest disc of the heap, in diameters along x and y.
 const FALLING: [f64; 2] = [0.3, 1.5];
 
 /// Returns the scene of a triangular heap over a rough base, with slopes of 60°. It has `rows` rows, and its lowest
@@ -45,8 +45,8 @@ pub fn heap_of(count: usize) -> Scene {
     Scene { name: "size".into(), ..heap(rows) }
 }
 
-/// Returns the scene of [`heap`] with one more disc, which falls onto the slope. All discs are moved by `distance`
-/// diameters from the origin along both axes.
+/// Returns the scene of [`heap`] with one more disc, which falls onto the slope, far from the origin of the
+/// coordinates. All discs are shifted by `distance` diameters along both axes.
 pub fn heap_far_away(rows: usize, distance: f64) -> Scene {
     let mut scene = heap(rows);
     scene.name = "far".into();
@@ -61,7 +61,7 @@ pub fn heap_far_away(rows: usize, distance: f64) -> Scene {
     scene
 }
 
-/// Steepest slope on which the heap of [`heap_on_slope`] stays at rest, degrees.
+/// Steepest inclination of the base at which the heap of [`heap_on_slope`] stays at rest, degrees.
 pub const STEEPEST_DEGREES: f64 = 30.0;
 
 /// Returns the scene of [`heap`] on a slope. The heap stays at rest up to an inclination of exactly 30°, whatever its
@@ -102,7 +102,8 @@ pub fn heap_on_slope(rows: usize, degrees: f64) -> Scene {
 /// Smallest friction coefficient at which the arch of [`arch`] stays at rest.
 pub const FRICTION_OF_ARCH: f64 = 3.0 - 2.0 * SQRT_2;
 
-/// Depth of the ground below the centres of the fixed discs, in diameters. The discs fall onto it if the arch breaks.
+/// Depth of the ground below the centres of the two fixed discs of the arch, in diameters. The other discs fall onto
+/// it if the arch breaks.
 const GROUND: f64 = 0.5;
 
 /// Returns the scene of an arch: three discs between two fixed discs. The centres of all five discs are on a
@@ -144,8 +145,9 @@ pub fn arch() -> Scene {
     scene
 }
 
-/// Overlap of neighbouring discs in the regular lattice, in units of the largest displacement of a disc. The
-/// displacements can move two neighbours apart by two units, and half of that is added as a margin.
+/// Overlap of neighbouring discs in the lattice before the discs are displaced, in units of the largest displacement
+/// of a disc. The displacements can move two neighbours apart by two units, and one more unit is a margin, so that all
+/// contacts touch.
 const SPARE: f64 = 3.0;
 
 /// Returns the scene of a box full of discs in a triangular lattice. Each disc is displaced at random by up to

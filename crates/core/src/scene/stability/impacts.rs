@@ -20,12 +20,12 @@ pub fn bounce(restitution: f64) -> Scene {
     scene
 }
 
-/// Speed of the first ball, in √(g d) (g: gravity, d: diameter).
+/// Speed of the ball that hits the row of balls, in √(g d) (g: gravity, d: diameter).
 const BALL_SPEED: f64 = 3.0;
 
 /// Returns the scene of Newton's cradle, without gravity: one ball hits a row of `count` − 1 balls, which touch each
-/// other and are at rest. For ρ = 1 (restitution) the last ball should fly off with the full speed. No contact law
-/// that solves all impacts of a step together predicts this.
+/// other and are at rest. With the restitution ρ = 1 the last ball should fly off with the speed of the first ball,
+/// and all others should stop. No contact law that solves all impacts of a step together predicts this.
 pub fn balls(count: usize) -> Scene {
     let mut grains: Vec<_> = (0..count).map(|k| disc(k as f64 * (1.0 - TOUCH), 0.0)).collect();
     grains[0].position.x -= DIAMETER;
@@ -41,32 +41,33 @@ pub fn balls(count: usize) -> Scene {
     scene
 }
 
-/// Mass of the falling disc divided by the mass of the sliding disc.
+/// Mass of the heavy falling disc divided by the mass of the sliding disc in the scene `blow`.
 const RATIO: f64 = 9.0;
-/// Speed of both discs along the floor, in √(g d) (g: gravity, d: diameter). `FALLING` is the speed at which the
-/// heavy disc falls, in the same unit.
+/// Initial speed of both discs along the floor, in √(g d) (g: gravity, d: diameter). `FALLING` is the speed at which
+/// the heavy disc falls, in the same unit.
 const SLIDING: f64 = 6.0;
 const FALLING: f64 = 2.0;
-/// Initial gap between the falling disc and the lower disc, in diameters. It is so large that at every time step the
-/// first steps have only the lower disc in contact.
+/// Initial gap between the falling disc and the lower disc, in diameters. It is so large that at every time step only
+/// the lower disc touches another body in the first steps.
 const HEIGHT: f64 = 0.05;
 
 /// Returns the scene of a blow: a disc slides along the floor, and a heavy disc, which moves along above it, hits it
 /// from above. The discs do not rotate, and there is no gravity, so the floor pushes only during the blow.
 ///
-/// The friction of the floor belongs to the whole normal impulse of the blow. Let M be the total mass, p_y < 0 the
-/// vertical momentum of the falling disc, μ the friction coefficient, v₀ the initial and v_x the final horizontal
-/// speed. After the blow both discs move horizontally, and the balance of momentum gives
+/// In the step of the blow, the friction impulse of the floor must be μ times the whole normal impulse of the blow.
+/// Let M be the total mass, p_y < 0 the vertical momentum of the falling disc, μ the friction coefficient, v₀ the
+/// initial and v_x the final horizontal speed. After the blow both discs move horizontally, and the balance of
+/// momentum gives
 ///
 /// > M v_x = M v₀ − μ|p_y|,
 ///
-/// whatever happens between the two discs. The two discs stay together, because this needs only a fraction of 0.9 μ
-/// of the blow as friction between them, which is less than μ (the lower disc has the mass M/10).
+/// whatever happens between the two discs. The two discs stay together, because this needs only a fraction of 0.9 μ of
+/// the blow as friction between them, which is less than μ (the lower disc has the mass M/10).
 ///
-/// The friction model `tresca` bounds friction in a step by the normal impulse of the previous step. At the step of the
-/// blow this impulse of the floor is zero, and at the next step it is the blow. So the speed is right one step late,
-/// and both discs move too far by Δt μ|p_y|/M (time step Δt). A second solve of the same step uses the impulse of the
-/// blow, because here the normal impulse of the floor does not depend on friction.
+/// The friction model `tresca` bounds friction in a step by the normal impulse of the previous step. At the step of
+/// the blow this bound is still zero, and only at the next step it is that of the blow. So the discs have the right
+/// speed one step late, and both discs move too far by Δt μ|p_y|/M (time step Δt). A second solve of the same step
+/// uses the impulse of the blow, because here the normal impulse of the floor does not depend on friction.
 pub fn blow() -> Scene {
     let mut scene = mass_ratio(RATIO);
     scene.name = "blow".into();
@@ -83,10 +84,11 @@ pub fn blow() -> Scene {
     scene
 }
 
-/// Speed of the disc at the start, in √(g d) (g: gravity, d: diameter).
+/// Initial speed of the sliding disc along the floor, in √(g d) (g: gravity, d: diameter).
 const SLIDING_SPEED: f64 = 3.0;
 
-/// Returns the scene of a disc that slides on the floor and does not rotate. It must keep its height, and stop.
+/// Returns the scene of a disc that slides on the floor and does not rotate. In a correct solution the disc keeps its
+/// height, and friction stops it.
 ///
 /// **Coulomb friction.** A time step Δt reduces the speed v₀ by a = μ g Δt (μ: friction coefficient), so the disc
 /// slides for n = ⌊v₀/a⌋ steps. If it moves with the velocity at the end of each step, it slides over the distance
@@ -104,7 +106,7 @@ const SLIDING_SPEED: f64 = 3.0;
 /// flies up to a height of v_n²/2g, at any time step.
 ///
 /// **The friction model `desaxce`** allows v_n = μ(|v_t| − |v_t| of the previous solve), which is negative for a disc
-/// that slows down. The sum over the whole path is −μ v₀, so at the end the disc is lower by μ v₀ Δt than at the
+/// that slows down. The sum of v_n over all steps is −μ v₀, so at the end the disc is lower by μ v₀ Δt than at the
 /// start.
 pub fn dilatancy() -> Scene {
     let mut grain = disc(0.0, 0.5 - TOUCH);
@@ -119,9 +121,9 @@ pub fn dilatancy() -> Scene {
 pub const WALL_DISTANCE: f64 = 20.0;
 
 /// Returns the scene of a fast disc and a wall without thickness. The disc moves `travel` diameters per step. Its
-/// initial position is shifted by the fraction `phase` of this distance. If a step is longer than the radius r of the
-/// disc, it can carry the centre past the wall before the disc overlaps the wall, or in the step in which the two
-/// first overlap. This happens for a fraction 1 − r/(v Δt) of all phases (speed v, time step Δt).
+/// initial position is shifted by the fraction `phase` of the distance per step. If a step is longer than the radius r
+/// of the disc, it can carry the centre past the wall before the disc overlaps the wall, or in the step in which the
+/// two first overlap. This happens for a fraction 1 − r/(v Δt) of all phases (speed v, time step Δt).
 pub fn thin_wall(travel: f64, phase: f64) -> Scene {
     let mut grain = disc(travel * phase, 0.0);
     let mut scene = dry("thin-wall", Vec::new());

@@ -1,5 +1,5 @@
 //! Scenes that are made to break solvers. Each scene shows one known weakness of solvers and has a known correct
-//! result. `slump_studies::stability` measures the errors.
+//! result. `slump_studies::stability` measures how far solvers are from these results.
 
 mod boxes;
 mod columns;
@@ -23,12 +23,12 @@ pub use impacts::{WALL_DISTANCE, balls, blow, bounce, dilatancy, thin_wall};
 use super::{Scene, View};
 use crate::world::{Boundary, Grain, Gravity, Parameters};
 
-/// Diameter d of a disc in these scenes, m.
+/// Diameter d of a disc in the stability scenes and in the experiments, m.
 pub const DIAMETER: f64 = 0.01;
-/// Gravity g in these scenes, m/s².
+/// Gravity g in the stability scenes and in the experiments, m/s².
 pub const GRAVITY: f64 = 9.8;
-/// Overlap of discs that are in contact at the start, in diameters. It is larger than the gap that a well solved step
-/// may open, and much smaller than any measured length.
+/// Initial overlap of discs that are meant to touch, in diameters. It is larger than the gap that the error of a well
+/// solved step may open, and much smaller than any length that the stability tests measure.
 const TOUCH: f64 = 1e-6;
 /// Returns a scene of grains under gravity, without cohesion and without restitution.
 pub fn dry(name: &str, grains: Vec<Grain>) -> Scene {
@@ -49,7 +49,8 @@ pub(super) fn view(min: DVec2, max: DVec2) -> Option<View> {
     Some(View { min: DIAMETER * min, max: DIAMETER * max })
 }
 
-/// Returns a half-space whose surface passes through a point in diameters.
+/// Returns a half-space whose surface passes through `point`, which is given in diameters, with the outward normal
+/// `normal`.
 pub(super) fn half_space(point: DVec2, normal: DVec2) -> Boundary {
     Boundary::HalfSpace { point: DIAMETER * point, normal }
 }

@@ -7,8 +7,8 @@ use crate::sim::state::State;
 /// are fast.
 const FARTHEST_IN_DIAMETERS: f64 = 8.0;
 
-/// Returns the search distances for a step that has begun: the largest approach of two bodies in the step, if both move
-/// at the highest speed.
+/// Returns the distances within which a step searches for contacts: two bodies that both move at the highest speed of
+/// any body approach each other by at most this distance in the step.
 ///
 /// Contacts are found at the beginning of a step, so a pair that meets later in the step is missed. A fast disc may
 /// then end up inside a wall or behind it. So this remedy adds the pairs whose gap would close within the step to the
@@ -18,14 +18,14 @@ const FARTHEST_IN_DIAMETERS: f64 = 8.0;
 /// > 0 ≤ P ⟂ v_n + gap/Δt ≥ 0.
 ///
 /// These pairs do not pull. At the end of the step they touch, because the law adds the rounding tolerance of contacts
-/// (`contact::range`) to their gap. In the compressive cone, which bounds friction by μ max(N, 0) with the normal force
-/// N, only the part of N counts that exceeds the cohesion that the pair will have later.
+/// (`contact::range`) to their gap. The compressive cone bounds friction by μ max(N, 0) with the normal force N. For
+/// these pairs only the part of N counts that exceeds the cohesion force that the pair will have after it touches.
 ///
 /// **Drawbacks.** The pair is slowed down to the speed gap/Δt before it meets, and in the next step it bounces with ρ
 /// times this speed. So it bounces with any fraction between 0 and 1 of the correct speed, on average with half of it.
 /// The normal belongs to the beginning of the step, so a pair that would pass by at an angle may be stopped without
-/// touching. A fast grain has to search its whole path. Dividing the step into pieces (`remedies::pieces`) has none of
-/// these drawbacks.
+/// touching. A fast grain has to search its whole path. The remedy `max-travel`, which divides the step into pieces
+/// (`remedies::pieces`), has none of these drawbacks.
 pub(in crate::sim) fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     let world = &state.world;
     let by_forces = 2.0 * state.largest_acceleration() * time_step_secs * time_step_secs;

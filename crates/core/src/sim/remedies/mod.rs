@@ -15,7 +15,7 @@ use crate::sim::settings::Settings;
 use crate::sim::stepping::Stage;
 use crate::solver::{Model, SolveReport};
 
-/// Solves the prepared problem, with shocks in sequence if the settings ask for this remedy.
+/// Solves the prepared contact problem of a step, with the remedy `sequential-impacts` if the settings turn it on.
 pub(super) fn solve<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> SolveReport {
     if settings.remedies.sequential_impacts {
         sequential_impacts::solve(stage, settings)
@@ -24,7 +24,7 @@ pub(super) fn solve<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> 
     }
 }
 
-/// Corrects positions after the grains have moved, if the settings ask for this remedy.
+/// Corrects positions after the grains have moved, with the remedy `push-out` if the settings turn it on.
 pub(super) fn after_step<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     if settings.remedies.push_out {
         push_out::push_out(stage.state, settings.parameters.time_step_secs);

@@ -3,11 +3,12 @@
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 
-/// Largest number of pieces of a step. With more pieces, a step would no longer be comparable to a step of the
-/// requested length.
+/// Largest number of pieces into which a step is divided. With more pieces, a step would no longer be comparable to a
+/// step of the requested length.
 const MOST_PIECES: f64 = 100.0;
 
-/// Returns the number of pieces of the next step: 1 unless grains are so fast that they would move too far.
+/// Returns the number of pieces into which the next step is divided: 1 unless grains are so fast that they would move
+/// farther in the step than the setting `max-travel` allows.
 pub(in crate::sim) fn pieces(state: &State, settings: &Settings) -> u32 {
     let world = &state.world;
     let longest = settings.remedies.max_travel * world.mean_diameter;

@@ -1,4 +1,4 @@
-//! Remedy `push-out`: moves grains that overlap apart after a step.
+//! Remedy `push-out`: pushes overlapping grains apart after a step.
 
 use glam::DVec2;
 
@@ -6,23 +6,23 @@ use crate::contact::Numbering;
 use crate::number::Parts;
 use crate::sim::state::State;
 
-/// Overlap that remains, in mean diameters. Cohesive contacts need some overlap: with a smaller value, rounding breaks
-/// contacts. A larger value is visible in the measurements.
+/// Overlap that the remedy leaves, in mean diameters. Cohesive contacts need some overlap: with a smaller value,
+/// rounding breaks contacts. A larger value is visible in the measurements.
 const LEFT: f64 = 2e-4;
 /// Fraction of the overlap beyond [`LEFT`] that is removed per step. With a larger value, piles visibly jump; with a
 /// smaller value, the removal takes more steps.
 const SHARE: f64 = 0.2;
-/// Number of Gauss–Seidel sweeps for the displacements. The next step corrects the remaining error.
+/// Number of Gauss–Seidel sweeps in the calculation of the displacements. The next step corrects the remaining error.
 const SWEEPS: u32 = 8;
 
-/// Contact in the calculation of displacements.
+/// Data of one contact in the calculation of the displacements that push grains apart.
 struct PushedContact {
     i: usize,
     j: Option<usize>,
     normal: DVec2,
     /// Required increase of the gap, m. A negative value allows the gap to decrease by this amount.
     want: f64,
-    /// Push λ of the contact, kg·m: mass times displacement.
+    /// Push λ of the contact, kg·m: an impulse that displaces a grain of the mass m by λ/m.
     push: f64,
     /// Effective mass of the two bodies, kg.
     mass: f64,
@@ -36,7 +36,7 @@ struct PushedContact {
 /// gap, n the normal, λ ≥ 0 the push of a contact, and m the mass of a grain. Then δ_i = Σ n λ/m_i over the contacts of
 /// grain i, and each contact has
 ///
-/// > 0 ≤ λ ⟂ n·(δ_i − δ_j) − want ≥ 0,
+/// > 0 ≤ λ ⟂ n·(δ_i − δ_j) − want ≥ 0.
 ///
 /// This is again Signorini's law, solved by a few sweeps of projected Gauss–Seidel. Velocities do not change, so grains
 /// gain no kinetic energy; a lifted grain gains potential energy.

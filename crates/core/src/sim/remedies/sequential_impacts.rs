@@ -50,30 +50,32 @@ use crate::solver::{
     for_each_row, relative_velocities, solve as solve_problem,
 };
 
-/// Closing speed below which contacts do not bounce, in units of g·Δt. Gravity alone makes a resting contact close by
-/// g·Δt in a step, so with a smaller value a pile at rest would be shaken in each step.
+/// Closing speed below which contacts do not bounce, in units of g·Δt, the speed that gravity adds in a step. Gravity
+/// alone makes a resting contact close by g·Δt in a step, so with a smaller value a pile at rest would be shaken in
+/// each step.
 const LEAST_IN_STEPS_OF_GRAVITY: f64 = 2.0;
 /// Closing speed below which contacts do not bounce, divided by the fastest closing speed of the step. This limit
 /// serves scenes without gravity: for ρ < 1 the contacts of a chain close infinitely often, ever more slowly. With a
 /// smaller value, more passes are spent on invisible motion.
 const LEAST_IN_FASTEST: f64 = 1e-6;
-/// Largest number of passes in a step. A pass solves all contacts that close at the same time. A shock through a row of
-/// n balls needs n − 1 passes.
+/// Largest number of passes in the calculation of a step's shocks. A pass solves all contacts that close at the same
+/// time. A shock through a row of n balls needs n − 1 passes.
 const MOST_PASSES: u32 = 2000;
 
-/// Work of the contacts of a step, divided by the sum of its absolute parts, above which the contacts count as creating
-/// energy. Rounding and the tolerance of a step cause smaller values.
+/// Work of all contacts in a step above which they count as creating energy, divided by the sum of the absolute works
+/// of the normal impulses. Rounding and the tolerance of a step cause smaller values.
 const LEAST_GAIN: f64 = 1e-6;
 
-/// Number of times that the bounces of a step are reduced if they create energy: halved, and the last time set to 0.
+/// Largest number of times that the opening speeds after shocks are reduced in a step because bounces create energy:
+/// each time they are halved, and the last time they are set to 0.
 const HALVINGS: u32 = 5;
 
-/// Solver settings of a pass (one stage of a shock). They do not depend on the solver of the step, because few contacts
-/// close together.
+/// Solver settings for a pass, which solves the contacts that close at the same time. They do not depend on the solver
+/// of the step, because only few contacts close at the same time.
 const PASS: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-12, 1000);
 
-/// Solves a prepared step whose contacts open with the speeds that the shocks of the step have given them. Reduces
-/// these speeds and solves the step again while bounces create energy.
+/// Computes the shocks of a prepared step, and solves the step so that its contacts open with the speeds that the
+/// shocks have given them. As long as bounces create energy, reduces these speeds and solves the step again.
 pub(in crate::sim) fn solve<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -97,9 +99,9 @@ pub(in crate::sim) fn solve<M: Model>(
     report.after(earlier)
 }
 
-/// Computes the shocks of a prepared step, and changes the problem so that its contacts open with the resulting speeds.
-/// Returns a report with the sweeps of these solves; the later solve of the step tells if the step is solved. With
-/// cohesion, or without shocks that bounce, returns `None` and does not change the problem.
+/// Computes the shocks of a prepared step, and changes the contact problem so that its contacts open with the resulting
+/// speeds. Returns a report with the sweeps for the shocks; the report of the step itself shows if the step is solved.
+/// With cohesion, or without shocks that bounce, returns `None` and does not change the problem.
 pub(in crate::sim) fn follow<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -133,8 +135,8 @@ pub(in crate::sim) fn follow<M: Model>(
     Some(report)
 }
 
-/// True if the contacts of a solved step have done positive work on the grains, beyond rounding and without the work of
-/// moving walls: velocities are relative to the walls.
+/// True if the contacts of a solved step have done positive work on the grains, beyond rounding. The work of moving
+/// walls does not count: velocities are taken relative to the walls.
 fn gains_energy<M: Model>(problem: &StepProblem<M>) -> bool {
     let (mut gain, mut scale) = (0.0, 0.0);
     for_each_row(problem, |number, row, motion| {
@@ -153,13 +155,13 @@ fn gains_energy<M: Model>(problem: &StepProblem<M>) -> bool {
     gain > LEAST_GAIN * scale
 }
 
-/// State of the calculation of shocks, between two passes.
+/// State of the calculation of a step's shocks, between two passes.
 struct ImpactSequence<M: Model> {
-    /// Present velocities of the grains.
+    /// Velocities of the grains after the passes so far.
     bodies: Vec<M::Body<f64>>,
-    /// Normal velocity u of each contact of the problem, m/s.
+    /// Normal velocity u of each contact after the passes so far, m/s.
     speeds: Vec<f64>,
-    /// Normal impulse of each contact so far, divided by its effective mass, m/s.
+    /// Sum of each contact's normal impulses in the passes so far, divided by the effective mass, m/s.
     impulses: Vec<f64>,
     /// True for each contact whose pair touches. A pair that will only touch later in the step takes no part in shocks.
     touching: Vec<bool>,
@@ -183,7 +185,8 @@ impl<M: Model> ImpactSequence<M> {
             .fold(0.0, |fastest, (speed, _)| fastest.max((-speed).positive_part()))
     }
 
-    /// Fills `pass` with the contacts that close faster than `least` (m/s). Returns false if no contact does.
+    /// Fills `pass`, the contact problem of the next pass, with the contacts that close faster than `least` (m/s).
+    /// Returns false if no contact does.
     fn select(
         &self,
         problem: &StepProblem<M>,
@@ -218,8 +221,8 @@ impl<M: Model> ImpactSequence<M> {
         relative_velocities(problem, &self.bodies, &mut self.speeds);
     }
 
-    /// Stops all contacts that still close, without friction. Uses the solver of the step, because many contacts may
-    /// close.
+    /// Stops all contacts that still close after the last pass, without friction. Uses the solver of the step, because
+    /// many contacts may close.
     fn stop_the_rest(
         &mut self,
         problem: &StepProblem<M>,
@@ -249,7 +252,7 @@ impl<M: Model> ImpactSequence<M> {
     }
 
     /// Changes the law of each struck contact so that it opens with the speed that the shocks have given it. A contact
-    /// that was not struck may not bounce. The solver starts from the impulses of the shocks.
+    /// that was not struck may not bounce. The impulses of the shocks become the starting values of the solver.
     fn set_rebounds(&self, problem: &mut StepProblem<M>) {
         for (number, (row, wall_speed)) in problem.rows_with_walls().enumerate() {
             let impulse = self.impulses[number];

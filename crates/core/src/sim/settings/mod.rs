@@ -95,8 +95,8 @@ impl Settings {
         parameters.get(name).or_else(|| solver.get(name)).or_else(|| remedies.get(name))
     }
 
-    /// Sets the setting `name` to a value. Returns false, and changes nothing, if no setting has this name and this
-    /// kind of value.
+    /// Sets the setting `name` to a value. Returns false, and changes nothing, if no setting has this name or if its
+    /// values are of another type.
     pub fn set(&mut self, name: &str, value: Value) -> bool {
         let Self { stepper, parameters, solver, remedies } = self;
         if name == Self::STEPPER.name {
@@ -146,7 +146,7 @@ impl Settings {
         Ok(())
     }
 
-    /// Checks that the stepper and the friction cone support the friction model.
+    /// Checks that the stepper and the friction cone support the friction model of the settings.
     fn check_friction_model(&self) -> Result<()> {
         let (model, cone) = (self.solver.friction_model, self.parameters.cone);
         if model != FrictionModel::Coulomb && !self.stepper.reads("friction-model") {
@@ -166,7 +166,7 @@ impl Settings {
         Ok(())
     }
 
-    /// Checks that the solver and the friction model support rolling friction, if rolling friction is present
+    /// Checks that the solver and the friction model support rolling friction, if a contact has rolling friction
     /// (`is_given`).
     fn check_rolling(&self, is_given: bool) -> Result<()> {
         let SolverSettings { method, friction_model, .. } = self.solver;
@@ -188,7 +188,7 @@ impl Settings {
         Ok(())
     }
 
-    /// Checks that the settings support everything in a world: its driven walls, gravity, periodic borders, pairs of
+    /// Checks that the settings support the features of a world: its driven walls, gravity, periodic borders, pairs of
     /// materials and rolling friction.
     pub(crate) fn check_in(&self, world: &World, physics: Physics) -> Result<()> {
         self.check_drives(&world.motions)?;
@@ -202,8 +202,8 @@ impl Settings {
         (self.stepper.info().check_in)(world, physics, &self.parameters)
     }
 
-    /// Checks that gravity can be tilted if the parameter `tilt` is not 0: gravity must be uniform, in a scene with two
-    /// axes.
+    /// Checks that gravity can be tilted if the parameter `tilt` is not 0: gravity must be uniform, and the scene must
+    /// have two axes.
     pub(crate) fn check_tilt(&self, gravity: &Gravity, physics: Physics) -> Result<()> {
         let refuse = |of: &str| {
             let allowed = format!("left out or 0 where {of}");
@@ -285,8 +285,8 @@ impl Settings {
         }
     }
 
-    /// Returns these settings without the remedies and the friction model that the stepper or the solver does not
-    /// support.
+    /// Returns these settings with all remedies switched off that the stepper does not support, and without a friction
+    /// model that the stepper or the solver does not support.
     pub fn with_only_what_is_taken(mut self) -> Self {
         self.solver = self.solver.by(self.solver.method);
         if !self.stepper.reads("friction-model") {

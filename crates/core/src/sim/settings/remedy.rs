@@ -1,11 +1,12 @@
 //! Registry of the remedies: optional corrections for known failures of a stepper, such as overlap. The paper's scheme
-//! uses no remedy. Each remedy has a row in [`REMEDIES`] and a setting in [`Remedies`]; its code is in `sim::remedies`.
+//! uses no remedy. Each remedy has an entry in [`REMEDIES`] and a setting in [`Remedies`]; its code is in
+//! `sim::remedies`.
 
 use crate::setting::{Group, Value, settings};
 use crate::sim::settings::stepper::Stepper;
 
-/// Value of `max-travel` in the preset `robust`: the longest distance that a grain moves in one piece of a step, in
-/// mean diameters. It is half of the distance that could carry a grain through a wall.
+/// Value of the remedy `max-travel` in the preset `robust`, in mean diameters. The remedy divides a step into pieces in
+/// which no grain moves farther than this. The value is half of the distance that could carry a grain through a wall.
 const ROBUST_TRAVEL: f64 = 0.25;
 
 /// Registry entry of a remedy: its name, the steppers that support it and its value in the preset `robust`.
@@ -20,12 +21,12 @@ pub struct Remedy {
 }
 
 impl Remedy {
-    /// True if `remedies` turns this remedy on.
+    /// True if the settings `remedies` turn this remedy on.
     pub(crate) fn is_on(&self, remedies: &Remedies) -> bool {
         remedies.get(self.name) != Remedies::default().get(self.name)
     }
 
-    /// Turns this remedy off in `remedies`.
+    /// Turns this remedy off in the settings `remedies`.
     pub(crate) fn leave_out(&self, remedies: &mut Remedies) {
         if let Some(value) = Remedies::default().get(self.name) {
             remedies.set(self.name, value);

@@ -45,9 +45,10 @@ use crate::sim::pull::acceleration_of_springs;
 use crate::sim::settings::fracture_work::effective_mass_of_mean;
 use crate::world::{MAX_SUBSTEPS, Parameters, Physics, World};
 
-/// Overlap that the weight of a whole pile causes if the stiffness is automatic, in mean diameters. A smaller value
-/// makes springs stiffer; they cost more, because the stable substep is proportional to the square root of this value.
-/// A larger value makes grains so soft that their overlap shows in the shape of the pile.
+/// Overlap at the bottom of a pile, caused by the weight of the whole pile, if the stiffness is chosen automatically,
+/// in mean diameters. A smaller value makes springs stiffer; they cost more, because the stable substep is proportional
+/// to the square root of this value. A larger value makes grains so soft that their overlap shows in the shape of the
+/// pile.
 const STATIC_OVERLAP: f64 = 1e-3;
 /// Smallest restitution that the dashpots reproduce; smaller restitutions are raised to this value. A smaller value
 /// requires more damping, and shortens the stable substep in proportion to its square root.
@@ -60,7 +61,7 @@ const NEIGHBOURS: [f64; 2] = [6.0, 2.0];
 /// Number of bisections in the search for the damping ratio: enough to reach the rounding of `f64`.
 const HALVINGS: u32 = 60;
 
-/// Spring and dashpot that act at each contact of a world.
+/// Spring and dashpot that act at each contact of a world under the stepper `dem`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringDashpot {
     /// Stiffness k, N/m.
@@ -70,9 +71,9 @@ pub struct SpringDashpot {
 }
 
 impl SpringDashpot {
-    /// Returns the stiffness and the damping ratio of the parameters. If the stiffness is 0, the springs are stiff
-    /// enough for a pile of the world's grains. If the damping ratio is 0, the dashpots give the restitution of the
-    /// parameters.
+    /// Returns the spring and dashpot for these parameters. If their stiffness is 0, the springs are stiff enough for
+    /// the weight of a pile of the world's grains. If their damping ratio is 0, the dashpots give the restitution of
+    /// the parameters.
     pub fn of(world: &World, axes: u8, parameters: &Parameters) -> Self {
         Self {
             stiffness: match parameters.stiffness {
@@ -127,7 +128,7 @@ fn stiffness_for_weight(world: &World, axes: u8, parameters: &Parameters) -> f64
     load / (STATIC_OVERLAP * world.mean_diameter)
 }
 
-/// Returns the damping ratio ζ that gives a restitution.
+/// Returns the damping ratio ζ with which a collision has this restitution.
 fn damping_ratio(restitution: f64) -> f64 {
     let wanted = restitution.max(LEAST_RESTITUTION);
     // Upper end of the search, 1/√ρ: with this damping ratio the restitution is below the wanted ρ for every ρ < 1.
@@ -164,8 +165,8 @@ fn angle_and_root(damping_ratio: f64) -> Option<(f64, f64)> {
     (root != 0.0).then_some((angle, root))
 }
 
-/// Returns the longest substep, s, that is stable even if the smallest grains have as many neighbours as fit around
-/// them.
+/// Returns the longest substep, s, for which the springs are stable even if the smallest grains have as many neighbours
+/// as fit around them.
 pub(super) fn critical_time_step_secs(
     world: &World,
     physics: Physics,
@@ -188,8 +189,8 @@ pub(super) fn contact_time_secs(world: &World, physics: Physics, parameters: &Pa
     springs.contact_time_secs(effective_mass_of_mean(world))
 }
 
-/// Returns the number of substeps of a step: the requested number or, if that is 0, the number that is stable.
-/// [`check_substeps`] refuses parameters that need too many substeps.
+/// Returns the number of substeps of a step: the number in the parameters or, if that is 0, the number for which the
+/// springs are stable. [`check_substeps`] refuses parameters that need too many substeps.
 pub(super) fn substeps(world: &World, physics: Physics, parameters: &Parameters) -> u32 {
     match parameters.substeps {
         0 => (stable_substeps(world, physics, parameters) as u32).clamp(1, MAX_SUBSTEPS),
@@ -197,7 +198,7 @@ pub(super) fn substeps(world: &World, physics: Physics, parameters: &Parameters)
     }
 }
 
-/// Returns the number of substeps per step at which a substep is at most [`SAFE_FRACTION`] of the critical time step.
+/// Returns the number of substeps per step for which a substep is at most [`SAFE_FRACTION`] of the critical time step.
 /// There is no upper limit.
 pub(in crate::sim) fn stable_substeps(
     world: &World,
@@ -208,8 +209,8 @@ pub(in crate::sim) fn stable_substeps(
     (parameters.time_step_secs / longest_secs).ceil()
 }
 
-/// Checks that the allowed number of substeps is stable. The error names the stiffness if it is too large, or else the
-/// time step if it is too long.
+/// Checks that the automatic number of substeps, for which the springs are stable, is at most [`MAX_SUBSTEPS`]. The
+/// error names the stiffness if it is too large, or else the time step if it is too long.
 pub(super) fn check_substeps(
     world: &World,
     physics: Physics,

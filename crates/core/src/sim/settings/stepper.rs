@@ -27,7 +27,7 @@ words! {
 /// Description of a stepper: its source, its settings and its abilities.
 #[derive(Clone, Copy, Debug)]
 pub struct StepperInfo {
-    /// One line that names the problem that a step solves.
+    /// One line on the problem that a step solves.
     pub solves: &'static str,
     /// Publication that describes the stepper.
     pub source: &'static str,
@@ -46,7 +46,7 @@ pub struct StepperInfo {
     pub check_in: fn(&World, Physics, &Parameters) -> Result<()>,
     /// Returns the number of substeps per step; 1 if the stepper solves a step as a whole.
     pub substeps: fn(&World, Physics, &Parameters) -> u32,
-    /// Returns the longest substep, s, that is always stable; `None` if the stepper has no such limit.
+    /// Returns the longest substep, s, for which the stepper is always stable; `None` if the stepper has no such limit.
     pub critical_time_step_secs: fn(&World, Physics, &Parameters) -> Option<f64>,
     /// Returns the duration of a collision of two grains of the mean mass, s; `None` if the contact law does not define
     /// it.
@@ -57,7 +57,8 @@ pub struct StepperInfo {
 }
 
 impl StepperInfo {
-    /// Defaults for a stepper that solves the contact problem of a step as a whole.
+    /// Default description of a stepper: it solves the contact problem of a step as a whole, and has no limits and no
+    /// additional observables.
     const WHOLE: Self = Self {
         solves: "",
         source: "",
@@ -102,7 +103,7 @@ impl Stepper {
     }
 }
 
-/// Checks that there is no rolling friction, for steppers that do not compute it.
+/// Checks that the coefficient of rolling friction is 0, for steppers that do not compute rolling friction.
 fn without_rolling(parameters: &Parameters) -> Result<()> {
     let found = parameters.rolling_friction;
     check(found == 0.0, "rolling-friction", found, "0 where stepper is not moreau")

@@ -2,10 +2,11 @@
 //! ACM Transactions on Graphics 44, 2025). It minimises, body by body, penalties that become stiffer while a contact is
 //! violated. Multipliers gradually replace the penalty forces.
 //!
-//! The unknowns are the velocities V of the bodies at the end of a substep of length h. Positions are x + hV, and
-//! normals stay as they were. The relative velocity of a contact minus the velocity w of its wall is c = v − w + b. The
-//! term b = gap/h keeps a gap from closing by more than its size. With the multipliers λ⁰, the stiffness k of the
-//! penalty, the friction coefficient μ, and σ = λ_n + Bond·a·h, a contact pushes with the impulses (divided by the
+//! The unknowns are the velocities V of the bodies at the end of a substep of length h. The positions at the end are x
+//! + hV, and normals are those of the beginning. A contact is violated by the velocity c = v − w + b, with the relative
+//! velocity v of its two bodies and the velocity w of its wall. The term b = gap/h keeps a gap from closing by more
+//! than its size. With the multipliers λ⁰, the stiffness k of the penalty, the friction coefficient μ, the acceleration
+//! a that defines the cohesion force, and σ = λ_n + Bond·a·h, a contact pushes with the impulses (divided by the
 //! effective mass m_ij)
 //!
 //! > λ_n = max(λ_n⁰ − κ_n c_n, −Bond·a·h),  λ_t = λ_t⁰ − κ_t c_t projected onto |λ_t| ≤ μσ,  κ = k h²/m_ij.
@@ -36,7 +37,7 @@ use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{Model, Row, StepProblem};
 use crate::world::Parameters;
 
-/// Number of iterations per substep, as in the authors' examples.
+/// Number of iterations per substep, as in the examples of the method's authors.
 const ITERATIONS: u32 = 10;
 
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
@@ -90,21 +91,22 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     substepping.end_step_of(stage, &contacts, substeps * (ITERATIONS + 1))
 }
 
-/// Smallest dimensionless stiffness κ = k h²/m_ij of a contact (stiffness k, substep h, effective mass m_ij), also of a
-/// new contact. With a smaller value new contacts sink in; with a larger value the descent body by body cannot transmit
-/// a force.
+/// Dimensionless stiffness κ = k h²/m_ij of a new contact (stiffness k, substep h, effective mass m_ij), and smallest
+/// stiffness of any contact. With a smaller value new contacts sink in; with a larger value the descent body by body
+/// cannot transmit a force.
 const SOFTEST: f64 = 1.0;
 /// Largest dimensionless stiffness κ = k h²/m_ij of a contact (stiffness k, substep h, effective mass m_ij). A stiffer
 /// contact would dominate all other forces on its two bodies.
 const STIFFEST: f64 = 1e6;
-/// Increase of a contact's dimensionless stiffness κ per iteration, if the contact is violated by the speed that
-/// gravity adds in a substep. With a larger value columns are more stable, but impacts make contacts so stiff that the
-/// descent body by body cannot transmit forces, and collapsing piles explode.
+/// Increase of a contact's dimensionless stiffness κ per iteration, if its violation equals the speed that gravity adds
+/// in a substep. With a larger value columns are more stable, but impacts make contacts so stiff that the descent body
+/// by body cannot transmit forces, and collapsing piles explode.
 const GROWTH: f64 = 0.1;
 /// Factor that multiplies the stiffness κ of all contacts at the beginning of each substep. With a smaller value,
 /// contacts of resting grains soften.
 const KEPT: f64 = 0.99;
-/// Overlap that the last pass of a substep leaves, in mean diameters. Cohesive contacts need some overlap to pull.
+/// Overlap that the position correction at the end of a substep leaves, in mean diameters. Cohesive contacts need some
+/// overlap to pull.
 const MARGIN: f64 = 5e-4;
 
 /// One side of a contact: its effect on one of its two bodies.
@@ -121,7 +123,7 @@ struct BlockDescent {
     law: ContactLaw,
     /// Speed that gravity adds in a substep, g·h, m/s. Violations of contacts are divided by this speed.
     speed_scale: f64,
-    /// Overlap that the last pass of a substep leaves, m.
+    /// Overlap that the position correction at the end of a substep leaves, m.
     margin: f64,
     /// Dimensionless stiffnesses (κ_n, κ_t) of each contact along normal and tangent.
     stiffness: Vec<[f64; 2]>,
@@ -158,7 +160,7 @@ impl BlockDescent {
         }
     }
 
-    /// Takes the stiffnesses that contacts have stored in the previous step.
+    /// Reads the stiffnesses that contacts have stored in the previous step.
     fn stiffen<M: Model>(&mut self, stage: &Stage<'_, M>) {
         let memories = stage.state.contacts.memories();
         let rows = stage.problem.rows().zip(&stage.problem.rows.contacts);
@@ -194,8 +196,8 @@ impl BlockDescent {
         }
     }
 
-    /// Sets the velocity of each body to the minimum of the body's own energy, with all other bodies fixed. The closure
-    /// `bias` returns the velocity term b (m/s) for a gap (m).
+    /// Sets the velocity of each body to the velocity that minimises the body's own energy while the velocities of all
+    /// other bodies stay the same. The closure `bias` returns the velocity term b (m/s) for a gap (m).
     fn minimise<M: Model>(
         &self,
         problem: &mut StepProblem<M>,
@@ -259,7 +261,7 @@ impl BlockDescent {
         }
     }
 
-    /// Returns the impulses of a contact (m/s) at the present velocities of its bodies.
+    /// Returns the impulses of a contact, divided by the effective mass (m/s), at the present velocities of its bodies.
     #[inline(always)]
     fn push<M: Model>(
         &self,
@@ -297,8 +299,8 @@ impl BlockDescent {
     }
 }
 
-/// Impulses (λ_n, λ_t) of a contact, m/s, the velocities (c_n, c_t) that cause them, m/s, and for each impulse a flag
-/// that is true if the bound cut it.
+/// Impulses (λ_n, λ_t) of a contact divided by the effective mass, m/s; the violations (c_n, c_t) that cause them, m/s;
+/// and for each impulse a flag that is true if the contact law has limited the impulse.
 struct ContactPush {
     impulse: [f64; 2],
     violation: [f64; 2],

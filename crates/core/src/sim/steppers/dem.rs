@@ -5,8 +5,8 @@
 //!
 //! > N = max(k δ − γ v_n, 0) − C₀,  T = −k_t ξ − γ_t v_t with ξ̇ = v_t,  |T| ≤ bound(N + C₀).
 //!
-//! Spring and dashpot together never pull: N ≥ −C₀, as in all contact laws of this program. The bound of friction is
-//! also the bound of these laws. If a contact slides, ξ is shortened so that T is at the bound.
+//! Spring and dashpot together never pull: N ≥ −C₀, as in all contact laws of this program. The friction bound is also
+//! that of all contact laws. If a contact slides, ξ is shortened so that T is at the bound.
 
 use crate::contact::{Contact, ContactLaw, ContactMemory, ContactParts, Impulse, Transmitted, law};
 use crate::number::Parts;
@@ -17,8 +17,9 @@ use crate::sim::steppers::substeps::{Substepping, add_work, set_drive_speeds};
 use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{DrivenWall, Model, cone_of};
 
-/// Takes one step, and detects the contacts in each substep. At the end, the rows of the step's contact problem, which
-/// are the contacts at the beginning of the step, receive the total impulses of their pairs.
+/// Takes one step, and detects the contacts in each substep. The contact problem of the step, from which its residual
+/// is computed, contains the contacts at the beginning of the step. At the end, each of them receives the total impulse
+/// of its pair.
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
     let (world, physics) = (&stage.state.world, stage.state.physics);
     let parameters = &settings.parameters;
@@ -117,7 +118,7 @@ impl Elements {
 
     /// Changes the velocities of the grains by the forces of a substep, computed from the present overlaps and the
     /// velocities `start`. Fills `pushes` with three values for each contact: the effective mass (kg), the impulses
-    /// divided by this mass (m/s), and the velocity of the wall (m/s).
+    /// divided by this mass (m/s), and the velocity of the contact's wall (m/s).
     fn push<M: Model>(
         &self,
         stage: &mut Stage<'_, M>,
@@ -164,7 +165,7 @@ impl Elements {
 
 /// Ends a substep of walls driven by a force. Like grains, these walls move with the forces at the beginning of the
 /// substep. `pushes` contains for each contact the effective mass (kg), the impulses divided by this mass (m/s), and
-/// the velocity of the wall (m/s).
+/// the velocity of the contact's wall (m/s).
 ///
 /// The motion of a wall of mass M with n contacts of stiffness k is stable if the substep h is below 2 √(M/nk). This is
 /// guaranteed if M is at least the mass of n of the lightest grains, because substeps are short enough for these

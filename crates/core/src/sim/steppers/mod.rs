@@ -46,8 +46,8 @@ impl StepperMemory {
         }
     }
 
-    /// Sets up the first problem that the solver receives in the next step. For steppers without a solver, sets up the
-    /// problem from which the residual of the step is computed.
+    /// Sets up the first contact problem that the solver receives in the next step. For steppers without a solver, sets
+    /// up the problem from which the residual of the step is computed.
     #[inline(never)]
     pub(super) fn set_up<M: Model>(&mut self, stage: &mut Stage<'_, M>, settings: &Settings) {
         match settings.stepper {

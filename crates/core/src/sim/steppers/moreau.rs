@@ -21,7 +21,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     result
 }
 
-/// Detects the contacts and sets up the contact problem of the next step.
+/// Detects the contacts of the next step, and sets up their contact problem.
 pub(super) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     let parameters = settings.parameters;
     let world = stage.world();
@@ -58,7 +58,8 @@ pub(super) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     }
 }
 
-/// Returns the gap up to which the law treats grains as touching, m, if contacts pull up to the gap `tolerance` (m).
+/// Returns the gap, m, up to which the contact law treats grains as touching. `tolerance` is the gap up to which
+/// contacts pull, m.
 fn touching_within(state: &State, tolerance: f64) -> f64 {
     let rounding = (0.5 * tolerance).min(TOUCH_IN_DIAMETERS * state.world.mean_diameter);
     rounding.max(state.candidates.gap_tolerance())

@@ -13,14 +13,14 @@ use crate::sim::stepping::{Stage, StepResult};
 use crate::sim::turned_bonds::{is_open_against, is_within_bounds};
 use crate::solver::{DrivenRow, Measures, Model, Row, SolveReport, StepProblem, measure};
 
-/// Data of a step during its substeps. They are dropped at the end of the step: the world and the contacts store the
-/// data that later steps need.
+/// Data of a step during its substeps. The data are dropped at the end of the step; the world and the contacts store
+/// the data that later steps need.
 pub(super) struct Substepping<M: Model> {
     /// Number of substeps of the step.
     pub count: u32,
     /// Length h of a substep, s.
     pub substep_secs: f64,
-    /// Velocities of the grains at the beginning of the substep.
+    /// Velocities of the grains at the beginning of the present substep.
     pub start: Vec<M::Body<f64>>,
     /// Velocities that the grains would have at the end of the substep if no contact acted.
     pub free: Vec<M::Body<f64>>,
@@ -44,7 +44,8 @@ impl<M: Model> Substepping<M> {
         }
     }
 
-    /// Ends the step of a stepper whose bonds exist while their gaps are below the touch tolerance. `contacts` are in
+    /// Ends the step of a stepper whose bonds exist while their gaps are below the touch tolerance. Returns the works
+    /// and the residual of the step, and the number of bonds that ended because their pairs turned. `contacts` are in
     /// their state after the last substep, and `sweeps` is the number of passes over them in the step.
     pub(super) fn end_step_of(
         &self,
@@ -64,7 +65,7 @@ impl<M: Model> Substepping<M> {
         StepResult { turned_bonds, ..self.end_step(stage, sweeps) }
     }
 
-    /// Ends the step: returns its works and its residual. `sweeps` is the number of passes over the contacts in the
+    /// Ends the step, and returns its works and its residual. `sweeps` is the number of passes over the contacts in the
     /// step.
     pub(super) fn end_step(&self, stage: &Stage<'_, M>, sweeps: u32) -> StepResult {
         let Measures { normal_work, tangential_work, wall_work, border_work, .. } =
@@ -109,8 +110,8 @@ impl<M: Model> Substepping<M> {
         }
     }
 
-    /// Adds the work of gravity, body forces and the user's spring in the substep at whose end the grains have the
-    /// velocities `bodies`.
+    /// Adds the work of gravity, body forces and the user's spring in a substep. `bodies` are the velocities of the
+    /// grains at its end.
     pub(super) fn add_gravity_work(&mut self, bodies: &[M::Body<f64>], masses: &[f64]) {
         for (index, body) in bodies.iter().enumerate() {
             let (start, free) = (&self.start[index], &self.free[index]);
@@ -119,9 +120,9 @@ impl<M: Model> Substepping<M> {
     }
 }
 
-/// Adds the work of one contact's impulses λ (reduced impulses, m/s) in a substep. As for a whole step
-/// (`solver::measure`), it is the impulse times the mean of the velocities at the beginning and the end. `wall`
-/// contains the normal and tangential velocity of the contact's wall, m/s.
+/// Adds the work of one contact in a substep. `impulse` contains the impulses λ divided by the effective mass, m/s. As
+/// for a whole step (`solver::measure`), the work is the impulse times the mean of the velocities at the beginning and
+/// the end. `wall` contains the normal and tangential velocity of the contact's wall, m/s.
 #[inline(always)]
 pub(super) fn add_work<M: Model>(
     works: &mut StepResult,
@@ -141,7 +142,7 @@ pub(super) fn add_work<M: Model>(
     }
 }
 
-/// Sets the final speeds of driven walls in the contact problem from which the residual of the step is computed.
+/// Writes the final speeds of driven walls to the contact problem from which the residual of the step is computed.
 pub(super) fn set_drive_speeds<M: Model>(stage: &mut Stage<'_, M>) {
     let drives = stage.state.world.motions.iter().filter_map(|motion| motion.drive.as_ref());
     stage.problem.set_wall_velocities(drives.map(|drive| drive.speed));
@@ -157,10 +158,10 @@ pub(super) struct Touching {
     pub surface_speed: f64,
     /// Data on the driven wall of the contact; `None` if the contact has no wall driven by a force.
     pub driven: Option<DrivenRow>,
-    /// Change of the normal and of the tangential velocity per unit impulse, divided by the same change at a wall that
-    /// does not yield: 1 unless the wall is driven by a force.
+    /// Change of the contact's normal and tangential velocity by a unit impulse, divided by the change at a wall that
+    /// does not yield: above 1 if a force drives the wall, otherwise 1.
     pub answers: [f64; 2],
-    /// Term that the contact law adds to the normal velocity because of restitution, relative to the wall, m/s: minus
+    /// Term that the contact law adds to the normal velocity relative to the wall because of restitution, m/s: minus
     /// the separation speed, so below 0 if the contact was closing.
     pub rebound: f64,
     /// Capture speed: the opening speed that cohesion can stop in this substep, m/s; 0 without cohesion.
@@ -178,8 +179,8 @@ impl Touching {
     }
 }
 
-/// Returns the contacts in the order of the problem's rows. Their impulses are the forces of the previous step times
-/// `warm_secs` (s); 0 s gives a cold start.
+/// Returns the contacts in the order of the rows of the contact problem. The impulses with which they start are the
+/// forces of the previous step times `warm_secs` (s); 0 s gives a cold start.
 pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<Touching> {
     let (contacts, problem) = (&stage.state.contacts, &stage.problem);
     let contact = |((number, row), &index): ((usize, &Row<M>), &u32)| {
@@ -201,7 +202,7 @@ pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<To
     problem.rows().zip(&problem.rows.contacts).map(contact).collect()
 }
 
-/// Changes the gaps by the velocities of the grains during one substep.
+/// Changes the gaps of the contacts by the motion of the grains during one substep.
 pub(super) fn follow_gaps<M: Model>(
     problem: &StepProblem<M>,
     contacts: &mut [Touching],
@@ -251,7 +252,7 @@ pub(super) fn remember<M: Model>(
     }
 }
 
-/// Writes the impulses summed over the step into its contact problem.
+/// Writes the impulses summed over the step to the contact problem of the step.
 pub(super) fn hand_over<M: Model>(problem: &mut StepProblem<M>, contacts: &[Touching]) {
     let capture_speed = problem.law.capture_speed();
     for (row, contact) in problem.rows.iter_mut().zip(contacts) {

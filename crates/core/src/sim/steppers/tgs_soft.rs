@@ -3,12 +3,13 @@
 //!
 //! All substeps use the contacts found at the beginning of the step; no contacts are added for pairs that may meet
 //! later. Impulses λ are divided by the effective mass, and σ = λ_n + Bond·a·h is the normal impulse shifted by the
-//! cohesion of a substep of length h. Each substep has five parts:
+//! cohesion of a substep of length h (a is the acceleration that defines the cohesion force). Each substep has five
+//! parts:
 //!
 //! 1. Gravity accelerates the grains.
 //! 2. The impulses of the previous substep are applied (warm start).
-//! 3. One sweep visits all contacts as **soft** contacts, v_n + b = −c σ: each is an overdamped spring that acts on the
-//!    gap.
+//! 3. One sweep visits all contacts as **soft** contacts, v_n + b = −c σ with the softness c and the speed b of pushing
+//!    overlap out: each is an overdamped spring that acts on the gap.
 //! 4. The grains move for the time h, and each gap changes by h v_n.
 //! 5. One sweep visits all contacts as **rigid** contacts, v_n = 0. It removes the speed with which overlaps were
 //!    pushed out, so that pushing out changes only positions and adds no energy.
@@ -84,7 +85,8 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     substepping.end_step_of(stage, &contacts, 2 * substeps + 1)
 }
 
-/// Gives contacts that met and pushed in the step the separation speed of restitution.
+/// Gives contacts that met and pushed in the step the separation speed of restitution, by an additional impulse at the
+/// end of the step.
 fn restitute<M: Model>(
     problem: &mut StepProblem<M>,
     walls: &mut [DrivenWall],
@@ -108,8 +110,8 @@ fn restitute<M: Model>(
     });
 }
 
-/// Calls `change` for every contact with its relative velocities (m/s). `change` returns impulses divided by the
-/// effective mass (m/s), which then change the velocities of the two bodies.
+/// Calls `change` for every contact with the contact's relative velocities (m/s). `change` returns impulses divided by
+/// the effective mass (m/s), which are then applied to the two bodies.
 #[inline(always)]
 fn update<M: Model>(
     problem: &mut StepProblem<M>,
@@ -135,17 +137,17 @@ fn update<M: Model>(
     }
 }
 
-/// Frequency ω/2π of the contact springs, in units of √(g/d): 30 Hz for discs of 1 m, as in game engines. A higher
-/// frequency makes overlaps smaller; it is limited to [`FREQUENCY_PER_SUBSTEP`] times the number of substeps per
-/// second.
+/// Frequency ω/2π of the contact springs, in units of √(g/d) with gravity g and the mean diameter d: 30 Hz for discs of
+/// 1 m, as in game engines. A higher frequency makes overlaps smaller; it is limited to [`FREQUENCY_PER_SUBSTEP`] times
+/// the number of substeps per second.
 const FREQUENCY: f64 = 10.0;
-/// Largest frequency ω/2π of the contact springs times the substep h. With a larger value contacts are nearly rigid,
-/// and one sweep no longer transmits forces through a pile.
+/// Largest product of the frequency ω/2π of the contact springs and the length h of a substep. With a larger value
+/// contacts are nearly rigid, and one sweep no longer transmits forces through a pile.
 const FREQUENCY_PER_SUBSTEP: f64 = 0.25;
 /// Damping ratio ζ of the contact springs. With a smaller value overlap is removed too fast, and piles jitter.
 const DAMPING_RATIO: f64 = 10.0;
-/// Largest speed with which an overlap is pushed out, in units of √(g·d). With a larger value deep overlaps explode;
-/// with a smaller value they persist.
+/// Largest speed with which an overlap is pushed out, in units of √(g·d) with gravity g and the mean diameter d. With a
+/// larger value deep overlaps explode; with a smaller value they persist.
 const PUSH_OUT_SPEED: f64 = 1.0;
 
 /// Constants of soft contacts that are the same for all contacts of a step.
@@ -162,9 +164,10 @@ const PUSH_OUT_SPEED: f64 = 1.0;
 /// break.
 struct Softness {
     substep_secs: f64,
-    /// Rate at which a spring closes an overlap, 1/s: closing speed divided by overlap (ω/a above).
+    /// Rate at which a spring closes an overlap, 1/s: closing speed divided by overlap, ω/a in the formulas of
+    /// [`Softness`].
     rate: f64,
-    /// Softness c of a contact (formula above), dimensionless: 0 for a rigid contact, near 1 for a soft contact.
+    /// Softness c of a contact, dimensionless: 0 for a rigid contact, near 1 for a soft contact ([`Softness`]).
     compliance: f64,
     /// Largest speed with which an overlap is pushed out, m/s.
     push_out_speed: f64,
@@ -187,7 +190,7 @@ impl Softness {
         }
     }
 
-    /// Projects the impulses of the previous substep onto the range that the contact law allows now, and returns them.
+    /// Limits the impulses of the previous substep to the range that the contact law allows now, and returns them.
     #[inline(always)]
     fn warm_start<M: Model>(&self, contact: &mut Touching) -> [f64; 2] {
         let shifted = law::signorini(contact.impulse[0] + contact.capture_speed);
@@ -197,8 +200,8 @@ impl Softness {
         contact.impulse
     }
 
-    /// Updates the impulses of one contact in a sweep, given its relative velocities (m/s). Returns the change of the
-    /// impulses divided by the effective mass, m/s.
+    /// Updates the impulses of one contact in a sweep. Its relative velocities are given in m/s. Returns the changes of
+    /// the impulses divided by the effective mass, m/s.
     #[inline(always)]
     fn solve<M: Model, const SOFT: bool>(
         &self,
@@ -256,8 +259,8 @@ impl Touching {
         }
     }
 
-    /// Applies the reaction to impulses on the grain to the contact's wall, if a force drives the wall. `impulse` is
-    /// divided by the mass `mass` of the grain (kg), m/s.
+    /// Applies the reaction to an impulse on the grain to the contact's wall, if a force drives the wall. `impulse` is
+    /// divided by `mass`, the mass of the grain (kg), and has the unit m/s.
     #[inline(always)]
     fn push_back(&self, walls: &mut [DrivenWall], mass: f64, impulse: [f64; 2]) {
         if let Some(DrivenRow { by, .. }) = self.driven {
@@ -267,8 +270,8 @@ impl Touching {
     }
 }
 
-/// Returns the driven walls at the beginning of a substep, and sets `answers`, the changes of velocity per unit
-/// impulse, of their contacts. A substep of length 0 is an impact.
+/// Returns the driven walls at the beginning of a substep. Sets `answers`, the changes of velocity by unit impulses, of
+/// the contacts with these walls. A substep of length 0 is an impact.
 fn begin_walls<M: Model>(
     stage: &Stage<'_, M>,
     contacts: &mut [Touching],

@@ -20,11 +20,11 @@ const ASYMMETRY: f64 = 1e-5;
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Triplets {
-    /// Row index of each entry.
+    /// Row index of each entry of the matrix.
     pub row: Vec<u32>,
-    /// Column index of each entry.
+    /// Column index of each entry of the matrix.
     pub col: Vec<u32>,
-    /// Value of each entry, 1/kg.
+    /// Value of each entry of the matrix, 1/kg.
     pub val: Vec<f64>,
 }
 

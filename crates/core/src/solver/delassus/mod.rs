@@ -130,7 +130,7 @@ impl DelassusProblem {
         })
     }
 
-    /// Number of contacts.
+    /// Returns the number of contacts.
     pub fn len(&self) -> usize {
         self.rows.len()
     }

@@ -37,7 +37,7 @@ pub(crate) struct SymmetricBlockMatrix<const D: usize> {
     /// Diagonal blocks in elimination order. After the factorisation the block at position k is L_k, with the inverses
     /// of the diagonal entries of L_k on the diagonal.
     diagonal: Vec<Padded<D>>,
-    /// Blocks above the diagonal, in row a and column b, one per pair a < b of neighbours in the elimination order.
+    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b whose bodies are neighbours.
     /// They are numbered as in [`Elimination::later`].
     upper: Vec<Padded<D>>,
     /// Work memory: the blocks of a supernode's rows outside the supernode, column by column.
@@ -59,8 +59,9 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         add(&mut self.diagonal[place as usize], block);
     }
 
-    /// Adds `block` to the block of two neighbours in the elimination order. `number` is the index of the later
-    /// neighbour in [`Elimination::later`]. The rows of the block belong to the earlier neighbour.
+    /// Adds `block` to the off-diagonal block of two bodies that are neighbours. `number` is the index, in
+    /// [`Elimination::later`], of the body that is eliminated second. The rows of the block belong to the body that is
+    /// eliminated first.
     #[inline(always)]
     pub(crate) fn add_to_upper(&mut self, number: u32, block: &Block<D>) {
         add(&mut self.upper[number as usize], block);
@@ -77,8 +78,8 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         self.factorise_each(elimination);
     }
 
-    /// Does the work of `factorise_each` with the AVX instructions: the same operations in the same order, four numbers
-    /// at a time, so that the result is bitwise the same.
+    /// Replaces the matrix by its factors like `factorise_each`, compiled for the AVX instructions: the same operations
+    /// in the same order, four numbers at a time, so that the result is bitwise the same.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx")]
     fn factorise_with_avx(&mut self, elimination: &Elimination) {
@@ -280,7 +281,7 @@ fn solve_lower<const D: usize>(factor: &Padded<D>, block: &mut Padded<D>) {
     }
 }
 
-/// Returns the N blocks left − Σ aᵀb. The blocks `a` are common to all N sums; `b` has one list of blocks per sum.
+/// Returns the N blocks `left` − Σ aᵀb. The blocks `a` are common to all N sums; `b` has one list of blocks per sum.
 #[inline(always)]
 fn less_products<const D: usize, const N: usize>(
     mut left: [Padded<D>; N],

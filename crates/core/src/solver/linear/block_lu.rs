@@ -20,7 +20,8 @@ pub(crate) fn diagonal<const D: usize>(numbers: [f64; D]) -> Block<D> {
     block
 }
 
-/// Returns the inertias of a body of mass `mass`, one per degree of freedom, kg.
+/// Returns the inertias of a body of mass `mass`, one per degree of freedom, kg. The coordinate of a rotation is radius
+/// times angle, so its inertia is a mass, too.
 pub(crate) fn inertias<M: Model, const D: usize>(mass: f64) -> [f64; D] {
     std::array::from_fn(|axis| mass * M::INERTIA_OVER_MASS[axis])
 }
@@ -30,10 +31,10 @@ pub(crate) fn inertias<M: Model, const D: usize>(mass: f64) -> [f64; D] {
 pub(crate) struct BlockMatrix<const D: usize> {
     /// Diagonal blocks in elimination order. [`BlockMatrix::factorise`] inverts them.
     diagonal: Vec<Block<D>>,
-    /// Blocks below the diagonal, in row b and column a, one per pair a < b of neighbours in the elimination order.
+    /// Blocks below the diagonal, in row b and column a, one per pair of positions a < b whose bodies are neighbours.
     /// They are numbered as in [`Elimination::later`].
     lower: Vec<Block<D>>,
-    /// Blocks above the diagonal, in row a and column b, one per pair a < b of neighbours in the elimination order.
+    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b whose bodies are neighbours.
     /// They are numbered as in [`Elimination::later`].
     upper: Vec<Block<D>>,
 }
@@ -65,8 +66,8 @@ impl<const D: usize> BlockMatrix<D> {
         &mut self.diagonal[place as usize]
     }
 
-    /// Returns the two off-diagonal blocks (i, j) and (j, i) of two bodies that are neighbours. `number` is the index
-    /// of the body that is eliminated later in [`Elimination::later`].
+    /// Returns the two off-diagonal blocks (i, j) and (j, i) of two bodies that are neighbours. `number` is the index,
+    /// in [`Elimination::later`], of the body that is eliminated second.
     #[inline(always)]
     pub(crate) fn off_diagonal_mut(
         &mut self,

@@ -22,9 +22,9 @@ type BodyNeighbours = SmallVec<[u32; 12]>;
 /// An elimination order and the nonzero pattern of the factors. A *place* is the position of a body in this order.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Elimination {
-    /// The body at each position of the elimination order.
+    /// Index of the body that is eliminated at each position of the order.
     pub body_at: Vec<u32>,
-    /// The position of each body in the elimination order.
+    /// Position of each body in the elimination order.
     pub place_of: Vec<u32>,
     /// Boundaries of the lists of later neighbours, which are in rising order. The list of position k is
     /// `later[starts[k] .. starts[k + 1]]`, and the index in `later` is the number of the off-diagonal block.
@@ -70,7 +70,8 @@ impl Elimination {
         row.start + self.later[row].partition_point(|&place| place < b)
     }
 
-    /// Returns the numbers of the blocks of a position with its later neighbours.
+    /// Returns the range of the numbers of the off-diagonal blocks in the row of a position, one block per later
+    /// neighbour.
     #[inline(always)]
     pub(super) fn row(&self, place: usize) -> std::ops::Range<usize> {
         self.starts[place] as usize..self.starts[place + 1] as usize
@@ -196,15 +197,16 @@ impl Elimination {
     }
 }
 
-/// Marks a missing position or child.
+/// Marks a body that has no position in the elimination order yet, or a position without a further child in the
+/// elimination tree.
 const NONE: u32 = u32::MAX;
 
-/// Work memory of the postorder, reused for the next order.
+/// Work memory for computing a postorder, reused for the next elimination order.
 #[derive(Clone, Debug, Default)]
 struct Postorder {
-    /// For each position, the head of the list of its children in the elimination tree.
+    /// For each position, the first child of a linked list of its children in the elimination tree.
     first_child: Vec<u32>,
-    /// For each position, the next child of the same parent.
+    /// For each position, the next child of the position's parent in the linked list of children.
     next_child: Vec<u32>,
     /// For each position, its child with the most later neighbours. This child comes right before its parent in the new
     /// order.
@@ -266,7 +268,8 @@ impl Postorder {
 pub(crate) struct ContactGraph {
     /// The elimination order.
     pub elimination: Elimination,
-    /// The block of each row between two moving bodies, as an index in [`Elimination::later`].
+    /// For each contact between two moving bodies (grains or driven walls), the number of its block, an index in
+    /// [`Elimination::later`].
     pub pair_blocks: Vec<u32>,
     /// Number of bodies, and (next field) pairs of bodies in contact, for which `elimination` was computed.
     bodies: usize,

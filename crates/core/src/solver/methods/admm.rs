@@ -2,18 +2,20 @@
 //! problems V. Acary, M. Brémond, O. Huber 2018).
 //!
 //! Body velocities V and contact velocities z are separate unknowns, coupled by HV = z with the impulses as multipliers
-//! and a penalty m_ij/ε. In reduced impulses (shifted normal impulse σ, tangential impulse λ_t, `contact::law`), with
-//! u = v_n + ρ v_n^{n−1} computed from V, one iteration computes the impulses from V by the law,
+//! and a penalty m_ij/ε. In reduced impulses (shifted normal impulse σ, tangential impulse λ_t, `contact::law`), with u
+//! = v_n + ρ v_n^{n−1} computed from V, one iteration computes the impulses from V by the law,
 //!
 //! > σ' = max(σ − u/ε, 0),  λ_t' = clamp(λ_t − v_t m_t/(m_n ε), ±bound(σ')),
 //!
-//! sets z = u + ε (σ' − σ), and then computes V from the impulses, pulled towards z,
+//! sets z = u + ε (σ' − σ), and then computes the velocities V from the impulses and the penalty for V's distance from
+//! z,
 //!
 //! > (M + Σ m_ij/ε (n nᵀ + m_t/m_n t tᵀ)) V = M V_free + Σ m_ij [n (2σ' − σ − c + v_n/ε) + t (…)],
 //!
 //! c the capture speed. The matrix depends only on ε, so an iteration is one pass over the contacts and one solve with
 //! cached factors. At a fixed point V agrees with the impulses, and the impulses with the law: the natural map is 0. ε
-//! balances penalty and law; ε is changed if one of ε(σ' − σ) and (z' − z)/ε is much larger than the other.
+//! determines how fast the impulses and the velocities converge; it is changed if one of the two residuals ε(σ' − σ)
+//! and (z' − z)/ε is much larger than the other.
 
 use super::contact_system::{BestIterate, BodySystem, ContactSystem, ScaledVector};
 use super::stopping::{SolveReport, is_tested};
@@ -23,31 +25,33 @@ use crate::solver::linear::{BlockMatrix, Elimination};
 use crate::solver::problem::{Row, StepProblem};
 use crate::solver::settings::SolverSettings;
 
-/// Initial compliance ε, the inverse of the penalty.
+/// Initial compliance ε, relative to the compliance of a contact; 1/ε is the penalty.
 const FIRST_COMPLIANCE: f64 = 0.03;
-/// Number of iterations between two checks of the compliance ε. A factorisation costs as much as about ten iterations.
+/// Number of iterations between two decisions whether the compliance ε is changed, which requires a new factorisation.
+/// A factorisation costs as much as about ten iterations.
 const BALANCE_INTERVAL: u32 = 24;
-/// Minimum ratio of the larger to the smaller of the two residuals, of velocities and of impulses, at which the
+/// Ratio of the larger to the smaller of the two residuals, of the velocities and of the impulses, from which the
 /// compliance ε is changed.
 const OUT_OF_BALANCE: f64 = 4.0;
-/// Maximum factor by which the compliance ε changes at a time.
+/// Maximum factor by which the compliance ε is increased or decreased in one change.
 const LARGEST_CHANGE: f64 = 10.0;
-/// Minimum and maximum compliance ε. With a smaller ε rounding errors in the factorisation matter; with a larger ε
-/// impulses hardly spread from contact to contact.
+/// Minimum and maximum compliance ε, relative to the compliance of a contact. With a smaller ε rounding errors in the
+/// factorisation matter; with a larger ε the effect of an impulse hardly spreads from contact to contact.
 const COMPLIANCES: [f64; 2] = [1e-5, 1.0];
 
-/// Work memory for each number of degrees of freedom of a body. Unused entries allocate no memory.
+/// Work memory of the method for each number of degrees of freedom of a body (1 to 3). Memory that is not used
+/// allocates nothing.
 #[derive(Debug, Default)]
 pub(crate) struct AdmmMemory {
     one: Directions<1>,
     two: Directions<2>,
     three: Directions<3>,
-    /// The impulses with the smallest residual of a solve.
+    /// The scaled impulses with the smallest residual of the present solve.
     best: ScaledVector,
 }
 
 impl Clone for AdmmMemory {
-    /// Creates empty memory: its contents do not outlive a solve, so a copy of a simulation does not need them.
+    /// Creates empty memory, because the contents are not needed after a solve.
     fn clone(&self) -> Self {
         Self::default()
     }
@@ -58,7 +62,7 @@ impl Clone for AdmmMemory {
 struct Directions<const D: usize> {
     elimination: Elimination,
     matrix: BlockMatrix<D>,
-    /// Body velocities V in elimination order, m/s; before the linear solve, its right-hand side.
+    /// Right-hand side of the linear equations; after their solution, the body velocities V in elimination order, m/s.
     vector: Vec<[f64; D]>,
     /// Contact velocities z without the restitution term, m/s.
     targets: ScaledVector,
@@ -203,8 +207,8 @@ impl<const D: usize> Directions<D> {
         velocity
     }
 
-    /// Computes the rows' impulses and the contact velocities z from the body velocities V. Returns the factor of ε
-    /// that would make the residuals of velocities and impulses equal.
+    /// Computes the contact impulses and the contact velocities z from the body velocities V. Returns the factor by
+    /// which ε must be multiplied to make the residuals of velocities and impulses equal.
     fn apply_law<M: Model>(&mut self, problem: &mut StepProblem<M>, compliance: f64) -> f64 {
         let (mut of_velocities, mut of_impulses) = (0.0, 0.0);
         let mut targets = std::mem::take(&mut self.targets);

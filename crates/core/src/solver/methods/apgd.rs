@@ -1,8 +1,9 @@
 //! Accelerated projected gradients with adaptive restart (H. Mazhar, T. Heyn, D. Negrut, A. Tasora, *Using Nesterov's
 //! method to accelerate multibody dynamics with friction and contact*, 2015).
 //!
-//! With fixed friction bounds (Tresca) a step's scaled impulses s minimise the convex function f(s) = ½ s·As + b·s over
-//! a box (A, b and the scaled velocities w: see `contact_system`), and Nesterov's method applies:
+//! With friction bounds that stay fixed during the solve (Tresca) a step's scaled impulses s minimise the convex
+//! function f(s) = ½ s·As + b·s over a box (A, b and the scaled velocities w: see `contact_system`), and Nesterov's
+//! method applies:
 //!
 //! > x_{k+1} = projection of y_k − D w(y_k)/L,  y_{k+1} = x_{k+1} + β_k (x_{k+1} − x_k),
 //!
@@ -10,8 +11,8 @@
 //! solution. The method recomputes it from the normal impulses of every iterate (an outer fixed-point iteration on the
 //! bound, with one inner step each). So a fixed point of the iteration is a zero of the natural map that is common to
 //! all methods: it solves Coulomb's law, not a convex relaxation of it. In return no theorem guarantees convergence; in
-//! practice restarts achieve it. Solving for each bound before computing the next bound is worse: the outer iteration
-//! may oscillate with growing amplitude.
+//! practice restarts make the method converge. Solving for each bound before computing the next bound is worse: the
+//! outer iteration may oscillate with growing amplitude.
 //!
 //! * **L** is the largest curvature found during the solve. A step Δ is accepted if Δ·AΔ ≤ L Δ·D⁻¹Δ; otherwise it is
 //!   repeated with a larger L, up to the bound of `ContactSystem::splitting`. A variant in which L falls between
@@ -25,11 +26,12 @@ use super::contact_system::{BestIterate, ContactSystem, ScaledVector, WorkVector
 use super::stopping::{SolveReport, is_tested};
 use crate::solver::settings::SolverSettings;
 
-/// Ratio of the curvature bound L after a step that was too long to the curvature found in that step. It is slightly
-/// above 1, because the next step has about the same curvature.
+/// Factor by which the curvature bound L exceeds the curvature found in a step that was too long. It is slightly above
+/// 1, because the next step has about the same curvature.
 const MARGIN: f64 = 1.05;
 
-/// Solves a contact system from its present impulses. Every product with its matrix A counts as an iteration.
+/// Solves a contact system by accelerated projected gradients, from its present impulses. Every product with the matrix
+/// A of the system counts as an iteration.
 pub(super) fn solve<S: ContactSystem>(
     system: &mut S,
     settings: &SolverSettings,
@@ -89,8 +91,8 @@ pub(super) fn solve<S: ContactSystem>(
     best.restore(system, settings.max_sweeps)
 }
 
-/// Returns the curvature Δ·AΔ / Δ·D⁻¹Δ, dimensionless, between two points x and y with the scaled velocities w_x and
-/// w_y; 0 if the points are the same.
+/// Returns the curvature Δ·AΔ / Δ·D⁻¹Δ, dimensionless, along the difference Δ of two vectors of scaled impulses x and y
+/// with the scaled velocities w_x and w_y; 0 if the vectors are the same.
 fn curvature<S: ContactSystem>(
     system: &S,
     [y, w_y]: [&ScaledVector; 2],
@@ -106,7 +108,7 @@ fn curvature<S: ContactSystem>(
     if squared > 0.0 { energy / squared } else { 0.0 }
 }
 
-/// Writes next + momentum · (next − now) to `result`.
+/// Extrapolates scaled impulses: writes next + momentum · (next − now) to `result`.
 fn extrapolate(next: &ScaledVector, now: &ScaledVector, momentum: f64, result: &mut ScaledVector) {
     result.clear();
     let ahead = |next: f64, now: f64| next + momentum * (next - now);

@@ -1,12 +1,13 @@
 //! `auto`: chooses a method by the friction model, the stopping test and the size of the problem.
 //!
 //! Convex problems (the friction models other than Coulomb's law, and grains without friction) are solved by the
-//! interior point, which works at any size. Under Coulomb's law Newton's method is tried first. A pile at rest takes 2
-//! factorisations in the median step, and 22 in the first step of 10,000 grains; sweeps do not solve such a pile if its
-//! bonds are strong. A flowing pile takes 12 factorisations in the median at 138 grains and more than 100 at 2,000
-//! grains. At 2,000 grains conjugate gradients have a smaller error at the same cost. So `auto` stops Newton's method
-//! the earlier the larger a problem is, and does not try it on a large flowing pile. The stopping test on the impulses
-//! per mass always uses Gauss–Seidel: studies with this test are about the error of that scheme.
+//! interior point, which works at any size. For other problems Newton's method is tried first, or conjugate gradients
+//! if a force drives a wall. A pile at rest takes 2 factorisations in the median step, and 22 in the first step of
+//! 10,000 grains; sweeps do not solve such a pile if its cohesion is strong. A step of a flowing pile takes 12
+//! factorisations in the median at 138 grains and more than 100 at 2,000 grains. At 2,000 flowing grains conjugate
+//! gradients leave a smaller error at the same cost. So `auto` stops Newton's method the earlier the larger a problem
+//! is, and does not try it on a large flowing pile. With the stopping test `impulse-per-mass`, `auto` always chooses
+//! Gauss–Seidel, because studies with this test are about the error of Gauss–Seidel sweeps.
 
 use super::newton::NewtonEffort;
 use super::{Memory, SolveReport, solve_by, wedged};
@@ -15,43 +16,49 @@ use crate::solver::method::Method;
 use crate::solver::problem::StepProblem;
 use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 
-/// Patience of Newton's method times the number of contacts of a problem. The *patience* is the number of
-/// factorisations that have not halved the residual, after which the method stops. It is limited by [`LEAST_PATIENCE`]
-/// and [`MOST_PATIENCE`].
+/// Patience of Newton's method times the number of contacts of a problem, so that the patience falls with the size of
+/// the problem. The *patience* is the number of factorisations that have not halved the residual, after which the
+/// method stops. It is limited by [`LEAST_PATIENCE`] and [`MOST_PATIENCE`].
 ///
-/// Measured at Δt of 1e-3 s. At 2,000 flowing grains (3,900 contacts) a patience of 5, 10 and 20 factorisations leaves
-/// an error of 1.4e-2, 1.0e-2 and 0.8e-2 √(g d) in relative times of 1, 2 and 3. At 138 grains (260 contacts) and Bond
-/// 100, a patience of 20 does not solve steps that a patience of 99 solves, and the pile slumps because of them.
+/// Both measurements are for a time step Δt of 1e-3 s. At 2,000 flowing grains (3,900 contacts) a patience of 5, 10 and
+/// 20 factorisations leaves a velocity error of 1.4e-2, 1.0e-2 and 0.8e-2 √(g d) in computing times with the ratio 1 :
+/// 2 : 3. At 138 grains (260 contacts) and Bond number 100, a patience of 20 does not solve some steps that a patience
+/// of 99 solves. Because of these unsolved steps the pile slumps.
 const PATIENCE_OF_CONTACTS: usize = 20_000;
 
-/// Minimum patience of Newton's method, without cohesion and with cohesion: a number of factorisations that have not
-/// halved the residual. A bond that an unsolved step breaks stays broken: a pile of 10,000 grains at Bond 100 and
-/// 5e-3 s falls with a patience of 5, which does not solve the first step. With a patience of 10 the first step is
-/// solved in 22 factorisations, and the pile does not fall.
+/// Minimum patience of Newton's method, without cohesion and with cohesion: the number of factorisations that have not
+/// halved the residual, after which the method stops. A cohesive contact that breaks because of an unsolved step stays
+/// broken: a pile of 10,000 grains at Bond number 100 and a time step of 5e-3 s falls with a patience of 5, which does
+/// not solve the first step. With a patience of 10 the first step is solved in 22 factorisations, and the pile does not
+/// fall.
 const LEAST_PATIENCE: [usize; 2] = [5, 10];
-/// Maximum patience of Newton's method: a number of factorisations that have not halved the residual.
+/// Maximum patience of Newton's method: the number of factorisations that have not halved the residual, after which the
+/// method stops.
 const MOST_PATIENCE: usize = 100;
 
-/// Number of contacts from which `auto` solves a flowing pile by conjugate gradients. With fewer contacts Newton's
+/// Minimum number of contacts of a flowing pile that `auto` solves by conjugate gradients. With fewer contacts Newton's
 /// method costs less for the same error.
 pub const CONTACTS_THAT_FLOW: usize = 500;
 /// Fraction of the contacts between grains that must slide faster than [`SLIDING_SPEED`], at the velocities without
 /// contact impulses, for a pile to count as flowing. The fraction is 0 for 2,000 grains at rest, and 0.08 to 0.3 for
 /// 2,000 falling grains after the first steps.
 const SLIDING_SHARE: f64 = 0.05;
-/// Minimum speed of a sliding contact of a flowing pile, in √(g d).
+/// Minimum speed of a contact that counts as sliding in the decision whether a pile flows, in √(g d) (gravity g, mean
+/// diameter d).
 const SLIDING_SPEED: f64 = 0.02;
 
-/// Maximum number of sweeps of conjugate gradients after Newton's method has failed. 200 instead of 400 sweeps leave
-/// 1.5 times the error at 2,000 flowing grains, and save a tenth of the time.
+/// Maximum number of sweeps of conjugate gradients after Newton's method has failed, or in place of Newton's method for
+/// a flowing pile. With 200 instead of 400 sweeps, the error at 2,000 flowing grains is 1.5 times as large and the time
+/// a tenth shorter.
 const SWEEPS_AFTER: u32 = 400;
 
-/// Maximum number of sweeps of conjugate gradients if a force drives a wall. Even 5,000 sweeps do not solve one step in
-/// six of 234 cohesive grains under shear.
+/// Maximum number of sweeps of conjugate gradients if a force drives a wall. For 234 cohesive grains under shear, one
+/// step in six is not even solved by 5,000 sweeps.
 const SWEEPS_OF_DRIVEN: u32 = 1_000;
 
-/// Returns the method that solves a problem: the method of the settings, or the choice of `auto`. `rubs` is true if the
-/// problem has friction or rolling friction, and `is_driven` if a force drives a wall.
+/// Returns the method that solves a problem: the method that the settings name, or if that is `auto`, the method that
+/// `auto` tries first. `rubs` is true if the problem has friction or rolling friction, and `is_driven` if a force
+/// drives a wall.
 pub(crate) fn picked(
     settings: &SolverSettings,
     model: FrictionModel,
@@ -90,7 +97,7 @@ pub(super) fn solve<M: Model>(
     solve_by(method, problem, memory, &settings, effort)
 }
 
-/// Returns true for a large flowing pile, whose steps Newton's method does not solve.
+/// Returns true for a large flowing pile, whose contact problems Newton's method does not solve.
 fn flows<M: Model>(problem: &StepProblem<M>) -> bool {
     if problem.rows.len() < CONTACTS_THAT_FLOW {
         return false;
@@ -101,8 +108,8 @@ fn flows<M: Model>(problem: &StepProblem<M>) -> bool {
     sliding.count() as f64 > SLIDING_SHARE * pairs.len() as f64
 }
 
-/// Returns the limits that `auto` sets to Newton's method for a problem with this number of contacts; `coheres` is true
-/// if the problem has cohesion.
+/// Returns the limits for a solve by Newton's method that `auto` has chosen: patience (which depends on the number of
+/// contacts) and sweeps afterwards. `coheres` is true if the problem has cohesion.
 fn effort(contacts: usize, coheres: bool) -> NewtonEffort {
     let least = LEAST_PATIENCE[usize::from(coheres)];
     let patience = (PATIENCE_OF_CONTACTS / contacts.max(1)).clamp(least, MOST_PATIENCE);

@@ -1,7 +1,8 @@
-//! A contact problem in which all impulses form one vector, as some methods need it.
+//! A contact problem whose impulses form one vector, for methods that update all contacts at once.
 //!
-//! **Scaled variables.** With the shifted impulse p = P_n + C₀Δt and u_n = v_n + ρ v_n^{n−1} (the normal velocity with
-//! its restitution term), a step's problem is to find impulses, and velocities that are affine in the impulses, with
+//! **Scaled variables.** With the shifted impulse p = P_n + C₀Δt (normal impulse plus cohesion force times time step)
+//! and u_n = v_n + ρ v_n^{n−1} (the normal velocity with its restitution term), a step's problem is to find impulses,
+//! and velocities that are affine in the impulses, with
 //!
 //! > p = max(0, p − m_n u_n),  P_t = clamp(P_t − m_t v_t, ±bound(p)).
 //!
@@ -11,7 +12,7 @@
 //!
 //! > s_n = max(0, s_n − w_n),  s_t = clamp(s_t − w_t m_t/m_n, ±bound(s_n)).
 //!
-//! Both scaled quantities have the unit √J. A method written for this trait does not use bodies.
+//! Both scaled quantities have the unit √J. A method written for this trait needs no access to the bodies.
 
 use super::pass::{sweep, tested_sweep};
 use super::stopping::{SolveReport, StallWatch};
@@ -26,24 +27,25 @@ use crate::world::FrictionCone;
 /// (`problem::rolling`).
 pub type ScaledVector = Vec<[f64; 2]>;
 
-/// Work memory of a method. The memory is reused for the next solve, its contents are not.
+/// Work memory of methods on a [`ContactSystem`]. The memory is reused for the next solve; its contents are not.
 #[derive(Debug, Default)]
 pub(crate) struct WorkVectors {
-    /// Scaled vectors for intermediate results, as many as any method needs.
+    /// Vectors of scaled impulses or velocities for intermediate results, as many as any method needs.
     pub pairs: [ScaledVector; 8],
-    /// One weight per contact, see [`ContactSystem::splitting`].
+    /// One dimensionless weight per contact, computed by [`ContactSystem::splitting`].
     pub weights: Vec<f64>,
 }
 
 impl Clone for WorkVectors {
-    /// Creates empty vectors: their contents do not outlive a solve, so a copy of a simulation does not need them.
+    /// Creates empty vectors, because the contents are not needed after a solve.
     fn clone(&self) -> Self {
         Self::default()
     }
 }
 
-/// One step's contact problem in scaled variables (see the head of the file). The argument `contact` of a function is
-/// an index below [`ContactSystem::len`].
+/// One step's contact problem in scaled variables: impulses s = (p, P_t)/√m_n, with the shifted normal impulse p, and
+/// velocities w = √m_n (u_n, v_t), √J, with w = A s + b. The argument `contact` of a function is an index below
+/// [`ContactSystem::len`].
 pub trait ContactSystem {
     /// True if contacts have tangential impulses. If not, tangential entries are 0.
     const FRICTION: bool;
@@ -68,41 +70,42 @@ pub trait ContactSystem {
     /// Returns m_n/m_t of a contact, the tangential entry on the diagonal of A; the normal entry is 1.
     fn tangential_diagonal(&self, contact: usize) -> f64;
 
-    /// Returns the friction coefficient μ of a contact.
+    /// Returns the friction coefficient μ of a contact, dimensionless.
     fn friction(&self, contact: usize) -> f64;
 
-    /// Returns the largest tangential impulse |s_t| that a normal impulse s_n ≥ 0 allows.
+    /// Returns the largest scaled tangential impulse |s_t|, √J, that a scaled normal impulse s_n ≥ 0 (`normal`) allows.
     fn friction_bound(&self, contact: usize, normal: f64) -> f64;
 
-    /// Computes a weight d > 0 per contact such that A ⪯ D⁻¹, where D has the diagonal entries (d, d m_t/m_n). With
-    /// this D a projected gradient step s − D w for all contacts at once cannot diverge. Clears `weights` first.
+    /// Computes a weight d > 0 per contact such that A ⪯ D⁻¹, where A maps scaled impulses to scaled velocities and D
+    /// has the diagonal entries (d, d m_t/m_n). With this D a projected gradient step s − D w for all contacts at once
+    /// cannot diverge. Clears `weights` first.
     fn splitting(&self, weights: &mut Vec<f64>);
 
     /// Performs one Gauss–Seidel sweep from the present impulses. The resulting impulses satisfy the bounds of the
     /// contact law.
     fn sweep(&mut self);
 
-    /// Performs one Gauss–Seidel sweep. Returns true if the stopping test is met after the sweep.
+    /// Performs one Gauss–Seidel sweep. Returns true if the stopping test of the settings is met after the sweep.
     fn tested_sweep(&mut self, settings: &SolverSettings) -> bool;
 
     /// Returns the residual of the present impulses under Coulomb's law, dimensionless.
     fn residual(&self) -> f64;
 
-    /// Returns true if the stopping test is met by an iteration that changed the impulses from `before` to the present
-    /// ones.
+    /// Returns true if the stopping test of the settings is met after an iteration that changed the scaled impulses
+    /// from `before` to the present impulses.
     fn is_settled(&self, before: &[[f64; 2]], settings: &SolverSettings) -> bool;
 }
 
-/// The contact problem of a step in scaled variables. Impulses change the velocities of bodies; the matrix A is never
-/// computed.
+/// The contact problem of a step, accessed in scaled variables. Impulses change the velocities of bodies; the matrix A
+/// is never computed.
 #[derive(Debug)]
 pub struct BodySystem<'a, M: Model> {
     problem: &'a mut StepProblem<M>,
 }
 
 impl<'a, M: Model> BodySystem<'a, M> {
-    /// Creates the system of a contact problem. Contacts are numbered like the rows: contacts with fixed bodies come
-    /// first.
+    /// Creates the system of a contact problem. Contacts are numbered like the rows of the problem: contacts with fixed
+    /// bodies come first.
     pub fn new(problem: &'a mut StepProblem<M>) -> Self {
         let StepProblem { rows, root_masses, .. } = &mut *problem;
         root_masses.clear();
@@ -187,14 +190,14 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
         }
     }
 
-    /// Computes the weights by mass splitting (R. Tonge, F. Benevolenski, A. Voroshilov 2012): a body with k contacts
-    /// is cut into k parts of 1/k of its mass and inertia, one per contact. By Cauchy–Schwarz the separate parts
-    /// respond at least as much as the body does: A ⪯ D⁻¹. In the contact's own diagonal entry 1/m_i becomes k_i/m_i.
-    /// So with the mass ratio g_i = m_ij/m_i
+    /// Computes the weights d of the bound A ⪯ D⁻¹ by mass splitting (R. Tonge, F. Benevolenski, A. Voroshilov 2012): a
+    /// body with k contacts is cut into k parts of 1/k of its mass and inertia, one per contact. By Cauchy–Schwarz the
+    /// separate parts respond at least as much as the body does: A ⪯ D⁻¹. In the diagonal entry of a contact, 1/m_i
+    /// becomes k_i/m_i. So with the mass ratio g_i = m_ij/m_i
     ///
-    /// > 1/d = k_i g_i + k_j (1 − g_i), against a fixed body k_i,
+    /// > 1/d = k_i g_i + k_j (1 − g_i), or 1/d = k_i against a fixed body,
     ///
-    /// and k_i + k κ(b_n² + b_t² m_t/m_n) against a driven wall with k contacts (κ and b: see `problem::walls`).
+    /// and 1/d = k_i + k κ(b_n² + b_t² m_t/m_n) against a driven wall with k contacts (κ and b: see `problem::walls`).
     fn splitting(&self, weights: &mut Vec<f64>) {
         let ContactRows { fixed, pairs, .. } = &self.problem.rows;
         // The first entries of `weights` temporarily contain the number of contacts of each body.
@@ -259,12 +262,12 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
     }
 }
 
-/// Number of iterations between two computations of the residual, if the stopping test does not compute it. A shorter
-/// interval costs more; a longer interval may miss the best iterate of a solve that fails.
+/// Number of iterations between two computations of the residual that are not part of the stopping test. A shorter
+/// interval costs more; with a longer interval a solve that fails may miss its impulses with the smallest residual.
 const LOOK_INTERVAL: u32 = 16;
 
 /// Returns trial impulses projected on the contact law: the nearest allowed normal impulse, and the nearest tangential
-/// impulse that this normal impulse allows.
+/// impulse that this normal impulse allows. All impulses are scaled impulses, √J.
 #[inline(always)]
 pub(crate) fn projected<S: ContactSystem>(
     system: &S,
@@ -278,8 +281,8 @@ pub(crate) fn projected<S: ContactSystem>(
     [normal, law::coulomb(tangential, system.friction_bound(contact, normal))]
 }
 
-/// Returns the scalar product Σ a·b of two scaled vectors, computed as four sums that the processor can form at the
-/// same time.
+/// Returns the scalar product Σ a·b of two scaled vectors, computed as four partial sums that the processor can compute
+/// at the same time.
 pub(crate) fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
     let mut sums = [0.0; 4];
     let (mut pairs_of_a, mut pairs_of_b) = (a.chunks_exact(2), b.chunks_exact(2));
@@ -296,7 +299,7 @@ pub(crate) fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
     (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// The impulses with the smallest residual of a solve so far.
+/// The scaled impulses with the smallest residual of a solve so far, and the history of the residual.
 pub(crate) struct BestIterate<'a> {
     impulses: &'a mut ScaledVector,
     residual: f64,
@@ -304,15 +307,15 @@ pub(crate) struct BestIterate<'a> {
 }
 
 impl<'a> BestIterate<'a> {
-    /// Starts with the present impulses of a system.
+    /// Records the present impulses of a system as the impulses with the smallest residual so far.
     pub(crate) fn new<S: ContactSystem>(system: &S, impulses: &'a mut ScaledVector) -> Self {
         system.read(impulses);
         Self { impulses, residual: system.residual(), watch: StallWatch::default() }
     }
 
-    /// Computes the residual of `impulses`, the present impulses of the system, once every [`LOOK_INTERVAL`]
-    /// iterations; `sweeps` is the number of iterations so far. Keeps the impulses if they are the best so far. Returns
-    /// true if the solve should stop.
+    /// Every [`LOOK_INTERVAL`] iterations, computes the residual of the present impulses of the system, which are given
+    /// as `impulses`, and records them if their residual is the smallest so far. `sweeps` is the number of iterations
+    /// so far. Returns true if the solve should stop because it has stalled or an onlooker ends it.
     pub(crate) fn look<S: ContactSystem>(
         &mut self,
         system: &S,
@@ -332,7 +335,8 @@ impl<'a> BestIterate<'a> {
         self.watch.look(sweeps, settings, || self.residual)
     }
 
-    /// Ends a solve that failed: sets the system's impulses to the best impulses, which may be the present ones.
+    /// Ends a solve that failed: sets the system's impulses to the impulses with the smallest residual, which may be
+    /// the present impulses. Returns the report of the solve.
     pub(crate) fn restore<S: ContactSystem>(self, system: &mut S, sweeps: u32) -> SolveReport {
         let residual = system.residual();
         // NaN compares false, so a residual of NaN counts as worse.

@@ -1,5 +1,5 @@
 //! Jacobi with mass splitting (R. Tonge, F. Benevolenski, A. Voroshilov, *Mass splitting for jitter-free parallel rigid
-//! body simulation*, 2012): all contacts at once, each with its own part of its grains.
+//! body simulation*, 2012): all contacts are solved at the same time, each with its own part of the mass of its grains.
 //!
 //! A grain with k contacts is cut into k parts of 1/k of its mass and inertia, one per contact. Each contact is solved
 //! exactly with its two parts; then the velocities of a grain's parts are replaced by their mean. The mean moves like
@@ -9,8 +9,9 @@
 //!
 //! > s ← projection of s − D w(s),
 //!
-//! a projected gradient step whose D is small enough for any pile. Impulses spread by one contact per iteration and are
-//! reduced by a factor of k, so many iterations are needed; but the result does not depend on an order of contacts.
+//! a projected gradient step whose D is small enough for any pile. In one iteration an impulse spreads only to
+//! neighbouring contacts, and is divided by k, so many iterations are needed. In return the result does not depend on
+//! an order of contacts.
 
 use super::contact_system::{BestIterate, ContactSystem, WorkVectors, projected};
 use super::stopping::{SolveReport, is_tested};

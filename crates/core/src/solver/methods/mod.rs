@@ -36,7 +36,7 @@ use super::method::Method;
 use super::problem::StepProblem;
 use super::settings::{FrictionModel, SolverSettings};
 
-/// Data that the methods keep from one solve to the next. Results do not depend on them.
+/// Work memory of the methods, reused from one solve to the next. It has no effect on results.
 #[derive(Clone, Debug, Default)]
 pub struct Memory {
     nsgs_parallel: nsgs_parallel::BlockMemory,
@@ -58,7 +58,8 @@ pub(super) fn solve_by_method<M: Model>(
     }
 }
 
-/// Solves a contact problem with `method`, which may differ from the method of the settings.
+/// Solves a contact problem with `method`, which may differ from the method of the settings; `effort` limits Newton's
+/// method.
 fn solve_by<M: Model>(
     method: Method,
     problem: &mut StepProblem<M>,
@@ -98,7 +99,7 @@ fn solve_by<M: Model>(
 }
 
 /// Solves a contact system from its present impulses with the method of the settings. Returns `None` if that method
-/// needs bodies.
+/// needs the bodies of the problem, which a contact system does not provide.
 pub(crate) fn solve_system<S: ContactSystem>(
     system: &mut S,
     settings: &SolverSettings,

@@ -1,5 +1,5 @@
-//! The outer loop of friction models that keep numbers fixed during a solve (`problem::friction`), the same for all
-//! methods.
+//! The repeated solves of one step under a convex friction model, which keeps friction bounds or opening speeds fixed
+//! during each solve (`problem::friction`). All methods share this code.
 
 use super::pass::{settles_in, sweep};
 use super::stopping::SolveReport;
@@ -7,15 +7,15 @@ use crate::solver::kinematics::Model;
 use crate::solver::problem::StepProblem;
 use crate::solver::settings::{FrictionModel, SolverSettings};
 
-/// Numbers of Coulomb sweeps that estimate the friction bounds, in two stages. The stopping test is made after each
-/// stage; most steps of a pile at rest are solved after the first stage. With fewer sweeps the bounds are worse: at
-/// 2,000 grains they are further from Coulomb's law than the impulses of a first solve. More sweeps cost more than the
-/// second solve that they save.
+/// Numbers of sweeps under Coulomb's law that estimate the friction bounds, in two stages. The stopping test is made
+/// after each stage; most steps of a pile at rest are solved after the first stage. With fewer sweeps the bounds are
+/// worse: at 2,000 grains they are further from Coulomb's law than the bounds that the impulses of a first solve give.
+/// More sweeps cost more than the second solve that they save.
 const SWEEPS_FOR_BOUNDS: [u32; 2] = [4, 46];
 
-/// Solves a problem with `solve_once` as often as the settings ask for. Before each further solve it recomputes the
-/// friction bounds or opening speeds that stay fixed during a solve. The step is solved if the last solve has
-/// converged; earlier solves only provide these numbers.
+/// Solves a problem with `solve_once` as often as the settings require. Recomputes the friction bounds or opening
+/// speeds of the friction model before each further solve. The step counts as solved if the last solve has converged;
+/// the earlier solves only provide bounds or speeds.
 pub(super) fn solve_models<M: Model>(
     problem: &mut StepProblem<M>,
     settings: &SolverSettings,

@@ -11,20 +11,20 @@
 //!
 //! > M (V − V_free) = Σ m_ij [ n (σ' − c) + t λ_t' ],  c the capture speed,
 //!
-//! one sparse system with a D × D block per body: masses plus contact stiffnesses m_ij/ε. A slipping contact,
-//! λ_t' = ±μσ', adds the unsymmetric term n + (±μ) t. The exact solution is a fixed point for any ε: a small ε
-//! converges in few steps, a larger ε is more robust if predicted states keep changing. A rolling moment
-//! (`problem::rolling`) is one more clamp, ψ' = clamp(ψ − v_r/(W ε), ±μ_r σ'), with its own predicted state. After each
-//! step
+//! one sparse system with a D × D block per body: masses plus contact stiffnesses m_ij/ε. A slipping contact, λ_t' =
+//! ±μσ', adds the unsymmetric term n + (±μ) t. The exact solution is a fixed point for any ε. With a small ε the method
+//! converges in few steps; with a larger ε it also converges for some problems whose predicted states keep changing. A
+//! rolling moment (`problem::rolling`) is one more clamp, ψ' = clamp(ψ − v_r/(W ε), ±μ_r σ'), with its own predicted
+//! state. After each step
 //!
 //! 1. the impulses are projected on the law, and the velocities are computed from them;
 //! 2. a few Gauss–Seidel sweeps correct wrong predictions;
 //! 3. after the first factorisations, the contacts that contribute most to the residual are also solved separately
 //!    (`nonlinear_elimination`).
 //!
-//! The unknown is the *change* of the velocities, and the load is the change of the impulses at the present velocities.
-//! If the velocities themselves were the unknown, rounding would leave an error of V·10⁻¹⁶ in them. Multiplied by the
-//! stiffness 1/ε twice, this error would stall the residual of a fast pile at 10⁻⁴ … 10⁻⁷.
+//! The unknown is the *change* of the velocities, and the right-hand side is the change of the impulses at the present
+//! velocities. If the velocities themselves were the unknown, rounding would leave an error of V·10⁻¹⁶ in them.
+//! Multiplied by the stiffness 1/ε twice, this error would stall the residual of a fast pile at 10⁻⁴ … 10⁻⁷.
 //!
 //! The method is an augmented Lagrangian with generalised Newton steps (P. Alart, A. Curnier 1991). ε is adapted as in
 //! a trust region.
@@ -44,50 +44,57 @@ use crate::solver::settings::SolverSettings;
 
 /// Compliance ε of the first Newton step, relative to the compliance of a contact.
 const FIRST_COMPLIANCE: f64 = 1e-7;
-/// Minimum compliance ε. With a smaller ε, rounding in the factorisation cancels the gain.
+/// Minimum compliance ε, relative to the compliance of a contact. With a smaller ε, rounding errors in the
+/// factorisation cancel the gain.
 const SMALLEST_COMPLIANCE: f64 = 1e-7;
-/// Maximum compliance ε. With a larger ε a Newton step is no better than sweeps, which then replace it for a while.
+/// Maximum compliance ε, relative to the compliance of a contact. With a larger ε a Newton step is no better than
+/// sweeps, so a few sweeps replace the next Newton step.
 const LARGEST_COMPLIANCE: f64 = 0.1;
-/// Factor by which the compliance ε is multiplied after an accepted step.
+/// Factor by which the compliance ε is multiplied after a Newton step whose result is kept.
 const AFTER_SUCCESS: f64 = 0.2;
-/// Factor by which the compliance ε is multiplied after a rejected step.
+/// Factor by which the compliance ε is multiplied after a Newton step whose result is dropped because its residual is
+/// too large.
 const AFTER_FAILURE: f64 = 10.0;
 /// Number of sweeps before the first factorisation: many steps of a pile at rest need no more.
 const SWEEPS_FIRST: u32 = 4;
-/// Number of sweeps after each factorisation: they correct wrong contact states at a fraction of the cost of a
-/// factorisation.
+/// Number of sweeps after each factorisation: they correct wrongly predicted contact states (open, stick, slip) at a
+/// fraction of the cost of a factorisation.
 const SWEEPS_AFTER: u32 = 4;
-/// Number of sweeps that replace a Newton step if Newton's method stalls, doubled each time up to
-/// [`MOST_SWEEPS_BETWEEN`].
+/// Number of sweeps that replace a Newton step if even the largest compliance ε gives no improvement. The number is
+/// doubled each time, up to [`MOST_SWEEPS_BETWEEN`].
 const SWEEPS_BETWEEN: u32 = 20;
 const MOST_SWEEPS_BETWEEN: u32 = 200;
-/// Number of factorisations before contacts are also solved separately (non-linear elimination). If elimination begins
-/// with the first factorisation, easy steps, which need few factorisations, take twice as long. Of 21,600 steps of 138
-/// grains, solved to 1e-6, 1,339 are unsolved without elimination in 60 s. With elimination after 0, 4, 8, 16 and 32
-/// factorisations, 878, 961, 875, 893 and 921 steps are unsolved in 136, 124, 121, 120 and 100 s.
+/// Number of factorisations at the beginning of a solve that are not followed by non-linear elimination (a separate
+/// solution of the contacts that contribute most to the residual). If elimination begins with the first factorisation,
+/// easy steps, which need few factorisations, take twice as long. Of 21,600 steps of 138 grains, solved to 1e-6, 1,339
+/// are unsolved without elimination, in a computing time of 60 s. With elimination after 0, 4, 8, 16 and 32
+/// factorisations, 878, 961, 875, 893 and 921 steps are unsolved, in computing times of 136, 124, 121, 120 and 100 s.
 const FACTORISATIONS_FIRST: u32 = 8;
 
 /// Limits of Newton's method, and of the conjugate gradients that follow if it fails.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NewtonEffort {
-    /// Number of factorisations that have not halved the best residual, after which Newton's method stops.
+    /// Number of factorisations that have not halved the smallest residual, after which Newton's method stops.
     pub patience: u32,
-    /// Maximum number of sweeps of conjugate gradients after Newton's method, within the limit of the settings.
+    /// Maximum number of sweeps of conjugate gradients after Newton's method has failed. The maximum number of sweeps
+    /// of the settings applies, too.
     pub sweeps_after: u32,
 }
 
 impl NewtonEffort {
-    /// The limits of a solve that may use all sweeps of the settings.
+    /// Limits of a solve that may use all sweeps of the settings: a patience of 100 factorisations, and conjugate
+    /// gradients up to the maximum number of sweeps of the settings.
     pub(super) const FULL: Self = Self { patience: 100, sweeps_after: u32::MAX };
 }
 
-/// Number of previous residuals that a step is compared with. A step is accepted if its residual is below [`ENOUGH`]
-/// times the largest of them: the residual may rise for a few steps on the way down. With 1, useful steps are rejected;
-/// with 15, many useless steps are accepted.
+/// Number of previous residuals with which the residual of a step is compared. The result of a step is kept if its
+/// residual is below [`ENOUGH`] times the largest of them, so that the residual may rise for a few steps before it
+/// falls. With 1, useful steps are rejected; with 15, many useless steps are accepted.
 const HISTORY: usize = 6;
 const ENOUGH: f64 = 0.99;
 
-/// One workspace for each number of degrees of freedom of a body. Unused workspaces allocate no memory.
+/// Work memory of Newton's method for each number of degrees of freedom of a body (1 to 3). Memory that is not used
+/// allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NewtonMemory {
     one: NewtonWorkspace<1>,
@@ -102,12 +109,12 @@ struct NewtonWorkspace<const D: usize> {
     matrix: BlockMatrix<D>,
     vector: Vec<[f64; D]>,
     guesses: Vec<Guess>,
-    /// Predicted states of the rolling moments of the rows; empty without rolling friction.
+    /// Predicted states of the rolling moments of all contacts; empty without rolling friction.
     rolling_guesses: Vec<Guess>,
     alone: NonlinearElimination,
-    /// Impulses (σ, λ_t) of the rows after the last accepted step, m/s.
+    /// Impulses (σ, λ_t) of all contacts after the last step whose result was kept, m/s.
     saved: Vec<[f64; 2]>,
-    /// Impulses (σ, λ_t) of the rows with the smallest residual so far, m/s.
+    /// Impulses (σ, λ_t) of all contacts with the smallest residual so far, m/s.
     best: Vec<[f64; 2]>,
 }
 
@@ -193,13 +200,14 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         self.go_on_without(report)
     }
 
-    /// Performs up to `sweeps` sweeps. Returns true if the stopping test is met.
+    /// Performs up to `sweeps` Gauss–Seidel sweeps. Returns true if the stopping test is met.
     fn settles_in(&mut self, sweeps: u32, report: &mut SolveReport) -> bool {
         settles_in(self.problem, self.settings, sweeps, report)
     }
 
-    /// Uses the remaining sweeps for conjugate gradients after Newton's method has failed. Conjugate gradients solve
-    /// some of the problems that Newton's method cannot solve, and show whether a problem has no solution.
+    /// Continues with conjugate gradients after Newton's method has failed, up to the maximum number of sweeps.
+    /// Conjugate gradients solve some of the problems that Newton's method cannot solve, and show whether a problem has
+    /// no solution.
     fn go_on_without(self, report: SolveReport) -> SolveReport {
         let left = (self.settings.max_sweeps - report.sweeps).min(self.effort.sweeps_after);
         if left == 0 {
@@ -214,7 +222,8 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         }
     }
 
-    /// Predicts the states of the contacts, solves for the velocities, and sets the impulses that belong to them.
+    /// Takes one Newton step: predicts the states of the contacts, solves the linear equations for the velocities, and
+    /// sets the impulses that belong to these velocities.
     fn newton_step(&mut self, compliance: f64) {
         assemble::<M, D>(self.problem, self.workspace, compliance);
         let NewtonWorkspace { graph, matrix, vector, .. } = &mut *self.workspace;
@@ -224,7 +233,8 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         self.problem.form_velocities();
     }
 
-    /// Sets the impulses by the regularised law at the new velocities, projected on the contact law.
+    /// Computes the impulses of all contacts from the velocities of the linear equations by the regularised law, and
+    /// projects them on the contact law.
     fn take_impulses(&mut self, compliance: f64) {
         let NewtonWorkspace { graph, vector, guesses, rolling_guesses, .. } = &*self.workspace;
         let places = &graph.elimination.place_of;
@@ -351,16 +361,16 @@ fn assemble<M: Model, const D: usize>(
     }
 }
 
-/// History of the residual during a solve, which decides whether a step is accepted.
+/// History of the residual during a solve, which decides whether the result of a Newton step is kept.
 struct ResidualHistory {
-    /// Residuals after the last accepted steps.
+    /// Residuals after the last steps whose results were kept.
     history: [f64; HISTORY],
     accepted: usize,
     best: f64,
-    /// The last residual that was the best so far and below half of the milestone before it, so that a slow decrease
-    /// does not count as progress.
+    /// Smallest residual so far at the time when it last fell below half of the previous milestone. Only such a fall
+    /// counts as progress; a slow decrease does not.
     milestone: f64,
-    /// Number of factorisations since the milestone.
+    /// Number of factorisations since the milestone was last lowered.
     since_milestone: u32,
 }
 
@@ -371,12 +381,12 @@ impl ResidualHistory {
         Self { history, accepted: 0, best: residual, milestone: residual, since_milestone: 0 }
     }
 
-    /// Returns the bound below which the residual of an accepted step must be.
+    /// Returns the upper bound for the residual of a step: the result of a step with a larger residual is dropped.
     fn bound(&self) -> f64 {
         ENOUGH * self.history.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Records the residual of an accepted step. Returns true if it is the smallest so far.
+    /// Records the residual of a step whose result is kept. Returns true if it is the smallest residual so far.
     fn accept(&mut self, residual: f64) -> bool {
         self.accepted += 1;
         self.history[self.accepted % HISTORY] = residual;

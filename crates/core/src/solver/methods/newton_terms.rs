@@ -1,23 +1,24 @@
-//! The linear equations of a step of Newton's method (`newton`): predicted states of contacts, and the contributions of
-//! contacts to the equations of bodies.
+//! The linear equations of a step of Newton's method (`newton`): predicted states of contacts (open, stick or slip),
+//! and the contributions of contacts to the equations of bodies.
 
 use crate::contact::ContactLaw;
 use crate::solver::kinematics::Model;
 use crate::solver::problem::{Rolling, Row};
 
-/// Predicted state of a contact, from the present impulses and velocities. For a rolling moment, `Stick` means below
-/// its bound and `Slip` at its bound.
+/// Predicted state of a contact at the end of a Newton step. For a rolling moment, `Stick` means below its bound and
+/// `Slip` at its bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Guess {
     Open,
     Stick,
-    /// The tangential impulse is at its bound and has this sign; 0 if the bound itself is 0.
+    /// The contact slips: the tangential impulse is at its bound and has this sign; 0 if the bound itself is 0.
     Slip(f64),
 }
 
 impl Guess {
-    /// Predicts a state from trial impulses: `shifted` is σ, `trial` is λ_t or the rolling impulse ψ, and `bound` is
-    /// the friction bound of `trial` at this σ, all in m/s.
+    /// Predicts the state of a contact from trial impulses: `shifted` is the shifted normal impulse σ, `trial` is the
+    /// tangential impulse λ_t or the rolling impulse ψ, and `bound` is the largest |`trial`| that this σ allows, all in
+    /// m/s.
     fn new(shifted: f64, trial: f64, bound: f64) -> Self {
         if shifted <= 0.0 {
             return Self::Open;
@@ -29,7 +30,8 @@ impl Guess {
     }
 }
 
-/// Predicts the state of a contact at the end of a Newton step, from its relative velocities (v_n, v_t), m/s.
+/// Predicts the state of a contact at the end of a Newton step, from its present impulses and its relative velocities
+/// (v_n, v_t), m/s.
 pub(super) fn guess<M: Model>(
     law: &ContactLaw,
     row: &Row<M>,
@@ -78,7 +80,8 @@ pub(super) struct Terms<const D: usize> {
     normal_stiffness: f64,
     tangential_stiffness: f64,
     rolling_stiffness: f64,
-    /// Change of the impulse on the body at the present velocities, kg·m/s.
+    /// Right-hand side of the body's equations: the change of the contact's impulse on the body at the present
+    /// velocities, kg·m/s.
     load: [f64; D],
 }
 
@@ -126,8 +129,8 @@ impl<const D: usize> Terms<D> {
         }
     }
 
-    /// Adds the rolling moment of a contact to the equations of body j (`on_j`) or body i. The contact has the normal
-    /// velocity `normal_velocity`, m/s.
+    /// Adds the rolling moment of a contact to this contribution, which is for body j if `on_j` is set, otherwise for
+    /// body i. The contact has the normal velocity `normal_velocity`, m/s.
     #[inline(always)]
     pub(super) fn add_rolling<M: Model>(
         &mut self,
@@ -159,7 +162,8 @@ impl<const D: usize> Terms<D> {
         }
     }
 
-    /// Adds to `block` the stiffness that couples the equations of this body to the velocity of the body of `other`.
+    /// Adds to `block` the stiffness of the contact that couples the equations of this body to the velocity of the body
+    /// of `other`.
     #[inline(always)]
     pub(super) fn add<M: Model>(&self, block: &mut [[f64; D]; D], other: &Self) {
         for (row, entries) in block.iter_mut().enumerate() {

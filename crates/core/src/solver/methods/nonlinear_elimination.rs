@@ -1,12 +1,14 @@
-//! Non-linear elimination: before the next linearisation, the few contacts that contribute most to the residual are
-//! solved separately, with the rest of the pile fixed (P. Lanzkron, D. Rose, J. Wilkes 1996; X.-C. Cai, X. Li 2011).
+//! Non-linear elimination: before the next Newton step, the few contacts that contribute most to the residual are
+//! solved separately, while the impulses of all other contacts stay unchanged (P. Lanzkron, D. Rose, J. Wilkes 1996;
+//! X.-C. Cai, X. Li 2011).
 //!
 //! The result is kept only if it reduces the residual of the whole pile. In an overfull box, contacts that are solved
-//! separately push each other harder and harder; without this condition discs kept moving at 7 √(g d).
+//! separately push each other harder and harder; without this condition discs kept moving at 7 √(g d) (gravity g, mean
+//! diameter d).
 //!
 //! A few contacts that change between sticking, sliding and opening shorten the Newton step for all other contacts. Of
-//! 300 steps of 2,000 collapsing grains, solved to 1e-3 under Coulomb's law, 0, 11 and 22 are unsolved at Bond 0, 20
-//! and 50 without elimination. With elimination 0, 6 and 15 steps are unsolved, in 1.4 times the time.
+//! 300 steps of 2,000 collapsing grains, solved to 1e-3 under Coulomb's law, 0, 11 and 22 are unsolved at Bond numbers
+//! 0, 20 and 50 without elimination. With elimination 0, 6 and 15 steps are unsolved, in 1.4 times the time.
 
 use super::sweep::ImpulseChange;
 use crate::solver::kinematics::Model;
@@ -14,35 +16,37 @@ use crate::solver::problem::{
     ContactRows, CoulombFriction, FrictionProjection, StepProblem, errors, law_of_row, residual,
 };
 
-/// Fraction of the squared residual of all contacts that the selected contacts must have together.
+/// Fraction of the squared residual of all contacts that must come from the contacts that are selected.
 const HELD: f64 = 0.9;
-/// Number of sweeps over the selected contacts. Of 21,600 steps of 138 grains, solved to 1e-6 with elimination from the
-/// first factorisation on, 1,339 are unsolved with 0 sweeps, 1,152 with 30, 878 with 100 and 759 with 300 sweeps, in 1,
-/// 1.5, 2.1 and 3.9 times the time.
+/// Number of sweeps over the contacts that are solved separately. Of 21,600 steps of 138 grains, solved to 1e-6 with
+/// elimination from the first factorisation on, 1,339 are unsolved with 0 sweeps, 1,152 with 30, 878 with 100 and 759
+/// with 300 sweeps. The computing times have the ratio 1 : 1.5 : 2.1 : 3.9.
 const SWEEPS: u32 = 100;
 
-/// Work memory of the non-linear elimination: the contacts that are solved separately. Its contents are not kept from
-/// one call to the next.
+/// Work memory of the non-linear elimination, and the contacts that are solved separately. Its contents are not kept
+/// from one call to the next.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NonlinearElimination {
-    /// Squared residual of each contact, (N·s)². `by_square` has the numbers of the contacts from the largest to the
-    /// smallest.
+    /// Contribution of each contact to the squared residual, (N·s)². `by_square` has the numbers of the contacts in the
+    /// order of falling contributions.
     squares: Vec<f64>,
     by_square: Vec<usize>,
-    /// True for each body with a contact that is selected for a separate solution. `around` is true also for each body
+    /// True for each body with a contact that contributes much to the residual. `around` is true also for each body
     /// that touches such a body.
     at: Vec<bool>,
     around: Vec<bool>,
     fixed: Vec<usize>,
     pairs: Vec<usize>,
-    /// Impulses (σ, λ_t) of the rows before the elimination, m/s.
+    /// Impulses (σ, λ_t) of all contacts before the elimination, m/s, to which they return if the elimination does not
+    /// help.
     saved: Vec<[f64; 2]>,
 }
 
 impl NonlinearElimination {
     /// Selects the bodies of the contacts that contribute most to the residual, and solves all contacts of these bodies
-    /// and of their neighbours under Coulomb's law. The reported number of sweeps does not include these sweeps,
-    /// because they visit only a few contacts of the pile.
+    /// and of their neighbours by sweeps under Coulomb's law. Keeps the result if it reduces the residual of the whole
+    /// problem. The reported number of sweeps does not include these sweeps, because they visit only a few contacts of
+    /// the pile.
     pub(super) fn apply<M: Model>(&mut self, problem: &mut StepProblem<M>) {
         let before = residual(problem);
         problem.rows.read_impulses(&mut self.saved);

@@ -90,8 +90,8 @@ pub(super) fn sweep_by<M: Model, P: FrictionProjection, const MEASURE: bool>(
     pass::<M, P, MEASURE, false>(problem, backward)
 }
 
-/// Does the work of `pass` with the AVX instructions: the same operations in the same order, so that the result is
-/// bitwise the same. The three-operand encoding of AVX saves copies that the older encoding needs.
+/// Performs the same sweep as `pass`, compiled for the AVX instructions: the same operations in the same order, so that
+/// the result is bitwise the same. The three-operand encoding of AVX saves copies that the older encoding needs.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx")]
 fn pass_with_avx<M: Model, P: FrictionProjection, const MEASURE: bool>(
@@ -173,8 +173,8 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
 }
 
 /// Solves the contact of a grain with a driven wall. Returns the change of the impulses (λ_n, λ_t) divided by the
-/// effective mass, m/s. If the wall moves obliquely, a normal impulse also changes the wall's speed along the tangent,
-/// so the tangential velocity is computed after the normal update.
+/// effective mass, m/s. If the wall moves obliquely to the contact's normal, a normal impulse also changes the wall's
+/// speed along the tangent, so the tangential velocity is computed after the normal update.
 fn solve_driven<M: Model>(
     project: impl Fn([f64; 2]) -> [f64; 2],
     row: &mut FixedRow<M>,

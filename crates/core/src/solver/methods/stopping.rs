@@ -1,11 +1,11 @@
-//! Stopping tests, and the report of a solve.
+//! Stopping tests of the solver's methods, and the report of a solve.
 //!
 //! **A stalled solve** must be distinguished from a solve that was stopped too early. The restitution term ρ v^{n−1}
-//! can demand velocities of wedged contacts that their neighbours do not allow. Such a problem has no solution: the
-//! residual of any iteration falls to a floor and remains there, while impulses drift. In a problem that is merely slow
-//! to solve, doubling the number of sweeps clearly reduces the residual: if eight digits take 1e5 sweeps, the residual
-//! still falls by a third from 2,048 sweeps to 4,096. So the residual is compared each time the number of sweeps has
-//! doubled.
+//! can demand velocities of wedged contacts that their neighbours do not allow. Such a problem has no solution: with
+//! any method the residual falls to some value and remains there, while impulses keep changing. In a problem that is
+//! merely slow to solve, doubling the number of sweeps clearly reduces the residual: if eight digits take 1e5 sweeps,
+//! the residual still falls by a third from 2,048 sweeps to 4,096. So each time the number of sweeps has doubled, the
+//! residual is compared with its value at half as many sweeps.
 //!
 //! A stall is a property of a method: sometimes Newton's method finds a solution although Gauss–Seidel stalls. The
 //! problem has no solution only if all methods stall.
@@ -15,22 +15,23 @@ use crate::solver::onlooker::{SolveProgress, is_ended};
 use crate::solver::problem::VelocityError;
 use crate::solver::settings::{SolverSettings, StopTest};
 
-/// The outcome of a solve.
+/// The outcome of one or more solves: work, and success or failure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SolveReport {
     /// Number of sweeps, or of iterations if the method has no sweeps.
     pub sweeps: u32,
-    /// Number of matrix factorisations.
+    /// Number of factorisations of the matrix of a linear system; 0 for methods without linear systems.
     pub factorisations: u32,
-    /// True if the stopping test was met.
+    /// True if the stopping test was met: the error is within the tolerance.
     pub converged: bool,
-    /// True if a solve did not converge because it stalled; false if it was stopped too early.
+    /// True if a solve did not converge because its residual stopped decreasing; false if it was stopped by a limit
+    /// while the residual still decreased.
     pub stalled: bool,
 }
 
 impl SolveReport {
-    /// Returns the report of no work, which counts as converged: before the first solve, and for a step without
-    /// contacts.
+    /// Returns the report of a step in which no solve has been made: no sweeps, and converged, because nothing is
+    /// unsolved.
     pub(crate) fn nothing_yet() -> Self {
         Self { converged: true, ..Self::default() }
     }
@@ -43,8 +44,8 @@ impl SolveReport {
         self.stalled |= other.stalled;
     }
 
-    /// Returns this report with the sweeps and factorisations of earlier solves added. The outcome of the earlier
-    /// solves is dropped.
+    /// Returns this report with the sweeps and factorisations of earlier solves of the same step added. Whether the
+    /// earlier solves converged or stalled is ignored.
     pub(crate) fn after(self, earlier: Self) -> Self {
         Self {
             sweeps: self.sweeps + earlier.sweeps,
@@ -54,11 +55,12 @@ impl SolveReport {
     }
 }
 
-/// Number of sweeps that are each followed by a stopping test. Of the later sweeps only every [`TEST_INTERVAL`]th is
-/// tested, because a sweep that also measures its change costs more. With a smaller number, steps with good initial
-/// impulses take more sweeps than they need.
+/// Number of sweeps at the beginning of a solve that are each followed by a stopping test. Of the later sweeps only
+/// every [`TEST_INTERVAL`]th is tested, because a sweep that also measures its change costs more. With a smaller
+/// number, steps with good initial impulses would take more sweeps than they need.
 const SWEEPS_TESTED_EACH: u32 = 16;
-/// Number of sweeps between two stopping tests of a long solve, and thus the limit of unnecessary sweeps.
+/// Number of sweeps between two stopping tests of a long solve. A solve makes fewer unnecessary sweeps than this
+/// number.
 const TEST_INTERVAL: u32 = 8;
 
 /// Returns true if the stopping test is made after sweep (or iteration) number `sweeps`, counted from 1.
@@ -118,19 +120,21 @@ pub(super) fn is_settled<P>(
     }
 }
 
-/// Number of sweeps at the first comparison of residuals; with fewer sweeps all problems look alike.
+/// Number of sweeps after which the residual is compared for the first time. After fewer sweeps the comparison does not
+/// distinguish problems with and without a solution.
 const FIRST_LOOK: u32 = 512;
-/// Ratio of the residual to the residual after half as many sweeps, at or above which the residual counts as flat.
+/// Ratio of the residual to the residual after half as many sweeps, at or above which the residual counts as no longer
+/// decreasing (flat).
 const FLAT: f64 = 0.95;
-/// Number of consecutive flat comparisons that end a solve to a residual or velocity error. With 1, a solve that only
-/// pauses would end, too.
+/// Number of consecutive comparisons with a flat residual that end a solve, if its stopping test limits the residual or
+/// the velocity error. With 1, a solve whose residual only pauses would end, too.
 const LOOKS_IN_VAIN: u32 = 2;
 
 /// History of the residual during a solve, to detect a stall.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StallWatch {
     next_look: u32,
-    /// The residuals of the last two comparisons, the older one first.
+    /// The last two residuals that were computed for a comparison, the older one first.
     looks: [f64; 2],
     in_vain: u32,
 }
@@ -143,8 +147,9 @@ impl Default for StallWatch {
 
 impl StallWatch {
     /// Computes the residual each time the number of sweeps has doubled. Returns true if the solve should stop: because
-    /// an onlooker ends it, or because a solve to a residual or velocity error has stalled. With the other stopping
-    /// tests, which belong to published schemes, a stalled solve continues.
+    /// an onlooker (a callback that watches the progress) ends it, or because the solve has stalled and its stopping
+    /// test limits the residual or the velocity error. With the other stopping tests, which belong to published
+    /// schemes, a stalled solve continues.
     pub(super) fn look(
         &mut self,
         sweeps: u32,
@@ -164,8 +169,8 @@ impl StallWatch {
         self.in_vain >= LOOKS_IN_VAIN && settings.stop.judges_solutions()
     }
 
-    /// Returns true if a solve has stalled that ended without a solution after this many sweeps with this residual. The
-    /// residual is compared with the last recorded residual after at most half as many sweeps.
+    /// Returns true if a solve has stalled: it ended after `sweeps` sweeps without meeting its stopping test, and
+    /// `residual` is hardly smaller than the last recorded residual after at most half as many sweeps.
     pub(super) fn has_stalled(&self, sweeps: u32, residual: f64) -> bool {
         let last_look = self.next_look / 2;
         let before = if 2 * last_look <= sweeps { self.looks[1] } else { self.looks[0] };

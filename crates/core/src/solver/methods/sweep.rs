@@ -12,8 +12,8 @@ use crate::contact::{ContactLaw, Lanes};
 use crate::solver::kinematics::Model;
 use crate::solver::problem::{FixedRow, PairRow, Rolling, Row};
 
-/// The data that the update of a contact needs, except the impulses, in the units of [`Row`]. With several SIMD lanes,
-/// one contact per lane.
+/// The data that the update of a contact needs, except the impulses: normal, restitution term (m/s) and effective mass
+/// (kg). With several SIMD lanes, one contact per lane.
 #[derive(Clone, Copy)]
 pub(crate) struct Local<M: Model, T: Lanes> {
     pub normal: M::Normal<T>,
@@ -21,7 +21,8 @@ pub(crate) struct Local<M: Model, T: Lanes> {
     pub effective_mass: T,
 }
 
-/// Change of the impulses in a sweep; 0 if it was not measured. With several SIMD lanes, one change per lane.
+/// Change of the impulses of all contacts in a sweep; 0 if the change was not measured. With several SIMD lanes, one
+/// change per lane.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ImpulseChange<T = f64> {
     /// Sum of the squared changes of the impulses Σ ΔP², (N·s)².
@@ -31,7 +32,7 @@ pub struct ImpulseChange<T = f64> {
 }
 
 impl ImpulseChange {
-    /// Adds the change of the impulses of other contacts.
+    /// Adds the change of the impulses of further contacts in the same sweep.
     pub(crate) fn add_all(&mut self, other: Self) {
         self.squared += other.squared;
         self.absolute += other.absolute;
@@ -39,7 +40,8 @@ impl ImpulseChange {
 }
 
 impl<T: Lanes> ImpulseChange<T> {
-    /// Adds a change of the impulses (λ_n, λ_t), divided by the effective mass `mass` (kg), m/s, if `MEASURE` is set.
+    /// Adds the change of the impulses of one contact, if `MEASURE` is set. The change of (λ_n, λ_t) is given divided
+    /// by the effective mass `mass` (kg), m/s.
     #[inline(always)]
     pub(crate) fn add<M: Model, const MEASURE: bool>(
         &mut self,
@@ -84,8 +86,8 @@ impl<M: Model, T: Lanes> Local<M, T> {
         change.add::<M, MEASURE>(self.effective_mass, pushed);
     }
 
-    /// Solves contacts between grains i and j: updates the impulses (σ, λ_t) and the velocities. `share` is
-    /// g_i = m_ij/m_i.
+    /// Solves contacts between grains i and j: updates the impulses (σ, λ_t), m/s, and the velocities of the grains.
+    /// `share` is the mass ratio g_i = m_ij/m_i.
     #[inline(always)]
     pub(crate) fn solve_pair<const MEASURE: bool>(
         &self,
@@ -101,7 +103,8 @@ impl<M: Model, T: Lanes> Local<M, T> {
         change.add::<M, MEASURE>(self.effective_mass, pushed);
     }
 
-    /// Updates the impulses (σ, λ_t) of contacts with the velocities (v_n, v_t). Returns the change of (λ_n, λ_t), m/s.
+    /// Updates the impulses (σ, λ_t) of contacts that have the velocities (v_n, v_t). Returns the change of (λ_n, λ_t),
+    /// m/s.
     #[inline(always)]
     fn update(
         &self,
@@ -161,8 +164,8 @@ impl<M: Model> PairRow<M> {
 }
 
 impl<M: Model> Row<M> {
-    /// Updates the rolling impulse of the contact after its impulses (σ, λ_t). `share` is the mass ratio
-    /// g_i = m_ij/m_i, or `None` against a fixed body.
+    /// Updates the rolling impulse of the contact, which depends on the contact's updated impulses (σ, λ_t). `share` is
+    /// the mass ratio g_i = m_ij/m_i, or `None` against a fixed body.
     #[inline(always)]
     pub(crate) fn solve_rolling<const MEASURE: bool>(
         &self,

@@ -54,7 +54,7 @@ pub(crate) trait FrictionProjection: Sized {
     fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2];
 }
 
-/// Evaluates an expression in which a type name stands for the [`FrictionProjection`] of the problem's friction model.
+/// Evaluates an expression in which a type name stands for the projection (`FrictionProjection`) of a friction model.
 macro_rules! with_projection {
     ($problem:expr, $M:ident, $P:ident => $work:expr) => {
         match $problem.friction.model {

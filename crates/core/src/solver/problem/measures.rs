@@ -8,7 +8,7 @@ use super::{Row, StepProblem};
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
-/// Measures of a solved step.
+/// Errors, contact counts and works of a solved step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measures {
     /// Residual of the natural map under Coulomb's law, dimensionless; the same measure for all methods and friction

@@ -87,15 +87,18 @@ pub struct StepProblem<M: Model> {
 pub struct ProblemNumbers {
     /// Time step Δt, s.
     pub time_step_secs: f64,
-    /// Friction coefficient μ; if contacts have [`RowNumbers`], the largest coefficient of all pairs of materials.
+    /// Friction coefficient μ; if contacts have their own coefficients ([`RowNumbers`]), the largest coefficient of all
+    /// pairs of materials.
     pub friction: f64,
-    /// Coefficient of rolling friction μ_r; if contacts have [`RowNumbers`], the largest coefficient of all pairs of
-    /// materials.
+    /// Coefficient of rolling friction μ_r; if contacts have their own coefficients ([`RowNumbers`]), the largest
+    /// coefficient of all pairs of materials.
     pub rolling_friction: f64,
     /// Capture speed C₀Δt/m_ij (cohesion force times time step, divided by effective mass), m/s; 0 without cohesion. If
-    /// contacts have [`RowNumbers`], the largest capture speed of all pairs of materials for grains of the mean mass.
+    /// contacts have their own coefficients ([`RowNumbers`]), the largest capture speed of all pairs of materials for
+    /// grains of the mean mass.
     pub capture_speed: f64,
-    /// The part of the normal force that bounds friction; the shifted cone if there is no cohesion.
+    /// Friction cone, which determines the part of the normal force that bounds friction; the shifted cone if there is
+    /// no cohesion.
     pub cone: FrictionCone,
 }
 
@@ -113,7 +116,8 @@ pub struct Approach {
     pub gap: f64,
     /// True if the pair touches or is bonded, false if it is only close enough to be detected.
     pub in_touch: bool,
-    /// Coefficient of restitution ρ of the contact's pair of materials, if pairs of materials have their own numbers.
+    /// Coefficient of restitution ρ of the contact's pair of materials, if pairs of materials have their own
+    /// coefficients.
     pub restitution: Option<f64>,
 }
 
@@ -278,8 +282,8 @@ impl<M: Model> StepProblem<M> {
         *touching_mass = masses.map(|(mass, touches)| if *touches { *mass } else { 0.0 }).sum();
     }
 
-    /// Makes Coulomb's law the friction model: limits the tangential impulses to its bounds and recomputes the
-    /// velocities.
+    /// Makes Coulomb's law the friction model: limits the tangential impulses to the friction bounds of Coulomb's law
+    /// and recomputes the velocities.
     pub fn take_coulombs_law(&mut self) {
         self.friction.model = FrictionModel::Coulomb;
         self.friction.now.clear();
@@ -454,8 +458,9 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the impulses of all rows, divided by the effective masses, m/s, in the order of
-    /// [`ContactRows::read_impulses`], and recomputes the velocities.
+    /// Sets the impulses of all contacts, divided by the effective masses, m/s, and recomputes the velocities.
+    /// `impulses` has (σ, λ_t) of each contact, followed by (ψ, 0) of each contact if the problem has rolling
+    /// resistance.
     pub(crate) fn write_impulses(&mut self, impulses: impl IntoIterator<Item = [f64; 2]>) {
         let mut impulses = impulses.into_iter();
         for (row, impulse) in self.rows.iter_mut().zip(&mut impulses) {

@@ -247,7 +247,7 @@ const LEAST_GRAINS_A_TILE: usize = 64;
 #[derive(Clone, Debug, Default)]
 struct Tiles {
     of_grain: Vec<u32>,
-    /// Number of tiles.
+    /// Number of square tiles.
     count: usize,
 }
 

@@ -10,11 +10,11 @@ use crate::solver::kinematics::Model;
 /// Velocities and masses of the bodies of a step's contact problem, one body per grain.
 #[derive(Clone, Debug)]
 pub struct Bodies<M: Model> {
-    /// Velocities that follow from the present contact impulses.
+    /// Velocities of the grains that follow from the present contact impulses.
     pub now: Vec<M::Body<f64>>,
-    /// Velocities at the beginning of the step.
+    /// Velocities of the grains at the beginning of the step.
     pub before: Vec<M::Body<f64>>,
-    /// Velocities at the end of the step if no contact acted.
+    /// Velocities of the grains at the end of the step if no contact acted.
     pub free: Vec<M::Body<f64>>,
     /// Masses of the grains, kg.
     pub masses: Vec<f64>,
@@ -36,20 +36,20 @@ impl<M: Model> Default for Bodies<M> {
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Row<M: Model> {
-    /// Index of grain i.
+    /// Index of grain i, the first body of the contact.
     pub i: u32,
-    /// Index of grain j; not used in a contact with a fixed body.
+    /// Index of grain j, the second body of the contact; not used in a contact with a fixed body.
     pub j: u32,
     /// Unit normal n of the contact, from body j (or the fixed body) to grain i.
     pub normal: M::Normal<f64>,
     /// The term that the contact law adds to v_n, m/s: ρ v_n^{n−1}, or 0 if the bodies approach each other more slowly
     /// than the threshold of restitution, minus the speed of a moving wall along n (`problem::walls`).
     pub restitution_velocity: f64,
-    /// Shifted normal impulse σ = λ_n + capture speed, m/s.
+    /// Shifted normal impulse σ of the contact, m/s: λ_n plus the capture speed.
     pub shifted_impulse: f64,
-    /// Tangential impulse λ_t, m/s.
+    /// Tangential impulse λ_t of the contact, m/s.
     pub tangential_impulse: f64,
-    /// Effective mass m_ij, kg.
+    /// Effective mass m_ij of the contact, kg.
     pub effective_mass: f64,
 }
 
@@ -130,9 +130,9 @@ impl<M: Model> PairRow<M> {
 /// contacts between grains, each in the order of the sweep (`problem::order`).
 #[derive(Clone, Debug, Default)]
 pub struct ContactRows<M: Model> {
-    /// Rows of contacts with fixed bodies.
+    /// Rows (the data of one contact each) of contacts with fixed bodies.
     pub fixed: Vec<FixedRow<M>>,
-    /// Rows of contacts between grains.
+    /// Rows (the data of one contact each) of contacts between grains.
     pub pairs: Vec<PairRow<M>>,
     /// Index of each row's contact in the list of detected contacts.
     pub contacts: Vec<u32>,
@@ -159,7 +159,7 @@ impl<M: Model> ContactRows<M> {
         self.len() == 0
     }
 
-    /// Removes all rows.
+    /// Removes all rows (contacts).
     pub(crate) fn clear(&mut self) {
         self.fixed.clear();
         self.pairs.clear();
@@ -170,12 +170,12 @@ impl<M: Model> ContactRows<M> {
         self.rolling.clear();
     }
 
-    /// Iterates over the rows in the order of their numbers.
+    /// Iterates over the rows (the data of one contact each) in the order of their numbers.
     pub fn iter(&self) -> impl Iterator<Item = &Row<M>> {
         self.fixed.iter().map(|row| &row.row).chain(self.pairs.iter().map(|row| &row.row))
     }
 
-    /// Iterates over mutable references to the rows in the order of their numbers.
+    /// Iterates over mutable references to the rows (the data of one contact each) in the order of their numbers.
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = &mut Row<M>> {
         let fixed = self.fixed.iter_mut().map(|row| &mut row.row);
         fixed.chain(self.pairs.iter_mut().map(|row| &mut row.row))

@@ -34,7 +34,7 @@ use super::{Approach, Row, StepProblem};
 use crate::contact::{Contact, ContactList};
 use crate::solver::kinematics::Model;
 
-/// Marks a contact whose fixed body is not a driven wall.
+/// Index that marks a contact whose fixed body is not a driven wall.
 const NONE: u32 = u32::MAX;
 
 /// Motion of the surface of a fixed body (disc or wall that is not a grain) at a contact.
@@ -129,7 +129,7 @@ pub(crate) struct MovingWalls {
     surfaces: Vec<Option<Surface>>,
     /// Walls that a force drives.
     pub driven: Vec<DrivenWall>,
-    /// The contacts with driven walls.
+    /// Data of the contacts with driven walls.
     pub driven_rows: Vec<DrivenRow>,
     /// For each contact with a fixed body, its index in `driven_rows`, or [`NONE`]; empty if no wall is driven.
     driven_row_of: Vec<u32>,
@@ -355,8 +355,9 @@ impl<M: Model> StepProblem<M> {
     ///
     /// A contact with a driven wall has larger compliances than a contact with a fixed wall, because the wall gives
     /// way. v_n, with its restitution term, is divided by the ratio of these compliances 1 + κ b_n², and v_t by 1 + κ
-    /// b_t² m_t/m_n (κ and b: see the head of the file). So an impulse changes the scaled velocity as much as it would
-    /// change the velocity at a fixed wall.
+    /// b_t² m_t/m_n (κ is the response of the wall's speed to an impulse times the effective mass; b_n and b_t are the
+    /// components of the wall's direction of motion along the normal and the tangent). So an impulse changes the scaled
+    /// velocity as much as it would change the velocity at a fixed wall.
     #[inline(always)]
     pub(super) fn own_part(
         &self,
@@ -425,8 +426,9 @@ impl<M: Model> StepProblem<M> {
     }
 
     /// For each contact with a fixed body, computes κ (b_n² + b_t² m_t/m_n) times the number of contacts of its driven
-    /// wall (κ and b: see the head of the file), or `None` if the body is not a driven wall. Methods that update all
-    /// contacts at once need this bound on the wall's compliance.
+    /// wall, or `None` if the body is not a driven wall. κ is the response of the wall's speed to an impulse times the
+    /// contact's effective mass; b_n and b_t are the components of the wall's direction of motion along the normal and
+    /// the tangent. Methods that update all contacts at once need this bound on the wall's compliance.
     pub(crate) fn wall_compliances(&self) -> impl Iterator<Item = Option<f64>> {
         let MovingWalls { driven, driven_rows, .. } = &self.walls;
         let mut counts = vec![0.0; driven.len()];

@@ -15,15 +15,16 @@ use crate::data::table::{Table, Values};
 use crate::error::{Error, Result};
 use crate::input::open;
 
-/// Description of a valid Parquet file, for messages.
+/// Description of a valid Parquet file, for error messages.
 const FORM: &str = "a Parquet file whose columns are flat, not compressed or by snappy";
-/// Largest number of rows that is read. A file with more rows is damaged or does not contain discs.
+/// Largest number of rows that a file may have. A file with more rows is damaged or does not contain discs.
 const MOST_ROWS: i64 = 1 << 28;
 /// Length of the last section of a Parquet file, bytes: the length of the footer (four bytes) and the mark `PAR1`.
 const MARK: u64 = 8;
-/// Number of bytes of a word that are read; the rest is ignored. All words for kinds of grains are shorter.
+/// Number of bytes that are read of each word in a column of words; further bytes are ignored. All words for kinds of
+/// discs are shorter.
 const MOST_OF_WORD: usize = 64;
-/// Number of rows that are decoded in one call.
+/// Number of rows of a column that are decoded in one call of the decoder.
 const ROWS_AT_ONCE: usize = 1 << 16;
 
 /// An open Parquet file.
@@ -60,13 +61,13 @@ impl ParquetFile {
         Ok(Self { path: path.to_owned(), file, reader })
     }
 
-    /// Returns the number of rows.
+    /// Returns the number of rows in the file.
     pub(in crate::data) fn rows(&self) -> usize {
         // The number of rows was checked when the file was opened.
         self.reader.metadata().file_metadata().num_rows() as usize
     }
 
-    /// Returns the names of the columns.
+    /// Returns the names of the columns in the file.
     pub(in crate::data) fn names(&self) -> Vec<String> {
         let columns = self.reader.metadata().file_metadata().schema_descr().columns();
         columns.iter().map(|column| column.path().string()).collect()
@@ -115,7 +116,7 @@ impl ParquetFile {
         check_pages(&bytes)
     }
 
-    /// Reads all rows into `table`, an empty table. The file must have every column of this table.
+    /// Reads all rows of the file into `table`, an empty table. The file must have every column of this table.
     pub(in crate::data) fn read_into(&self, table: &mut Table) -> Result<()> {
         for column in &mut table.columns {
             let refuse = || {
@@ -133,7 +134,8 @@ impl ParquetFile {
     }
 }
 
-/// Checks the footer, which is at the end of the file before its length and the mark of Parquet.
+/// Checks the footer of a Parquet file, which contains its metadata. It is at the end of the file, ahead of its own
+/// length and the mark `PAR1`.
 fn check_whole(file: &File) -> std::result::Result<(), String> {
     let read = |count: u64| -> std::io::Result<Vec<u8>> {
         let (mut file, mut bytes) = (file, Vec::new());
@@ -193,8 +195,8 @@ impl Decoded {
         }
     }
 
-    /// Converts the values to the kind of `like`. Returns `None` if the kinds differ, or if a value is missing that may
-    /// not be missing.
+    /// Converts decoded values to the variant of `like`, the values of a table's column (numbers, counts, flags or
+    /// words). Returns `None` if the variants do not match, or if a value is missing that may not be missing.
     fn into_values(self, like: &Values) -> Option<Values> {
         match (self, like) {
             (Self::Numbers(values), Values::Numbers(_)) => {
@@ -242,7 +244,7 @@ fn decode(reader: ColumnReader, rows: usize) -> ParquetResult<Decoded> {
     })
 }
 
-/// Reads the values of `rows` rows of a column; `None` for missing values.
+/// Reads the first `rows` values of a column; `None` for missing values.
 fn all<T: DataType, Value>(
     mut reader: ColumnReaderImpl<T>,
     rows: usize,

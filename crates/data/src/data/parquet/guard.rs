@@ -12,25 +12,27 @@ use std::sync::Once;
 
 use crate::input::MOST_BYTES;
 
-/// Largest accepted nesting depth of structures and lists in a header. A valid file needs eight levels.
+/// Largest accepted nesting depth of structures and lists in a header of a Parquet file. A valid file needs eight
+/// levels.
 const MOST_DEPTH: usize = 16;
-/// Largest accepted ratio of the unpacked to the packed size of a page. The compression Snappy writes at best 64 bytes
-/// as three.
+/// Largest accepted ratio of the unpacked to the packed size of a page (block of data). Snappy, the only compression
+/// that is accepted, writes at best 64 bytes as three.
 const MOST_EXPANSION: i64 = 32;
-/// Size of an unpacked page, bytes, up to which the page is always accepted, even if its packed size is very small.
+/// Unpacked size of a page (block of data), bytes, up to which the page is always accepted, even if its packed size is
+/// very small.
 const SMALL_PAGE: i64 = 4096;
 /// Number of rows up to which a file is always accepted, even if it has fewer bytes than rows, because columns with a
 /// constant value take little space.
 const FREE_ROWS: i64 = 1 << 20;
-/// Parquet's numbers of two encodings that state a number of values before the values: `DELTA_LENGTH_BYTE_ARRAY`
-/// (stores lengths) and `DELTA_BYTE_ARRAY` (stores common prefixes). Both are refused, because that number is inside
-/// the page and cannot be checked here.
+/// Parquet's numbers of two encodings that state a number of values ahead of the values: `DELTA_LENGTH_BYTE_ARRAY`
+/// (stores lengths) and `DELTA_BYTE_ARRAY` (stores common prefixes). Both are refused, because the stated number is
+/// inside the page (block of data) and cannot be checked here.
 const COUNTED: [i64; 2] = [6, 7];
 
 /// Result of a check. The error is the reason for refusing a file, as the rest of a sentence after the file's name.
 type Checked<T> = Result<T, String>;
 
-/// Value of a field in a header, reduced to the properties that are checked.
+/// Value of a field in a header of a Parquet file, reduced to the properties that are checked.
 enum FieldValue {
     Whole(i64),
     Text,
@@ -40,13 +42,14 @@ enum FieldValue {
     Other,
 }
 
-/// Type that the decoder expects for a field in a header, whatever type the file states. If the two types differ, the
-/// decoder loses its position and misreads all following bytes.
+/// Type that the decoder expects for a field in a header, no matter which type the file states. If the two types
+/// differ, the decoder loses its position and misreads all following bytes.
 enum FieldShape {
     Whole,
     Text,
     Switch,
-    /// A single byte, or a number of eight bytes.
+    /// Type of a field with a fixed size whose value is not checked: a single byte, or a floating-point number of eight
+    /// bytes.
     Plain,
     List(&'static FieldShape),
     Fields(&'static [(i64, FieldShape)]),
@@ -166,8 +169,8 @@ const PAGE_HEADER: FieldShape = Fields(&[
 ]);
 
 impl FieldShape {
-    /// True if a value has this type. In a structure, each field may occur only once. A field that the decoder does not
-    /// know may have any type.
+    /// True if a value in a header has this type. In a structure, each field may occur only once. A field that the
+    /// decoder does not know may have any type.
     fn fits(&self, value: &FieldValue) -> bool {
         match (self, value) {
             (Whole, FieldValue::Whole(_))
@@ -279,7 +282,8 @@ impl Reader<'_> {
     }
 }
 
-/// Returns the nesting depth that remains inside a structure or list. Fails if no depth remains.
+/// Returns the number of nested levels that are still accepted inside a structure or list, if `depth` levels are
+/// accepted including the structure or list itself. Fails if `depth` is 0.
 fn depth_below(depth: usize) -> Checked<usize> {
     depth.checked_sub(1).ok_or_else(|| format!("has headers nested deeper than {MOST_DEPTH}"))
 }
@@ -327,7 +331,7 @@ fn check_shape(shape: &FieldShape, header: &FieldValue) -> Checked<()> {
     shape.fits(header).then_some(()).ok_or_else(refuse)
 }
 
-/// Checks all pages of a column. `bytes` is the section of the file with these pages.
+/// Checks all pages (blocks of data) of a column. `bytes` is the section of the file with these pages.
 pub(super) fn check_pages(bytes: &[u8]) -> Checked<()> {
     let mut rest = Reader(bytes);
     while !rest.0.is_empty() {

@@ -29,10 +29,10 @@ use crate::sim::Observables;
 /// begins. If it is larger, each frame of a small scene costs more, because the last file is rewritten with every
 /// frame. If it is smaller, there are more files.
 const SIZE_OF_PART: usize = 256 << 10;
-/// Key of the file's metadata with units and meanings of the columns, as JSON.
+/// Key of the entry in a file's metadata that describes the units and meanings of the columns, as JSON.
 const COLUMNS_KEY: &str = "columns";
-/// A column that changes in fewer than 1 in `FEW_CHANGES` rows is written as a dictionary and indices, which then take
-/// almost no space.
+/// Limit for writing a column of numbers as a dictionary and indices: on average, its value must change less often than
+/// once in this many rows. Such a column then takes almost no space.
 const FEW_CHANGES: usize = 8;
 
 /// Writer of a recording as Parquet files.
@@ -42,7 +42,7 @@ pub(super) struct Parquet {
 }
 
 impl Parquet {
-    /// Starts a recording, or opens an existing recording.
+    /// Starts a recording in a folder, or opens the recording that is already in it.
     pub(super) fn start(folder: &Path, facts: &RunFacts) -> Result<Self> {
         let start = |table| GrowingParts::start(folder, facts, table);
         let of_frames = empty_tables_of_frames().into_iter().map(start).collect::<Result<_>>()?;
@@ -82,11 +82,11 @@ impl Format for Parquet {
 struct GrowingParts {
     folder: PathBuf,
     encoder: Encoder,
-    /// Number of the last part, which still grows.
+    /// Number of the last part, the file to which rows are still added.
     number: u64,
-    /// Rows of the last part.
+    /// Rows of the last part, the file to which rows are still added.
     rows: Table,
-    /// True if some rows are not yet in the file of the last part.
+    /// True if the last part has rows that are not yet in its file.
     has_news: bool,
     /// True if the file of the last part exists. A table has a file even without rows, so that readers find its
     /// columns.
@@ -94,7 +94,7 @@ struct GrowingParts {
 }
 
 impl GrowingParts {
-    /// Starts a table without parts. `rows` is an empty table that defines the columns.
+    /// Starts a table without files. `rows` is an empty table that defines the columns.
     fn start(folder: &Path, facts: &RunFacts, rows: Table) -> Result<Self> {
         let folder = folder.join(rows.name);
         make_folder(&folder)?;
@@ -102,7 +102,7 @@ impl GrowingParts {
         Ok(Self { folder, encoder, number: 0, rows, has_news: false, has_file: false })
     }
 
-    /// Adds rows, all to the last part. Begins a new part if the last part has become large enough.
+    /// Adds rows, all to the last part (file) of the table. Begins a new part if the last part has become large enough.
     fn add(&mut self, rows: &Table) -> Result<()> {
         self.rows.append(rows);
         self.has_news |= !rows.is_empty();
@@ -116,7 +116,7 @@ impl GrowingParts {
         Ok(())
     }
 
-    /// Writes the file of the last part if there are rows to be written.
+    /// Writes the file of the last part if it has rows that are not yet in the file, or if the file does not exist yet.
     ///
     /// # Errors
     /// The error names the file and gives the system's message. The old file remains.
@@ -134,7 +134,7 @@ impl GrowingParts {
         Ok(())
     }
 
-    /// Checks that the table has exactly `marked` rows up to the step `step`.
+    /// Checks that the files of the table have exactly `marked` rows up to the time step `step`.
     fn check(&self, step: Option<u64>, marked: u64) -> Result<()> {
         let mut rows = 0;
         // Rows are sorted by step. As soon as a part has a row up to `step`, all rows of the earlier parts count.
@@ -151,7 +151,7 @@ impl GrowingParts {
         check_count(&self.folder, "rows", rows, marked)
     }
 
-    /// Removes the rows after the step `step`, or all rows if `step` is `None`.
+    /// Removes the rows of all time steps after `step`, or all rows if `step` is `None`.
     fn roll_back(&mut self, step: Option<u64>) -> Result<()> {
         self.rows.truncate(0);
         (self.number, self.has_news, self.has_file) = (0, false, false);
@@ -250,7 +250,7 @@ fn field(column: &Column) -> ParquetResult<Type> {
     field.build()
 }
 
-/// Adds the encoding of a column to the properties of a file.
+/// Chooses the encoding of a column and adds it to the properties of a Parquet file.
 fn packed(properties: WriterPropertiesBuilder, column: &Column) -> WriterPropertiesBuilder {
     let path = ColumnPath::from(column.name);
     let few_changes = match &column.values {
@@ -300,7 +300,7 @@ fn write(writer: &mut SerializedColumnWriter<'_>, values: &Values) -> ParquetRes
     Ok(())
 }
 
-/// Returns the definition levels of Parquet: 1 for a row with a value, 0 for a row without.
+/// Returns the definition levels of a column, as Parquet calls them: 1 for a row with a value, 0 for a row without.
 fn levels<T>(values: &[Option<T>]) -> Vec<i16> {
     values.iter().map(|value| i16::from(value.is_some())).collect()
 }

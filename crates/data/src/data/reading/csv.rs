@@ -15,14 +15,14 @@ use crate::data::csv::COMMENT;
 use crate::error::{Error, Result};
 use crate::input::{BoundedLines, open};
 
-/// Description of a valid file of discs, for messages.
+/// Description of a valid file of discs, for error messages.
 const FORM: &str = "a CSV of discs: a header line x,y,radius, with vx,vy,omega where they move, and as \
                     many numbers in each line below";
 
-/// Largest number of characters of a header line that a message shows.
+/// Largest number of characters of a header line that an error message shows.
 const MOST_SHOWN: usize = 80;
 
-/// Reads discs from the text of a CSV file; `path` is for messages.
+/// Reads discs from the text of a CSV file; `path` is for error messages.
 ///
 /// # Errors
 /// If a line is not a disc; the message names the line.
@@ -30,7 +30,7 @@ pub fn parse_grains(text: &str, path: &Path) -> Result<RecordedGrains> {
     CsvFile { path, wanted: None, open: || Ok(text.as_bytes()) }.read()
 }
 
-/// Reads the discs of the step `step`, or of the last step in the file if `step` is `None`.
+/// Reads the discs of the time step `step` from a CSV file, or of the last step in the file if `step` is `None`.
 pub(super) fn read(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
     CsvFile { path, wanted: step, open: || open(path, FORM) }.read()
 }
@@ -39,7 +39,7 @@ pub(super) fn read(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
 struct CsvFile<'a, Open> {
     path: &'a Path,
     wanted: Option<u64>,
-    /// Opens the file: once to read it, and again if a message must name a line.
+    /// Function that opens the file: once to read it, and again if an error message must name a line.
     open: Open,
 }
 
@@ -154,8 +154,9 @@ impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
         Error::file(self.path, format!("{}: {reason}", self.line_at(byte_of(record))))
     }
 
-    /// Returns the number of a record's line in the file, as `line 3`. `byte` is the position of the record by the CSV
-    /// reader. It is before the blank lines and comments that the reader skipped, so these lines are skipped here, too.
+    /// Returns the line of a record in the file, as `line 3`. `byte` is the position that the CSV reader states for the
+    /// record. The reader states the position before any blank lines and comments that it skipped, so these lines are
+    /// skipped here, too.
     fn line_at(&self, byte: u64) -> String {
         let Ok(source) = (self.open)() else { return "a line".to_owned() };
         let mut start = 0;
@@ -172,7 +173,8 @@ impl<Source: Read, Open: Fn() -> Result<Source>> CsvFile<'_, Open> {
     }
 }
 
-/// Returns the end of a message: a hint for repairing a header line that names none of the needed columns.
+/// Returns the end of an error message about a header line that lacks needed columns: a hint how to repair it; empty if
+/// no hint fits.
 fn way_out(found: &[String]) -> &'static str {
     let all = |is_so: &dyn Fn(&str) -> bool| !found.is_empty() && found.iter().all(|it| is_so(it));
     if all(&|it| it.parse::<f64>().is_ok()) {

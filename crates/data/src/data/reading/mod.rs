@@ -23,9 +23,9 @@ use super::{lammps, vtk};
 use crate::error::{Error, Result};
 use crate::input::{BoundedLines, open};
 
-/// Description of a valid file, for messages.
+/// Description of a valid file, for error messages.
 const FORM: &str = "a file of discs (CSV or Parquet), or a folder that --data wrote as either";
-/// First bytes of a Parquet file.
+/// The bytes with which every Parquet file begins.
 const PARQUET: &[u8] = b"PAR1";
 /// First bytes of files that Slump writes but does not read, with the names of their formats.
 const WRITTEN_ALONE: [(&[u8], &str); 3] =
@@ -33,8 +33,8 @@ const WRITTEN_ALONE: [(&[u8], &str); 3] =
 /// Number of bytes read from the beginning of a file to recognise its format. No known beginning is longer.
 const LONGEST_BEGINNING: u64 = 8;
 
-/// Reads grains from a CSV or Parquet file, or from the folder of a recording. If the data have several moments, reads
-/// the moment of the step `step`, or the last moment if `step` is `None`.
+/// Reads grains from a CSV or Parquet file, or from the folder of a recording. If the data have several frames, reads
+/// the frame of the time step `step`, or the last frame if `step` is `None`.
 ///
 /// # Errors
 /// If the file cannot be read or is of another format, has no such step, or lacks a column, or if a row is not a disc;
@@ -87,7 +87,7 @@ fn read_file(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
     csv::read(path, wanted)
 }
 
-/// Returns the step of the last frame of the recording in a folder; `None` if it is unknown.
+/// Returns the time step of the last frame of the recording in a folder; `None` if it is unknown.
 fn last_step(folder: &Path) -> Result<Option<u64>> {
     let path = folder.join(FRAMES);
     let Ok(file) = open(&path, FORM) else { return Ok(None) };
@@ -114,8 +114,8 @@ fn read_parts(
     Err(Error::file(path, reason))
 }
 
-/// Makes discs from columns with the names of a recording's table of grains: numbers and, if present, the counts `id`
-/// and the words `kind` and `material`. `what` is the name of the source in messages.
+/// Makes discs from columns with the names of a recording's table of grains: columns of numbers and, if present, the
+/// counts `id` and the words `kind` and `material`. `what` is the name of the source in error messages.
 ///
 /// ```
 /// use slump_data::data::{Values, grains_of};

@@ -8,11 +8,11 @@ use super::rows::{
 use crate::data::parquet::{Decoded, ParquetFile};
 use crate::error::{Error, Result};
 
-/// Largest number of rows in one file. A row of a table is identified by the index of its file times this number plus
-/// the index of the row.
+/// Largest number of rows in one Parquet file. A row of a table in several files is identified by the index of its file
+/// times this number plus the index of the row.
 const MOST_ROWS: u64 = 1 << 32;
 
-/// Reads the discs of the step `step`, or of the last step if `step` is `None`, from the Parquet files of a table,
+/// Reads the discs of the time step `step`, or of the last step if `step` is `None`, from the Parquet files of a table,
 /// which are in ascending order.
 pub(super) fn read_parts(
     path: &Path,
@@ -20,7 +20,7 @@ pub(super) fn read_parts(
     step: Option<u64>,
 ) -> Result<RecordedGrains> {
     let (mut known, mut rows, mut wanted) = (Vec::new(), Vec::new(), step);
-    // The search begins with the last file, because the last moment is in that file and a requested moment is usually
+    // The search begins with the last file, because the last frame is in that file and a requested frame is usually
     // near it.
     for (index, (_, part)) in parts.iter().enumerate().rev() {
         let table = ParquetFile::open(part)?;
@@ -29,7 +29,7 @@ pub(super) fn read_parts(
         wanted = wanted.or(steps.as_ref().and_then(|steps| steps.iter().copied().max()));
         let is_wanted = |row: &usize| match (&steps, wanted) {
             (Some(steps), Some(wanted)) => steps[*row] == wanted,
-            // A file without the column `step` has a single moment.
+            // A file without the column `step` has a single frame.
             (None, _) => step.is_none(),
             (Some(_), None) => false,
         };
@@ -54,7 +54,7 @@ pub(super) fn read_parts(
 }
 
 impl ParquetFile {
-    /// Returns a column of whole numbers ≥ 0; `None` if the file has no such column.
+    /// Reads a column of whole numbers ≥ 0; `None` if the file has no such column.
     fn whole(&self, name: &str) -> Result<Option<Vec<u64>>> {
         let allowed = "a whole number ≥ 0";
         let of = |(row, value): (usize, Option<i64>)| {

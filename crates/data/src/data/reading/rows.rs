@@ -12,37 +12,40 @@ use crate::world::{Disc, Grain};
 
 /// Names of the columns that every file of discs needs.
 const NEEDED: [&str; 3] = ["x", "y", "radius"];
-/// Names of the numeric columns that are read. Mass and areal density are the last two.
+/// Names of the numeric columns that are read from a file of discs. Mass and areal density are the last two.
 pub(super) const NUMBERS: [&str; 8] = ["x", "y", "radius", "vx", "vy", "omega", "mass", DENSITY];
 /// Name of the column with the areal density of a grain, kg/m². Recordings do not have this column.
 const DENSITY: &str = "density";
 /// Columns of [`NUMBERS`] that have no value for fixed discs.
 pub(super) const OF_GRAINS: [&str; 2] = ["mass", DENSITY];
-/// Default values of the columns [`NUMBERS`] if a file does not have them. NaN means that mass or density is not given.
+/// Default values of the columns [`NUMBERS`] for a file without these columns. NaN means that mass or density is not
+/// given.
 pub(super) const LEFT_OUT: [f64; NUMBERS.len()] =
     [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, f64::NAN, f64::NAN];
-/// Largest number of steps that a message lists.
+/// Largest number of time steps that an error message lists one by one.
 const MOST_LISTED: usize = 8;
 
-/// Moving and fixed discs of one moment, read from a file.
+/// Grains and fixed discs of one time step, read from a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordedGrains {
-    /// Discs that move, sorted by their ids if they have ids.
+    /// Grains, the discs that can move freely. They are sorted by their ids if they have ids.
     pub grains: Vec<Grain>,
-    /// Discs that do not move, sorted by their ids if they have ids.
+    /// Fixed discs, which are at rest or have a prescribed motion. They are sorted by their ids if they have ids.
     pub fixed_discs: Vec<Disc>,
     /// Name of the material of each fixed disc; `None` if the file names no material.
     pub disc_materials: Vec<Option<String>>,
 }
 
 impl RecordedGrains {
-    /// Names of the numeric columns that are read. The columns `id`, `kind` and `material` are also read.
+    /// Names of the numeric columns that are read from a file of discs. The columns `id`, `kind` and `material` are
+    /// also read.
     pub const NUMBERS: [&str; NUMBERS.len()] = NUMBERS;
 
-    /// Gives the fixed discs to a scene, with their materials. `path` is the file of the discs, for messages.
+    /// Replaces the fixed discs of a scene by the fixed discs of a file, with their materials. `path` is the file, for
+    /// error messages.
     ///
     /// # Errors
-    /// If the scene does not list the material of a fixed disc.
+    /// If the scene has no material with the name that the file gives for a fixed disc.
     pub fn place_fixed_discs(self, scene: &mut Scene, path: &Path) -> Result<()> {
         for (number, name) in self.disc_materials.into_iter().enumerate() {
             let Some(name) = name else { continue };
@@ -62,7 +65,7 @@ impl RecordedGrains {
 /// One row of a file of discs, before it is checked.
 #[derive(Debug)]
 pub(super) struct DiscRow {
-    /// Number by which the reader of the file finds the row for a message, such as a byte position in a CSV file.
+    /// Number that identifies the row for an error message, such as its byte position in a CSV file.
     pub place: u64,
     pub id: Option<u64>,
     /// Word in the column `kind`. If the file has no such column, the row is a grain.
@@ -73,7 +76,7 @@ pub(super) struct DiscRow {
     pub numbers: [f64; NUMBERS.len()],
 }
 
-/// True if the names include all columns that discs need.
+/// True if `names` includes all columns that every file of discs needs.
 pub(super) fn has_needed(names: &[String]) -> bool {
     NEEDED.iter().all(|needed| names.iter().any(|name| name == needed))
 }
@@ -103,7 +106,7 @@ pub(super) fn known_names() -> String {
     names.chain([DENSITY]).collect::<Vec<_>>().join(", ")
 }
 
-/// Returns the error for a file that has no data of the requested step. `known` lists the steps of the file in
+/// Returns the error for a file that has no data of the time step `step`. `known` lists the steps of the file in
 /// ascending order.
 pub(super) fn no_such_step(path: &Path, step: u64, known: &[u64]) -> Error {
     let file = path.display();
@@ -122,7 +125,7 @@ pub(super) fn no_such_step(path: &Path, step: u64, known: &[u64]) -> Error {
 }
 
 /// Checks rows and converts them to discs. `place` returns the file of a row and its position in the file, such as
-/// `line 3`, for messages.
+/// `line 3`, for error messages.
 pub(super) fn discs_of_rows(
     path: &Path,
     rows: Vec<DiscRow>,

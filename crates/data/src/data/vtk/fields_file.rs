@@ -1,9 +1,9 @@
 //! Writes the smoothed fields of a frame as a VTK image.
 //!
 //! Frames of a recording are compared with each other, so all frames use the same smoothing width. A single grain that
-//! flies off must not make the images of all other grains coarser or larger. Width and region are therefore fixed by
-//! the first frame: the width is a mean diameter, and the fields cover the box around the grains of that frame with
-//! some margin.
+//! flies off must not make the images of all other grains coarser or larger. The first frame therefore determines width
+//! and region for all frames: the width is a mean diameter, and the fields cover the box around the grains of that
+//! frame with some margin.
 
 use std::path::Path;
 
@@ -17,20 +17,21 @@ use crate::granular::{Fields, box_of};
 use crate::output::{counted, note_line};
 use crate::sim::Moment;
 
-/// Possible margins between the box around the first frame's grains and the limits of the fields, in lengths of the
-/// box's longer side. The largest margin that does not give too many cells is used. With less margin, grains that flow
-/// out of the box are soon left out. With more, a grain that flies off makes images larger for longer.
+/// Possible margins between the box around the first frame's grains and the edges of the region that the fields cover,
+/// in lengths of the box's longer side. The largest margin that does not give too many cells is used. With less margin,
+/// grains that flow out of the box are soon left out. With more, a grain that flies off makes images larger for longer.
 const ROOM_IN_SIDES: [f64; 4] = [3.0, 1.0, 0.25, 0.0];
-/// Least side length of the box in the computation of the margin, in mean diameters.
+/// Smallest side length, in mean diameters, for which the margin is computed. A smaller box around the grains gets the
+/// margin of a box with this side length.
 const LEAST_SIDE_IN_DIAMETERS: f64 = 10.0;
-/// Name of the number in a file that is the smoothing width, m.
+/// Name under which a file states the smoothing width, m.
 const WIDTH: &str = "smoothing_width";
-/// Names of the numbers in a file that are the lower left and the upper right corner of the region, m.
+/// Names under which a file states the lower left and the upper right corner of the region that the fields cover, m.
 const CORNERS: [&str; 4] = ["least_x", "least_y", "most_x", "most_y"];
-/// Name of the number in a file that counts the grains outside the region of the fields.
+/// Name under which a file states the number of grains outside the region that the fields cover.
 const LEFT_OUT: &str = "left_out_grains";
 
-/// Descriptions of the fields, for the array `columns` of the file.
+/// Descriptions of the fields, which are written into the array `columns` of a file.
 const OF_FIELDS: [&str; 11] = [
     "density [kg/m^2]: smoothed with smoothing_width, m, the standard deviation along each axis; means over cells",
     "momentum [kg/(m s)]: likewise",
@@ -45,7 +46,7 @@ const OF_FIELDS: [&str; 11] = [
     "left_out_grains: outside of the box from (least_x, least_y) to (most_x, most_y), m, which fields cover",
 ];
 
-/// Smoothing width and region of the fields of a recording.
+/// Smoothing width of the fields of a recording, and the region that they cover.
 pub(super) struct FieldsBox {
     width: f64,
     corners: [DVec2; 2],
@@ -53,8 +54,9 @@ pub(super) struct FieldsBox {
 }
 
 impl FieldsBox {
-    /// Chooses smoothing width and region of the fields for a recording. `moment` is its first frame. If smoothing over
-    /// a mean diameter needs too many cells, the width is doubled as often as necessary.
+    /// Chooses the smoothing width of a recording's fields and the region that they cover. `moment` is the snapshot of
+    /// its first frame. If smoothing over a mean diameter needs too many cells, the width is doubled as often as
+    /// necessary.
     fn of(moment: &Moment) -> Self {
         let grains = moment.grains.iter().filter(|grain| !grain.lost);
         let [low, high] = box_of(grains.map(|grain| grain.position));
@@ -73,7 +75,8 @@ impl FieldsBox {
         }
     }
 
-    /// Reads smoothing width and region from a file of the recording; `None` if the file does not state them.
+    /// Reads the smoothing width and the covered region from a file of the recording; `None` if the file does not state
+    /// them.
     pub(super) fn of_file(path: &Path) -> Option<Self> {
         let head = head_of(path).ok()?;
         let number = |name: &str| number_in(&head, name)?.parse::<f64>().ok();
@@ -82,7 +85,7 @@ impl FieldsBox {
         Some(Self { width: number(WIDTH)?, corners, has_told: false })
     }
 
-    /// Returns the number of grains outside the region of the fields.
+    /// Returns the number of grains outside the region that the fields cover.
     fn left_out(&self, moment: &Moment) -> u64 {
         let [least, most] = self.corners;
         // Along a periodic axis, all grains are inside the region.
@@ -96,8 +99,8 @@ impl FieldsBox {
     }
 }
 
-/// Returns the file with the fields of a frame. If smoothing width and region are not yet known, they are chosen from
-/// this frame.
+/// Returns the bytes of the file with the fields of a frame. If smoothing width and covered region are not yet known,
+/// they are chosen from this frame.
 pub(super) fn fields_file(
     frame: &Frame,
     facts: &RunFacts,

@@ -1,4 +1,4 @@
-//! Writes and reads the first arrays of a VTK file: step and time of its frame, and the facts about the run.
+//! Writes and reads the first arrays of a VTK file: step and time of its frame, and the metadata of the run.
 
 use std::fs::File;
 use std::io::Read;
@@ -14,7 +14,7 @@ const TIME: &str = "TimeValue";
 /// Number of bytes at the beginning of a file that contain its step and time.
 const LONGEST_HEAD: u64 = 4096;
 
-/// Returns the beginning of a file, whose lines contain its step, its time and other single numbers.
+/// Returns the beginning of a file as text. It contains the file's step, its time and other single numbers.
 pub(super) fn head_of(path: &Path) -> std::io::Result<String> {
     let mut head = Vec::new();
     File::open(path)?.take(LONGEST_HEAD).read_to_end(&mut head)?;
@@ -27,7 +27,7 @@ pub(super) fn number_in<'a>(head: &'a str, name: &str) -> Option<&'a str> {
     Some(rest.split_once('>')?.1.split_once('<')?.0)
 }
 
-/// Returns step and simulated time (s) of the frame in a file.
+/// Reads step and simulated time (s) of the frame in a file.
 pub(super) fn moment_of(path: &Path) -> Result<(u64, f64)> {
     let head = head_of(path).map_err(|error| Error::file(path, error))?;
     let step = number_in(&head, STEP).and_then(|number| number.parse().ok());
@@ -44,7 +44,7 @@ pub(super) fn add_moment(file: &mut VtkFile, frame: &Frame) {
     file.add_number(TIME, observables.time_secs);
 }
 
-/// Adds the facts about the run to a file.
+/// Adds the metadata of the run to a file.
 pub(super) fn add_facts(file: &mut VtkFile, facts: &RunFacts) {
     let facts = facts.facts.iter().map(|(name, said)| format!("{name}: {said}"));
     file.add_words("about", facts);

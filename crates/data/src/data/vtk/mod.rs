@@ -30,17 +30,17 @@ use crate::error::{Error, Result};
 use crate::output::PendingFile;
 use crate::sim::{ContactState, Moment, OtherBody};
 
-/// A format of recordings: a folder of VTK files.
+/// A file format of recordings that consists of one folder with VTK files.
 pub(super) struct VtkFolder {
     pub name: &'static str,
     kinds: &'static [VtkKind],
 }
 
-/// One kind of file in a folder of VTK files. Each frame has one file of this kind.
+/// One of the types of files in a folder of VTK files, such as files of grains. Each frame has one file of each type.
 struct VtkKind {
-    /// Beginning of the names of these files.
+    /// Beginning of the names of the files of this type, such as `grains`.
     name: &'static str,
-    /// Ending of the names of these files.
+    /// Ending of the names of the files of this type, such as `.vtp`.
     ending: &'static str,
     file: fn(&Frame, &RunFacts, &mut Option<FieldsBox>) -> Result<Vec<u8>>,
 }
@@ -69,7 +69,7 @@ pub(super) const FIELDS: VtkFolder = VtkFolder {
 
 const ENDING_OF_SERIES: &str = ".pvd";
 
-/// Columns with the same value in all rows of a frame.
+/// Columns with the same value in all rows of a frame. They are not written as arrays of rows.
 const OF_FRAME: [&str; 2] = ["step", "time"];
 /// Prefix of the names of arrays with measures of the whole pile, because grains have arrays of the same names.
 const PILE: &str = "pile_";
@@ -82,15 +82,15 @@ const VECTORS: [(&str, [&str; 2]); 4] = [
     ("point", ["x", "y"]),
     ("force", ["fx", "fy"]),
 ];
-/// Number that stands for a flag which the contact law does not define.
+/// Number that is written for a flag whose property the contact law does not define.
 const NEITHER: i8 = -1;
 
-/// Length of a slot, the space for one entry in a `.pvd` file, bytes. It divides the size of a memory page, so that no
-/// slot lies in two pages, and is enough for any time and file name.
+/// Length of a slot, the space for one entry in a `.pvd` file (list of frames), bytes. It divides the size of a memory
+/// page, so that no slot lies in two pages, and is enough for any time and file name.
 const SLOT: usize = 128;
-/// Length of the text ahead of the first slot in a `.pvd` file, bytes.
+/// Length of the text ahead of the first slot (space for an entry) in a `.pvd` file, bytes.
 const HEAD: usize = 256;
-/// Number of slots in a new `.pvd` file.
+/// Number of slots (spaces for entries) in a new `.pvd` file.
 const FIRST_SLOTS: usize = 32;
 
 const OPENING: &str = "<?xml version=\"1.0\"?>\n\
@@ -101,9 +101,9 @@ pub(super) struct Vtk {
     folder: PathBuf,
     kinds: &'static [VtkKind],
     facts: RunFacts,
-    /// The `.pvd` file of each kind of file; empty before the first frame of a new recording.
+    /// The `.pvd` file (list of frames) of each type of file; empty before the first frame of a new recording.
     series: Vec<PvdSeries>,
-    /// Smoothing width and region of the fields; known from the first frame on.
+    /// Smoothing width and covered region of the fields; known from the first frame on.
     of_fields: Option<FieldsBox>,
 }
 
@@ -115,8 +115,8 @@ impl Vtk {
         Ok(Self { folder, kinds, facts, series: Vec::new(), of_fields: None })
     }
 
-    /// Creates the `.pvd` file of each kind, with entries for the files of the first frames. `times` are the simulated
-    /// times of these frames, s.
+    /// Creates the `.pvd` file (list of frames) of each type of file, with entries for the files of the first frames.
+    /// `times` are the simulated times of these frames, s.
     fn begin(&mut self, times: &[f64]) -> Result<()> {
         let series = self.kinds.iter().map(|kind| {
             let files = times.iter().zip(0..).map(|(&time, number)| (time, kind.file_name(number)));
@@ -131,7 +131,7 @@ impl Vtk {
 }
 
 impl VtkFolder {
-    /// True if a file with this name belongs to the format.
+    /// True if a file with this name belongs to this file format.
     pub(super) fn has_named(&self, name: &str) -> bool {
         let is_series = |kind: &VtkKind| name.strip_prefix(kind.name) == Some(ENDING_OF_SERIES);
         self.kinds.iter().any(|kind| is_series(kind) || kind.number_of(name).is_some())
@@ -143,7 +143,7 @@ impl VtkKind {
         format!("{}_{number:06}{}", self.name, self.ending)
     }
 
-    /// Returns the number of the frame in a file name, if the file is of this kind.
+    /// Returns the number of the frame in a file name; `None` if the name is not that of a file of this type.
     fn number_of(&self, name: &str) -> Option<u64> {
         let digits = name.strip_prefix(self.name)?.strip_prefix('_')?.strip_suffix(self.ending)?;
         let are_digits = digits.len() >= 6 && digits.bytes().all(|byte| byte.is_ascii_digit());
@@ -216,7 +216,7 @@ impl Format for Vtk {
     }
 }
 
-/// Returns the file of grains and fixed discs as points, with the columns of the table of grains.
+/// Returns the bytes of the file with grains and fixed discs as points, with the columns of the table of grains.
 fn grains_file(frame: &Frame, facts: &RunFacts) -> Vec<u8> {
     let surroundings = &frame.moment.surroundings;
     let fixed = surroundings.fixed_discs.iter().map(|disc| disc.position);
@@ -228,7 +228,7 @@ fn grains_file(frame: &Frame, facts: &RunFacts) -> Vec<u8> {
     with_arrays(file, WALL, &frame.walls).finish("radius")
 }
 
-/// Returns the file of contacts as lines, with the columns of the table of contacts.
+/// Returns the bytes of the file with contacts as lines, with the columns of the table of contacts.
 fn contacts_file(frame: &Frame, facts: &RunFacts) -> Vec<u8> {
     let lines = frame.moment.contacts.iter().map(|contact| line(&frame.moment, contact));
     let ends: Vec<DVec2> = lines.flatten().collect();
@@ -263,8 +263,8 @@ fn line(moment: &Moment, contact: &ContactState) -> [DVec2; 2] {
     [from, to]
 }
 
-/// Adds step, time, description and all columns of a table to a file. The vector `placed_by` is left out, because it is
-/// the position of the file's points.
+/// Adds step, time, description and all columns of a table to a file. The vector with the name `placed_by` is left out,
+/// because it is the position of the file's points.
 fn file(
     mut file: VtkFile,
     frame: &Frame,
@@ -294,7 +294,8 @@ fn file(
     file
 }
 
-/// Adds the columns of a table whose rows are not points of the file, with `prefix` before their names.
+/// Adds the columns of a table whose rows are not points of the file, as arrays that belong to the whole file. The
+/// names of the arrays are the names of the columns after `prefix`.
 fn with_arrays(mut file: VtkFile, prefix: &str, table: &Table) -> VtkFile {
     let columns = table.columns.iter().filter(|column| !OF_FRAME.contains(&column.name));
     for Column { name, values, .. } in columns {
@@ -317,7 +318,7 @@ fn with_arrays(mut file: VtkFile, prefix: &str, table: &Table) -> VtkFile {
     file
 }
 
-/// Returns the values of a column that has a number in every row; no values for another column.
+/// Returns the values of a column that has a number in every row; an empty list for any other column.
 fn numbers<'a>(table: &'a Table, name: &str) -> &'a [f64] {
     match table.column(name).map(|column| &column.values) {
         Some(Values::Numbers(numbers)) => numbers,
@@ -342,7 +343,7 @@ fn add(file: &mut VtkFile, Column { name, values, .. }: &Column) {
     }
 }
 
-/// A `.pvd` file: the list from which ParaView knows the file of each simulated time.
+/// A `.pvd` file: the list by which ParaView finds the file of each simulated time.
 ///
 /// This list grows by one frame at a time, and must be complete whenever it is read or the program is killed. Entries
 /// are therefore slots of fixed length ahead of the closing tags, and free slots are blank. A new entry is written in

@@ -8,7 +8,7 @@
 
 use std::fmt::Write as _;
 
-/// Last bytes of every file.
+/// Last bytes of every VTK file that Slump writes.
 pub(super) const END: &str = "\n  </AppendedData>\n</VTKFile>\n";
 
 /// A number type of VTK files.
@@ -30,7 +30,7 @@ macro_rules! scalars {
 
 scalars! { f64, "Float64"; i64, "Int64"; i32, "Int32"; i8, "Int8"; }
 
-/// Cells of a VTK file, which are all of one kind.
+/// Cells of a VTK file, the geometric elements that readers draw. All cells of a file are of the same type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum VtkCells {
     Points,
@@ -48,11 +48,11 @@ pub(super) enum VtkCells {
 pub(super) struct VtkFile {
     cells: VtkCells,
     points: usize,
-    /// XML of the arrays for the whole file.
+    /// XML text of the arrays that belong to the whole file.
     of_file: String,
-    /// XML of the arrays with a value for each point, line or cell.
+    /// XML text of the arrays with a value for each point, line or cell.
     of_rows: String,
-    /// XML of the positions of the points.
+    /// XML text of the array with the positions of the points.
     of_points: String,
     appended: Vec<u8>,
 }
@@ -193,7 +193,8 @@ impl VtkFile {
         whole_file("ImageData", &body, appended)
     }
 
-    /// Appends the values of an array and returns the array's XML. `parts` names the components if there are several.
+    /// Appends the values of an array to the binary section and returns the array's XML text. `parts` names the
+    /// components if there are several.
     fn append<N: Scalar, const EACH: usize, const NAMED: usize>(
         &mut self,
         name: &str,
@@ -214,7 +215,8 @@ impl VtkFile {
         )
     }
 
-    /// Appends a length and then the bytes that `put` writes, which have this length. Returns the offset of the length.
+    /// Appends the bytes that `put` writes to the binary section, after their length. Returns the offset of that
+    /// length.
     fn append_bytes(&mut self, put: impl FnOnce(&mut Vec<u8>)) -> usize {
         let offset = self.appended.len();
         let behind_length = offset + size_of::<u64>();

@@ -1,10 +1,11 @@
-//! Charts speed against accuracy of whole simulations: the error of a pile's slump, and the simulated seconds per
-//! second of computing time. Steps use the restitution threshold at which nearly all of them have a solution.
+//! Charts the accuracy of whole simulations against their computing time: the error of a pile's slump against the
+//! computing time per simulated second. Contacts whose approach speed is below a threshold do not bounce in these
+//! simulations, because nearly all steps then have a solution.
 //!
-//! The difference to the reference *at the same Δt* is the error of the solver. The difference to the reference at the
-//! smallest Δt also includes the error of the time step. Piles are chaotic: two references, one of them solved ten
-//! times more tightly, differ by the *floor*, below which errors have no meaning. Simulations with the stepper `range`
-//! have their own references.
+//! The error is the difference to a reference, a simulation whose steps are solved very accurately. The difference to
+//! the reference *at the same Δt* is the error of the solver. The difference to the reference at the smallest Δt also
+//! includes the error of the time step. Piles are chaotic: two references with different tolerances differ by the
+//! *floor*, below which errors have no meaning. Simulations with the stepper `range` have their own references.
 
 mod report;
 
@@ -28,24 +29,28 @@ use crate::states::States;
 use crate::statistics::{Mean, mean};
 use crate::world::ParameterChanges;
 
-/// Largest number of sweeps per step. Without this limit, a step that has no solution would never end.
+/// Largest number of sweeps per step in the compared simulations. Without this limit, the solver would never stop in a
+/// step that has no solution.
 const MOST_SWEEPS: u32 = 5_000;
-/// Speed below which contacts do not bounce, in units of g·Δt, the speed that gravity adds in one step.
+/// Approach speed below which contacts do not bounce, in units of g·Δt, the speed that gravity adds in one step.
 const THRESHOLD: f64 = 2.0;
-/// Smallest time step of the reference runs, s. Its references have the smallest error due to the time step.
+/// Smallest time step of the reference simulations, s. References with this time step have the smallest error due to
+/// the time step.
 const FINEST_SECS: f64 = 1e-4;
 const DURATION_SECS: f64 = 1.0;
-/// Solver method of the references, and the residuals to which it solves each step. References with the second residual
-/// only serve to measure the floor: the difference between two references, below which errors have no meaning.
+/// Solver method of the reference simulations, and the residuals to which it solves each step. References with the
+/// second residual only serve to measure the difference between two accurate simulations of a chaotic pile (the floor),
+/// below which errors have no meaning.
 const REFERENCE: Method = Method::Newton;
 const TOLERANCES: [f64; 2] = [1e-8, 1e-9];
 /// Slump below which a pile counts as stable.
 const HOLDS: f64 = 0.1;
-/// Contact law under which the floor (the difference between two references) is measured.
+/// Stepper of those reference simulations from which the floor is measured (the difference between two references). The
+/// stepper defines the contact law.
 const FLOOR_LAW: Stepper = Stepper::Moreau;
-/// Number of steps between two checks of the elapsed time.
+/// Number of steps of a timed simulation between two checks whether its computing time exceeds the limit.
 const STEPS_PER_LOOK: u64 = 16;
-/// Computing time, s, above which a run is not repeated, because disturbances average out within the run.
+/// Computing time of a run, s, above which its timing is not repeated, because disturbances average out within the run.
 const LONG_ENOUGH_SECS: f64 = 2.0;
 const LEAST_ERROR: f64 = 1e-3;
 const GREY: Rgb = (130, 130, 130);
@@ -66,16 +71,18 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     }])
 }
 
-/// A solver variant with its effort: the accuracy to which it solves steps, or its number of sweeps or substeps.
+/// A solver variant with a given effort: the residual to which it solves steps, or the number of sweeps or substeps per
+/// step.
 struct BudgetedVariant {
     charted: Change,
-    /// Contact law of the references for this variant.
+    /// Stepper of the reference simulations with which this variant is compared. The stepper defines the contact law.
     law: Stepper,
-    /// Change of the settings that sets the effort, named after the effort.
+    /// Change of the settings that selects the variant and its effort. The name of the change describes the effort.
     change: Change,
 }
 
-/// Plan of the simulations, which are piles of 138 grains as in the paper.
+/// The simulations whose speed and accuracy are measured: piles of 138 grains, as in the paper, with all time steps and
+/// solver variants.
 struct SimulationPlan {
     time_steps_secs: Vec<f64>,
     /// Bond number and seed of each pile.
@@ -83,12 +90,13 @@ struct SimulationPlan {
     budgeted: Vec<BudgetedVariant>,
     laws: Vec<Stepper>,
     repeats: u32,
-    /// Largest computing time per simulated second, s.
+    /// Limit of the computing time per simulated second, s. Slower runs are stopped.
     limit_secs: f64,
 }
 
 impl SimulationPlan {
-    /// Returns the plan of a quick or full pass. Only Newton's method represents the contact law `range`.
+    /// Returns the simulations of a quick or full pass. The stepper `range` is only run with Newton's method, and only
+    /// in a full pass.
     fn new(effort: Effort) -> Self {
         let laws: &[Stepper] = effort.pick(&[Stepper::Moreau], &[Stepper::Moreau, Stepper::Range]);
         Self {
@@ -164,8 +172,8 @@ fn budgeted(laws: &[Stepper], effort: Effort) -> Vec<BudgetedVariant> {
     budgeted
 }
 
-/// Returns the Bond number and the seed of each pile of 138 grains. Every Bond number occurs with several seeds, and
-/// every seed with several Bond numbers.
+/// Returns the Bond number and the seed of each simulated pile. In the full pass, every Bond number occurs with several
+/// seeds, and every seed with several Bond numbers.
 fn piles(effort: Effort) -> Vec<(f64, u64)> {
     let shared = NewPile::default().seed;
     if effort == Effort::Quick {
@@ -179,24 +187,24 @@ fn piles(effort: Effort) -> Vec<(f64, u64)> {
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct TimedRun {
-    /// Reason why the run did not reach its end, in words; `None` if it did.
+    /// Reason why the run did not reach its end, in words; `None` if it reached its end.
     failed: Option<String>,
-    /// Shortest computing time among the repeats, s.
+    /// Computing time of the run, s: the shortest among its repetitions.
     least_secs: f64,
     simulated_secs: f64,
     steps: u64,
     unconverged_steps: u64,
-    /// Slump Δy_G at the end: the drop of the mean height, divided by the first mean height.
+    /// Slump Δy_G at the end of the run: the drop of the mean height of the grains, divided by the first mean height.
     #[serde(with = "number")]
     slump: f64,
-    /// Mean overlap over the steps, in diameters.
+    /// Mean overlap of touching grains, averaged over the steps, in mean diameters.
     #[serde(with = "number")]
     mean_overlap: f64,
 }
 
-/// Runs a scene to its end `repeats` times, and returns the shortest computing time. A run that takes more than
-/// `limit_secs` is stopped and counts as failed. A run that takes longer than [`LONG_ENOUGH_SECS`] is not repeated. A
-/// state that is no longer finite is a result, not an error.
+/// Runs a scene to its end `repeats` times, and returns its results with the shortest computing time. A run that takes
+/// more than `limit_secs` is stopped and counts as failed. A run that takes longer than [`LONG_ENOUGH_SECS`] is not
+/// repeated. If positions become NaN or infinite, the run counts as failed, and the function does not return an error.
 fn timed_run(scene: &Scene, repeats: u32, limit_secs: f64) -> Result<TimedRun> {
     let mut run = timed_once(scene, limit_secs)?;
     for _ in 1..repeats {
@@ -242,18 +250,19 @@ fn timed_once(scene: &Scene, limit_secs: f64) -> Result<TimedRun> {
 struct ReferenceCase {
     law: Stepper,
     time_step_secs: f64,
-    /// Number of the pile: its index in `SimulationPlan::piles`.
+    /// Index of the simulated pile in `SimulationPlan::piles`.
     pile: usize,
-    /// Number of the tolerance: its index in [`TOLERANCES`].
+    /// Index of the solver's tolerance in [`TOLERANCES`].
     tolerance: usize,
 }
 
-/// All reference runs. Some of them only serve to measure the floor: the difference between two references.
+/// All reference simulations, whose steps are solved very accurately, and their results. Some of them only serve to
+/// measure the difference between two references (the floor).
 struct References(Vec<(ReferenceCase, TimedRun)>);
 
 impl References {
-    /// Returns all reference runs of a plan. The floor (the difference between two references) is only measured at the
-    /// charted time steps.
+    /// Returns all reference simulations to compute. Two references with different tolerances, whose difference is
+    /// measured (the floor), are only computed at the time steps on the chart.
     fn cases(plan: &SimulationPlan) -> Vec<ReferenceCase> {
         let mut cases = Vec::new();
         for &law in &plan.laws {
@@ -292,14 +301,14 @@ impl References {
         Ok(Self(cases.iter().zip(runs).map(|(case, run)| (case.setup, run.result)).collect()))
     }
 
-    /// Returns the slump of a reference run. There is a reference for every contact law, time step and pile of the
-    /// plan, and for the smallest time step.
+    /// Returns the slump in the reference simulation `wanted`. There are references for every contact law, every pile,
+    /// every time step of the chart, and the smallest time step.
     fn slump(&self, wanted: ReferenceCase) -> f64 {
         self.0.iter().find(|(case, _)| *case == wanted).map_or(f64::NAN, |(_, run)| run.slump)
     }
 
-    /// Returns the floor: the mean difference of the slump between two references with different tolerances, over all
-    /// piles and the charted time steps.
+    /// Returns the floor, below which errors of the slump have no meaning: the mean size of the difference of the slump
+    /// between two reference simulations with different tolerances, over all piles and the time steps on the chart.
     fn floor(&self, plan: &SimulationPlan) -> f64 {
         let mut differences = Vec::new();
         for &time_step_secs in &plan.time_steps_secs {
@@ -312,25 +321,29 @@ impl References {
         mean(&differences).mean
     }
 
-    /// Returns the number of unsolved steps of the references, and the number of all their steps.
+    /// Returns the number of steps of the reference simulations that were not solved to their tolerance, and the number
+    /// of all their steps.
     fn unsolved(&self) -> [u64; 2] {
         let sum = |number: fn(&TimedRun) -> u64| self.0.iter().map(|(_, run)| number(run)).sum();
         [sum(|run| run.unconverged_steps), sum(|run| run.steps)]
     }
 }
 
-/// Results of one variant with one effort at one time step: a point of the chart.
+/// Results of one solver variant with one effort (residual, or number of sweeps) at one time step, over all piles: a
+/// point of the chart.
 struct SimulatedPoint<'a> {
     variant: &'a BudgetedVariant,
     time_step_secs: f64,
-    /// Completed runs, one per pile, in the order of the piles.
+    /// Runs that reached their end, one per pile, in the order of the piles. After the first failed run, no further
+    /// pile is run.
     runs: Vec<TimedRun>,
     failed: Option<String>,
     speed: f64,
-    /// Mean of |slump − slump of the reference|, with the reference at the same time step, and at the smallest time
-    /// step.
+    /// Mean over the piles of |slump − slump of the reference simulation|, first with the reference at the same time
+    /// step, then with the reference at the smallest time step.
     errors: [Mean; 2],
-    /// Fraction of piles with the same outcome (stable or not) as the reference at the same time step.
+    /// Fraction of the piles that have the same outcome (stable or not) as in the reference simulation at the same time
+    /// step.
     verdicts: f64,
 }
 

@@ -1,13 +1,14 @@
-//! Makes the chart, the text and the table of whole simulations.
+//! Makes the section of the report about whole simulations: the chart, the text and the table.
 
 use super::*;
 use crate::harness::ReportTable;
 
-/// Least number of piles for which confidence intervals are shown.
+/// Least number of piles with which the chart shows confidence intervals of the mean errors.
 const TELLING: usize = 8;
 
-/// Charts the smallest error that each family of methods reaches for its cost: relative to the reference at the same
-/// time step, and relative to the reference at the smallest time step.
+/// Draws two charts of the smallest error of the slump that each family of methods reaches for its computing time. In
+/// the first chart, the error is the difference to the reference simulation at the same time step, in the second chart
+/// the difference to the reference simulation at the smallest time step.
 pub(super) fn sheet(
     bench: &Bench,
     plan: &SimulationPlan,

@@ -1,8 +1,8 @@
-//! Tests the plans and the references of whole simulations.
+//! Tests the choice of whole simulations whose speed is measured, and of their reference simulations.
 
 use super::*;
 
-/// Returns made-up references for each pile and tolerance, with distinct slumps.
+/// Returns made-up results of all reference simulations, with a different slump for each pile, time step and tolerance.
 fn made_up(plan: &SimulationPlan) -> References {
     let reference = |case: ReferenceCase| {
         let ReferenceCase { time_step_secs, pile, tolerance, .. } = case;

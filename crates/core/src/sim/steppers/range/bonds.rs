@@ -2,14 +2,16 @@
 //!
 //! The largest impulse of a bond (its bound) depends on two quantities of the solution: the speed v at which the bond
 //! opens after the shocks of the step, and the load J, the change of this speed by all other forces in the step. So a
-//! step is solved several times, always with the same solver and the same rows.
+//! step is solved several times, always with the same solver and the same contacts.
 //!
-//! 1. **Shocks** (`range::shocks`) give v. Bonds have no effect in a shock, because their force is finite.
+//! 1. **Shocks** (`range::shocks`) give v. Bonds have no effect in a shock, because it takes no time and their force is
+//!    finite.
 //! 2. **The step** is solved from the velocities after the shocks, with gravity. Each bond may pull with the impulse
 //!    C₀Δt at most.
 //! 3. **Breaks.** The solution gives the loads. A bond that would open by the debonding distance δ_c before the end of
-//!    the step breaks, and gets the impulse of the time until then as its bound. The step is solved again, starting
-//!    from the present solution, until no bound decreases any more. Bounds never increase, so this process ends.
+//!    the step breaks: its bound becomes the impulse of its force C₀ until it breaks. The step is solved again,
+//!    starting from the present solution, until no bound decreases any more. Bounds never increase, so this process
+//!    ends.
 //!
 //! **Restless bonds.** A broken bond loads the next bond, but a step transmits a load by one bond only, and a long step
 //! only gives the mean of a load. So a step looks for bonds that would break at half their strength. Such bonds are
@@ -27,18 +29,20 @@ use crate::sim::steppers::range::step_numbers::StepNumbers;
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{Model, RowVelocities, SolveReport, StepProblem, for_each_row, solve};
 
-/// Number of solutions of a step after which the bounds of bonds no longer change. By then only few bonds still need a
-/// smaller bound, and the next step examines them again.
+/// Largest number of times that a step is solved while the bounds of its bonds (the largest impulses that they may
+/// exert) are searched. After these solutions only few bonds still need a smaller bound, and the next step examines
+/// them again.
 const MOST_ROUNDS: u32 = 8;
 
-/// Fraction of its strength at which a bond that would break counts as restless.
+/// Fraction of the strength of bonds in the search for restless bonds: a bond is restless, that is about to break, if
+/// it would break in the step with only this fraction of its strength.
 const STRENGTH_OF_RESTLESS_BONDS: f64 = 0.5;
 
-/// Largest motion of resting grains in a step, in debonding distances δ_c. With a larger value, the slow increase of a
-/// load is missed; with a smaller value, errors within the solver's tolerance count as motion.
+/// Largest motion of a grain in a step that counts as rest, in debonding distances δ_c. With a larger value, the slow
+/// increase of a load is missed; with a smaller value, errors within the solver's tolerance count as motion.
 const STANDING_IN_DEBONDING_DISTANCES: f64 = 1e-3;
 
-/// Relative decrease of a bond's bound that requires another solution of the step.
+/// Relative decrease of a bond's bound (its largest impulse) for which the step is solved again.
 const FALL: f64 = 1e-6;
 
 /// Data that the stepper `range` keeps from one step to the next.
@@ -51,14 +55,15 @@ pub(in crate::sim) struct RangeMemory {
     lowered: Vec<(usize, f64)>,
     /// True if bonds were about to break in the last step.
     pub restless: bool,
-    /// Longest step, s, that is short enough for bonds that were about to break; `None` if the last step was short
-    /// enough.
+    /// Longest time step, s, whose substeps are short enough to follow the bonds that were about to break; `None` if
+    /// the last step was not longer.
     #[serde(skip)]
     pub longest_step_secs: Option<f64>,
 }
 
-/// Solves a prepared problem, with shocks and bonds, and updates the bonds. Returns the results before the grains move.
-/// If `may_break` is false and a bond is about to break, returns only the report of the solves, as an error.
+/// Solves the prepared contact problem of a step: first its shocks (collisions), then the step with its bonds. Updates
+/// the bonds, but does not move the grains, and returns the results. If `may_break` is false and a bond is about to
+/// break, returns only the report of the solves, as an error.
 pub(super) fn solve_range<M: Model>(
     stage: &mut Stage<'_, M>,
     remembered: &mut RangeMemory,
@@ -94,13 +99,14 @@ pub(super) fn solve_range<M: Model>(
     Ok(result)
 }
 
-/// Opening of a bond in a step or, if a shock closed the bond, in the rest of the step after that shock.
+/// Opening (change of the gap) of a bonded pair in a step or, if a shock closed the bond, in the rest of the step after
+/// that shock.
 struct BondOpening {
     /// Fraction of the step that this opening covers: 1, or less if a shock closed the bond within the step.
     part: f64,
     /// True if a shock closed the bond in this step.
     is_closed: bool,
-    /// Opening speed v at the beginning, m/s.
+    /// Opening speed v at the beginning of the step, or just after the shock that closed the bond, m/s.
     speed: f64,
     /// Load J: change of the opening speed by all forces except the bond's own, m/s.
     load: f64,
@@ -109,8 +115,8 @@ struct BondOpening {
 }
 
 impl BondOpening {
-    /// Computes the opening of the bond of row `number`. All other forces are constant over the step, so their impulse
-    /// in a fraction of the step is that fraction of their whole impulse.
+    /// Computes the opening of the bond of contact `number` in a solved step. All forces except the bond's own are
+    /// constant over the step, so their impulse in a fraction of the step is that fraction of their whole impulse.
     fn of<M: Model>(
         problem: &StepProblem<M>,
         number: usize,
@@ -132,7 +138,7 @@ impl BondOpening {
         }
     }
 
-    /// Returns the mean opening speed (v + v^n)/2, m/s: v at the beginning and v^n at the end.
+    /// Returns the mean opening speed (v + v^n)/2, m/s: v is the speed at the beginning and v^n the speed at the end.
     fn opening_speed(&self) -> f64 {
         self.speed + 0.5 * (self.load + self.impulse)
     }
@@ -178,7 +184,7 @@ fn update_bonds<M: Model>(
     energies
 }
 
-/// Inputs for the bounds of the bonds in a step.
+/// Data from which the bounds (largest impulses) of the bonds in a step are computed.
 struct BondLimits<'a> {
     /// Bonds, one per contact.
     bonds: &'a [Bond],
@@ -188,7 +194,7 @@ struct BondLimits<'a> {
 
 impl BondLimits<'_> {
     /// True if bonds are about to break in a solved step. `fastest` is the speed of the fastest grain or wall at the
-    /// beginning of the step, m/s. `lowered` is work space.
+    /// beginning of the step, m/s. The function uses `lowered` as work space.
     fn is_restless<M: Model>(
         &self,
         problem: &StepProblem<M>,
@@ -203,7 +209,8 @@ impl BondLimits<'_> {
         !lowered.is_empty()
     }
 
-    /// True if no grain or wall moves at the beginning of the step, and no pair separates or slides at its end.
+    /// True if no grain or wall moves at the beginning of the step, and no pair separates or slides at its end, apart
+    /// from motions below [`STANDING_IN_DEBONDING_DISTANCES`].
     fn stands<M: Model>(&self, problem: &StepProblem<M>, fastest: f64) -> bool {
         let StepNumbers { time_step_secs, debonding_distance, .. } = self.numbers;
         let still = STANDING_IN_DEBONDING_DISTANCES * debonding_distance / time_step_secs;
@@ -214,8 +221,9 @@ impl BondLimits<'_> {
         speed <= still
     }
 
-    /// Finds the bonds that would break before the end of the step with `strength` times their own strength. Fills
-    /// `lowered` with their rows and their new bounds (m/s).
+    /// Finds the bonds that would break before the end of the step if they had only `strength` times their strength.
+    /// Fills `lowered` with the numbers of their contacts and the new bounds of their impulses, divided by the
+    /// effective mass (m/s).
     fn lowered<M: Model>(
         &self,
         problem: &StepProblem<M>,
@@ -246,7 +254,7 @@ impl BondLimits<'_> {
     }
 }
 
-/// Applies the new bounds of bonds that break before the end of the step.
+/// Lowers the bounds on the impulses of bonds that break before the end of the step to the bounds in `lowered`.
 fn shorten<M: Model>(problem: &mut StepProblem<M>, lowered: &[(usize, f64)]) {
     for &(number, bound) in lowered {
         let before = std::mem::replace(&mut problem.rows.captures[number], bound);

@@ -36,21 +36,21 @@ use crate::solver::{Approach, Model, SolveReport};
 /// first distance within the step and is now below the second distance.
 const AHEAD_IN_DIAMETERS: [f64; 2] = [0.25, 2.0];
 
-/// Longest substep while bonds are restless, in units of the time in which a bond breaks. With a larger value, weakly
-/// bonded piles do not fall at a large Δt, because a load is transmitted by one bond per step; a smaller value costs
-/// more.
+/// Longest substep while bonds are restless (about to break), in units of the time in which a bond breaks. With a
+/// larger value, weakly bonded piles do not fall at a large Δt, because a load reaches only the next bond in each
+/// substep; a smaller value costs more.
 const SUBSTEP_IN_BOND_TIMES: f64 = 0.4;
 
-/// Longest motion of a grain in a substep, in mean diameters, unless this needs more than [`MOST_SUBSTEPS`] substeps.
-/// With a larger value a pile slumps too little at a large Δt; a smaller value costs more.
+/// Longest distance that a grain moves in a substep, in mean diameters, unless this needs more than [`MOST_SUBSTEPS`]
+/// substeps. With a larger value a pile slumps too little at a large Δt; a smaller value costs more.
 const MOST_TRAVEL: f64 = 0.1;
 
-/// Largest number of substeps. With more substeps, a step would no longer be comparable to a step of the requested
-/// length.
+/// Largest number of substeps into which a step is divided. With more substeps, a step would no longer be comparable to
+/// a step of the requested length.
 const MOST_SUBSTEPS: f64 = 16.0;
 
-/// Returns the search distances of a step that has begun. They assume that no grain becomes faster than the fastest
-/// grain or wall, except by gravity and body forces.
+/// Returns the distances within which the present step searches for contacts. They are sufficient if no grain becomes
+/// faster than the fastest grain or wall, except by gravity and body forces.
 fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     let world = &state.world;
     let travel = travel(state, time_step_secs);
@@ -60,7 +60,7 @@ fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     LookAhead { time_step_secs, distance, reach, in_touch: InTouch::Bonded }
 }
 
-/// Returns an upper bound for the motion of a grain in a step that has begun, m.
+/// Returns an upper bound for the distance that a grain moves in the present step, m.
 fn travel(state: &State, time_step_secs: f64) -> f64 {
     (state.fastest() + 2.0 * state.largest_acceleration() * time_step_secs) * time_step_secs
 }
@@ -72,13 +72,14 @@ struct StepCut {
     circling: bool,
     /// True if the step is first tried undivided.
     whole_first: bool,
-    /// Longest step (s) whose substeps are short enough for a bond that breaks; `None` if this step is not longer.
+    /// Longest time step, s, whose substeps are short enough to follow a bond that breaks; `None` if the present step
+    /// is not longer.
     longest_step_secs: Option<f64>,
 }
 
 impl StepCut {
-    /// Decides how a step that has begun is divided. `restless` is true if bonds were about to break in the previous
-    /// step.
+    /// Decides into how many substeps the present step is divided. `restless` is true if bonds were about to break in
+    /// the previous step.
     fn of(state: &State, settings: &Settings, restless: bool) -> Self {
         let State { world, .. } = state;
         let parameters = &settings.parameters;
@@ -102,7 +103,7 @@ impl StepCut {
     }
 }
 
-/// Takes a step, undivided or in substeps. The head of this file explains when a step is divided.
+/// Takes a step, undivided or in substeps. The comment at the top of this file explains when a step is divided.
 pub(super) fn advance<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -133,7 +134,8 @@ pub(super) fn advance<M: Model>(
     result
 }
 
-/// Sets up the first problem of a step that is solved with gravity and bonds, after its shocks.
+/// Computes the shocks with which the next step begins, and sets up the first contact problem with gravity and bonds
+/// that follows them.
 pub(super) fn set_up<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -147,8 +149,8 @@ pub(super) fn set_up<M: Model>(
     shocks::pass(stage, &mut memory.shocks, &first);
 }
 
-/// Detects the contacts and sets up the contact problem of a step. The problem lets a gap close by no more than its
-/// size; bounces are computed with the shocks.
+/// Detects the contacts and sets up the contact problem of a step. Under its law a gap may close by no more than its
+/// size; the bounces are computed separately, with the shocks.
 pub(super) fn prepare<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     let time_step_secs = settings.parameters.time_step_secs;
     let touch = TOUCH_IN_DIAMETERS * stage.world().mean_diameter;
@@ -177,8 +179,8 @@ fn try_step<M: Model>(
 /// least one layer of grains further.
 const PASSES: u32 = 8;
 
-/// Separates overlapping grains by a few passes over the contacts. Overlap is not needed, because bonds exist without
-/// it.
+/// Separates overlapping grains by a few passes over the contacts. No overlap needs to remain, because under this law
+/// bonds exist without overlap.
 pub(super) fn separate<M: Model>(state: &mut State) {
     let State { world, contacts, candidates, .. } = state;
     let allowed = TOUCH_IN_DIAMETERS * world.mean_diameter;
@@ -189,8 +191,9 @@ pub(super) fn separate<M: Model>(state: &mut State) {
     }
 }
 
-/// Largest opening speed that the turning of a bonded pair may cause in a step, divided by the escape speed of the
-/// bond. With a larger value, circling pairs separate too early; with a smaller value, steps are divided in vain.
+/// Largest opening speed that the rotation of a bonded pair may cause in a step, divided by the escape speed of the
+/// bond (the smallest opening speed after a shock that breaks the bond). With a larger value, circling pairs separate
+/// too early; with a smaller value, steps are divided in vain.
 const MOST_OF_ESCAPE_SPEED: f64 = 0.5;
 
 /// True if a bonded pair circles so fast that a step of this length would treat the rotation of the contact normal as a

@@ -1,10 +1,10 @@
-//! Numbers that the shocks and bonds of a step under the law `range` need.
+//! Constants that the shocks and bonds of a step under the law `range` need.
 
 use crate::contact::range::TOUCH_IN_DIAMETERS;
 use crate::sim::settings::Settings;
 use crate::world::{Parameters, World};
 
-/// Numbers that the shocks and bonds of a step need: parameters, time step and lengths in metres.
+/// Constants that the shocks and bonds of a step need: parameters, time step and lengths in metres.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StepNumbers {
     pub parameters: Parameters,
@@ -18,7 +18,7 @@ pub(super) struct StepNumbers {
 }
 
 impl StepNumbers {
-    /// Computes the numbers of a step with these settings.
+    /// Computes the constants of a step with these settings.
     pub(super) fn of(world: &World, settings: &Settings) -> Self {
         let parameters = settings.parameters;
         Self {
@@ -30,8 +30,9 @@ impl StepNumbers {
         }
     }
 
-    /// Returns the term ρ u of the law for a contact that closes with the velocity u (`closing`, below 0), m/s; 0 below
-    /// the restitution threshold.
+    /// Returns the term ρ u (restitution ρ) that the law of a shock adds to the normal velocity of a contact, m/s.
+    /// `closing` is the normal velocity u before the shock, below 0. The term is 0 for shocks slower than the
+    /// restitution threshold.
     pub(super) fn rebound(&self, closing: f64) -> f64 {
         self.parameters.restitution_velocity(closing, self.gravity_magnitude)
     }

@@ -1,21 +1,22 @@
 //! A contact in the interior point method, and its contribution to a Newton step.
 //!
-//! A friction model allows impulses p = (σ, λ), shifted normal and tangential, with G p + h ≥ 0. The rows of G are
-//! (1, 0) for σ ≥ 0, and (κ, ±1) for the two bounds of friction; κ = μ if the friction bound grows with σ, and κ = 0 if
-//! it is fixed during the solve. With slacks x = G p + h and multipliers y, the solution satisfies
+//! A friction model allows impulses p = (σ, λ), shifted normal and tangential, with G p + h ≥ 0. The matrix G has the
+//! row (1, 0) for σ ≥ 0, and the rows (κ, ±1) for the two bounds of friction; κ = μ if the friction bound grows with σ,
+//! and κ = 0 if the bound stays fixed during the solve. With slacks x = G p + h and multipliers y, the solution
+//! satisfies
 //!
 //! > (w, v) = Aᵀy,  x ≥ 0, y ≥ 0, x_k y_k = 0,
 //!
-//! where w is the normal velocity with the term that the law adds, and v the tangential velocity. A = G, except in
-//! Coulomb's law, where the multipliers of friction have no component along the normal. With δu the change of
-//! (v_n, v_t) in the step, and D = diag(y/x), a Newton step towards the products x_k y_k = e_k satisfies for each
-//! contact
+//! where w is the normal velocity plus the restitution term (and, under `desaxce`, an opening speed), and v the
+//! tangential velocity. A = G, except in Coulomb's law, where the multipliers of friction have no component along the
+//! normal. With δu the change of (v_n, v_t) in the step, and D = diag(y/x), a Newton step towards the products x_k y_k
+//! = e_k satisfies for each contact
 //!
 //! > S δp = b − δu,  S = AᵀD G + ε,  b = Aᵀ(e/x) − (w, v),
 //! > δx = G δp,  δy = e/x − y − D δx,
 //!
-//! with a small compliance ε that keeps S regular. ε changes the path but not its end. On the cone, the two slacks can
-//! replace p as variables, and S is diagonal in them.
+//! with a small compliance ε that keeps S regular. ε changes the path of the iterates but not the solution. On the
+//! cone, the two slacks can replace p as variables, and S is diagonal in them.
 //!
 //! Slacks are separate variables with their own initial values and steps. If they were recomputed from the impulses, or
 //! updated by a difference of two changes, a small slack would be only rounding error. For the same reason the velocity
@@ -26,19 +27,19 @@ use crate::contact::law;
 /// Number of slacks of a contact: one for σ ≥ 0, and two for the bounds of friction.
 pub(super) const PAIRS: usize = 3;
 
-/// The set of impulses (σ, λ) that a friction model allows a contact.
+/// The set of impulses (σ, λ) that a friction model allows at a contact, as constraints with slacks.
 pub(super) trait Shape {
-    /// Index of the first slack that a contact of this shape has; `END` is the index after the last. Slack 0 belongs to
-    /// σ ≥ 0.
+    /// Index of the first of the three slacks that a contact with this set of impulses uses; `END` is the index after
+    /// the last. Slack 0 belongs to σ ≥ 0, slacks 1 and 2 to the bounds of friction.
     const FIRST: usize;
     const END: usize;
-    /// True if the two slacks of friction replace the impulses as variables.
+    /// True if the Newton steps use the two slacks of the friction bounds as variables instead of the impulses (σ, λ).
     const CONE: bool;
-    /// True if the multipliers of friction act only along the tangent although the friction bound grows with σ, as in
-    /// Coulomb's law, whose problem is not convex.
+    /// True if the friction bound grows with σ but the multipliers of friction act only along the tangent, as in
+    /// Coulomb's law. The problem is then not convex.
     const LEANS: bool = false;
-    /// Regularisation ε, relative to the compliance of a contact of free bodies. If it were smaller, rounding in the
-    /// factorisation would cancel the gain. If it were larger, impulses that only balance each other would change too
+    /// Regularisation ε, relative to the compliance of a contact of free bodies. With a smaller ε, rounding errors in
+    /// the factorisation would cancel the gain. With a larger ε, impulses that only balance each other would change too
     /// little in a step.
     const COMPLIANCE: f64 = 1e-11;
 }
@@ -52,7 +53,7 @@ impl Shape for HalfLine {
     const CONE: bool = false;
 }
 
-/// Allowed impulses of the friction model `tresca`: σ ≥ 0 and |λ| ≤ g with a friction bound g that is fixed during a
+/// Allowed impulses of the friction model `tresca`: σ ≥ 0 and |λ| ≤ g with a friction bound g that stays fixed during a
 /// solve.
 pub(super) enum Strip {}
 
@@ -62,8 +63,8 @@ impl Shape for Strip {
     const CONE: bool = false;
 }
 
-/// Allowed impulses of the friction models `associated` and `desaxce`: |λ| ≤ μσ. A term that is fixed during a solve is
-/// added to v_n.
+/// Allowed impulses of the friction models `associated` and `desaxce`: |λ| ≤ μσ. An opening speed that stays fixed
+/// during a solve is added to the normal velocity.
 pub(super) enum Cone {}
 
 impl Shape for Cone {
@@ -92,16 +93,18 @@ pub(super) struct PathContact {
     pub slack: [f64; PAIRS],
     /// Multipliers y of the constraints, m/s.
     pub multiplier: [f64; PAIRS],
-    /// Friction bound g, which is fixed during a solve, m/s.
+    /// Friction bound g, which stays fixed during a solve, m/s.
     pub bound: f64,
-    /// Term of the friction model that is added to w and is fixed during a solve, m/s.
+    /// Opening speed of the friction model, which is added to the normal velocity w and stays fixed during a solve,
+    /// m/s.
     pub lag: f64,
-    /// Normal velocity w with the term that the law adds, and tangential velocity v, at the present impulses, m/s.
+    /// Velocities (w, v) at the present impulses, m/s: w is the normal velocity plus the restitution term and the
+    /// opening speed `lag`, v the tangential velocity.
     pub velocity: [f64; 2],
-    /// Regularisation ε of this contact.
+    /// Regularisation ε of this contact, relative to the compliance of a contact of free bodies.
     pub compliance: f64,
-    /// For each impulse component, or slack on the cone: its change per velocity along it, the inverse of S in that
-    /// direction.
+    /// Change of each variable of the Newton step (impulse component, or slack if the shape is a cone) per change of
+    /// the velocity along it, dimensionless: the inverse of the diagonal entry of S.
     pub mobility: [f64; PAIRS],
 }
 
@@ -112,24 +115,24 @@ pub(super) struct PathStep {
     pub multiplier: [f64; PAIRS],
 }
 
-/// Numbers that are the same for all contacts of a solve.
+/// Coefficients that are the same for all contacts of a solve.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContactNumbers {
-    /// Slope κ of the friction bound: μ if the bound grows with σ, and 0 if it is fixed during a solve.
+    /// Slope κ of the friction bound: μ if the bound grows with σ, and 0 if the bound stays fixed during a solve.
     pub slope: f64,
     /// Ratio m_n/m_t of the effective masses along normal and tangent.
     pub tangential_compliance: f64,
 }
 
 impl ContactNumbers {
-    /// Returns the compliance of a contact of free bodies along a slack of the cone, the direction (1/κ, ±1)/2 of the
-    /// impulses.
+    /// Returns the compliance of a contact of free bodies, dimensionless, to impulses that change one slack of the
+    /// cone: impulses in the direction (1/κ, ±1)/2.
     fn along_slack(&self) -> f64 {
         0.25 * (1.0 / (self.slope * self.slope) + self.tangential_compliance)
     }
 
-    /// Returns the component of (v_n, v_t) along a variable of the shape: along a slack if the shape is a cone,
-    /// otherwise along a component of the impulses p.
+    /// Returns the component of the velocity (v_n, v_t) along variable `pair` of the Newton step: along a slack if the
+    /// shape is a cone, otherwise along a component of the impulses p.
     #[inline(always)]
     fn along<S: Shape>(&self, pair: usize, [normal, tangential]: [f64; 2]) -> f64 {
         match (S::CONE, pair) {
@@ -142,13 +145,15 @@ impl ContactNumbers {
 }
 
 impl PathContact {
-    /// Returns the index after this contact's last slack: if the friction bound is 0, there are no slacks of friction.
+    /// Returns the index after the last slack that this contact uses: with a fixed friction bound of 0, the contact has
+    /// no slacks of friction.
     #[inline(always)]
     pub(super) fn end<S: Shape>(&self) -> usize {
         if !S::CONE && !S::LEANS && self.bound == 0.0 { 1 } else { S::END }
     }
 
-    /// Computes the mobilities of the contact from its slacks, multipliers and regularisation ε.
+    /// Computes `mobility`, the inverse diagonal entries of S, from the slacks, multipliers and regularisation ε of the
+    /// contact.
     #[inline(always)]
     pub(super) fn stiffen<S: Shape>(&mut self, numbers: ContactNumbers) {
         let ratio = |pair: usize| self.multiplier[pair] / self.slack[pair];
@@ -164,7 +169,7 @@ impl PathContact {
         };
     }
 
-    /// Returns S⁻¹, the change of the impulses (σ, λ) per change of −(v_n, v_t).
+    /// Returns the matrix S⁻¹: the change of the impulses (σ, λ) per change of −(v_n, v_t), dimensionless.
     #[inline(always)]
     pub(super) fn stiffness<S: Shape>(&self, numbers: ContactNumbers) -> [[f64; 2]; 2] {
         let [normal, one, other] = self.mobility;
@@ -179,16 +184,16 @@ impl PathContact {
         }
     }
 
-    /// Returns μ (y₁/x₁ − y₂/x₂), with the slacks x and multipliers y of the two bounds of friction: the coupling from
-    /// a change of σ to the tangent.
+    /// Returns μ (y₁/x₁ − y₂/x₂), with the slacks x and multipliers y of the two bounds of friction. Under Coulomb's
+    /// law this off-diagonal entry of S couples a change of σ to the tangential velocity.
     #[inline(always)]
     fn lean(&self, numbers: ContactNumbers) -> f64 {
         let ratio = |pair: usize| self.multiplier[pair] / self.slack[pair];
         numbers.slope * (ratio(1) - ratio(2))
     }
 
-    /// Returns the changes δp of the impulses and δx of the slacks in a step to the products `targets`, if (v_n, v_t)
-    /// change by `change`, m/s.
+    /// Returns the changes δp of the impulses and δx of the slacks in a Newton step that aims at the products `targets`
+    /// of slacks and multipliers, if the velocities (v_n, v_t) change by `change`, m/s.
     #[inline(always)]
     fn answer<S: Shape>(
         &self,
@@ -225,7 +230,7 @@ impl PathContact {
         ([normal, tangential], [normal, tangential, -tangential])
     }
 
-    /// Returns S⁻¹b, the change of the impulses in a step if the velocities do not change, m/s.
+    /// Returns S⁻¹b, the change of the impulses in a Newton step if the velocities of the bodies did not change, m/s.
     #[inline(always)]
     pub(super) fn load<S: Shape>(
         &self,
@@ -235,7 +240,7 @@ impl PathContact {
         self.answer::<S>(numbers, targets, [0.0; 2]).0
     }
 
-    /// Returns the step of impulses, slacks and multipliers that belongs to a change of (v_n, v_t), m/s.
+    /// Returns the Newton step of impulses, slacks and multipliers that follows from a change of (v_n, v_t), m/s.
     #[inline(always)]
     pub(super) fn direction<S: Shape>(
         &self,
@@ -281,13 +286,15 @@ impl PathContact {
         }
     }
 
-    /// Moves the contact to the point of the path with the products x·y = `centre` ((m/s)²) that is near the result of
-    /// the natural map. `trial` is (σ − w, λ − v m_t/m_n), m/s.
+    /// Moves the contact to the path, near the impulses that an update of the natural map would give: every product x·y
+    /// of a slack and its multiplier becomes `centre`, (m/s)². `trial` are the trial impulses (σ − w, λ − v m_t/m_n) of
+    /// this update, m/s.
     ///
-    /// With τ = `centre`: σ and its multiplier u must have the difference σ − u of the trial and the product τ, which
-    /// gives a quadratic equation. With a fixed friction bound g, the smaller slack x and the larger slack 2g − x must
-    /// result in the velocity τ/x − τ/(2g − x). The second term is neglected, which again leaves a quadratic equation.
-    /// On the cone the slacks of the nearest point and their multipliers are moved away from 0 in the same way.
+    /// With τ = `centre`: σ and its multiplier u must have the difference σ − u = σ − w of the trial and the product τ,
+    /// which gives a quadratic equation. With a fixed friction bound g, the smaller slack x and the larger slack 2g − x
+    /// must result in the velocity τ/x − τ/(2g − x). The second term is neglected, which again leaves a quadratic
+    /// equation. On the cone the slacks at the point of the cone that is nearest to the trial, and their multipliers,
+    /// are moved away from 0 by the same quadratic equation.
     pub(super) fn centre<S: Shape>(
         &mut self,
         numbers: ContactNumbers,

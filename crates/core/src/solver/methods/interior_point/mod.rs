@@ -1,29 +1,31 @@
 //! A primal–dual interior point method with a sparse direct factorisation.
 //!
-//! A convex friction model (`problem::friction`) asks for the allowed impulses p = (σ, λ) of all contacts that minimise
+//! The solution of a convex friction model (`problem::friction`) consists of the allowed impulses p = (σ, λ) of all
+//! contacts that minimise
 //!
 //! > ½‖V‖²_M + Σ m_ij s·σ,  V = V_free + M⁻¹ Hᵀ m (p − c),
 //!
 //! with V the velocities of the bodies, M their inertias, V_free their velocities without contacts, H the map from V to
 //! contact velocities, m the effective masses, s the opening speed that the friction model keeps fixed during a solve,
-//! and c the capture speed. V is unique. Each constraint has a slack and a multiplier (`contact`), and all their
-//! products are 0 at the solution. The method follows the path on which the products are equal and decrease (S.
-//! Mehrotra, 1992, for predictor and corrector; J. Gondzio, 1996, for further corrections). V is always computed from
-//! the impulses, so that rounding errors do not add up. Impulses are eliminated from each Newton step. One linear
-//! system for the change of the velocities remains,
+//! and c the capture speed. The velocities V of the solution are unique. Each constraint of the impulses has a slack
+//! and a multiplier (`contact`), whose product is 0 at the solution. The method follows the path on which the products
+//! are equal and decrease (S. Mehrotra, 1992, for predictor and corrector; J. Gondzio, 1996, for further corrections).
+//! V is always computed from the impulses, so that rounding errors do not add up. Impulses are eliminated from each
+//! Newton step. One linear system for the change of the velocities remains,
 //!
 //! > (M + Hᵀ m S⁻¹ H) δV = Hᵀ m S⁻¹ b,
 //!
 //! with a positive definite matrix that has a block for each body and for each pair in contact (S and b: see
-//! `contact`). The number of factorisations hardly depends on the number of contacts. This distinguishes the method:
-//! sweeps and the semi-smooth Newton method need more iterations on a larger pile.
+//! `contact`). The number of factorisations hardly depends on the number of contacts. In contrast, sweeps and the
+//! semi-smooth Newton method need more iterations on a larger pile.
 //!
 //! If steps become short near the end, as on dense piles, which are hyperstatic, proximal multipliers (`proximal`)
 //! finish the solve. If the path does not lead to a solution, proximal multipliers are tried from impulses far from a
 //! solution.
 //!
 //! A solve begins with a few sweeps, and one update of the natural map from their impulses. Its first interior point is
-//! the point of the path nearest to the result; the better the impulses are, the further along the path this point is.
+//! the point of the path nearest to the result; the smaller the error of the impulses is, the nearer this point is to
+//! the end of the path.
 //!
 //! The problem of Coulomb's law is not convex, and its path may turn back (`path`).
 
@@ -46,7 +48,8 @@ use crate::solver::problem::StepProblem;
 use crate::solver::settings::{FrictionModel, SolverSettings};
 use crate::world::FrictionCone;
 
-/// One workspace for each number of degrees of freedom of a body. Unused workspaces allocate no memory.
+/// Work memory of the interior point method for each number of degrees of freedom of a body (1 to 3). Memory that is
+/// not used allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct InteriorMemory {
     one: PathWorkspace<1>,
@@ -54,9 +57,9 @@ pub(crate) struct InteriorMemory {
     three: PathWorkspace<3>,
 }
 
-/// Solves a prepared problem under its friction model. If friction has wedged the impulses of the previous step, the
-/// solve starts from zero impulses instead. If the path of Coulomb's law does not lead to a solution, `go_on` continues
-/// the solve.
+/// Solves a prepared problem under its friction model by the interior point method. If friction has wedged bodies
+/// between each other, so that the impulses of the previous step are huge, the solve starts from zero impulses instead.
+/// If the path of Coulomb's law does not lead to a solution, `go_on` continues the solve with another method.
 pub(super) fn solve<M: Model>(
     problem: &mut StepProblem<M>,
     memory: &mut InteriorMemory,
@@ -79,7 +82,7 @@ pub(super) fn solve<M: Model>(
     })
 }
 
-/// Solves a problem with its present friction bounds, which stay fixed.
+/// Solves a problem with its present friction bounds, which are not recomputed.
 #[cfg(test)]
 pub(crate) fn solve_within_bounds<M: Model>(
     problem: &mut StepProblem<M>,
@@ -107,8 +110,8 @@ fn convex<M: Model, S: Shape>(
 }
 
 /// Follows the path of Coulomb's law as far as possible, and then lets `go_on` continue with another method. The path
-/// is not used in two cases: the compressive cone has a corner at σ = c (shifted normal impulse = capture speed) that
-/// the path cannot pass, and all contacts on a path must have the same friction coefficient.
+/// is not used in two cases: with the compressive cone, which has a corner at σ = c (shifted normal impulse = capture
+/// speed) that the path cannot pass, and if contacts have different friction coefficients.
 fn coulomb<M: Model>(
     problem: &mut StepProblem<M>,
     memory: &mut InteriorMemory,

@@ -1,13 +1,14 @@
 //! Newton steps along the path of the interior point method, and the loops that follow the path.
 //!
-//! A step consists of a predictor, a corrector, and further corrections of products (slack times multiplier) that would
-//! be far from their target. The path of a convex friction model leads to its solution.
+//! A step aims at a target for each product of a slack and its multiplier. It consists of a predictor, a corrector, and
+//! further corrections for products that would be far from their target. The path of a convex friction model leads to
+//! its solution.
 //!
 //! The path of Coulomb's law may turn back. At such a fold a Newton step becomes very long, and only a tiny fraction of
-//! it is feasible. The contacts that limit the step, and the other contacts of their bodies, then get a larger
-//! regularisation ε for a while, so that their impulses change little in a step. This leads around a fold in one region
-//! of the pile while the rest makes progress. If the path does not lead to a solution, sweeps before the next start
-//! move away from it.
+//! the step keeps slacks and multipliers positive (is feasible). The contacts that limit the step, and the other
+//! contacts of their bodies, then get a larger regularisation ε in the next steps, so that their impulses change little
+//! in a step. This leads around a fold in one region of the pile while the rest makes progress. If the path does not
+//! lead to a solution, sweeps change the impulses before the next start, so that it is on another path.
 
 use super::contact::{PAIRS, PathContact, PathStep, Shape};
 use super::point::{InteriorPoint, PathWorkspace, SWEEPS_FIRST};
@@ -17,49 +18,57 @@ use crate::solver::methods::stopping::SolveReport;
 use crate::solver::onlooker::{SolveProgress, is_ended};
 use crate::solver::problem::{natural_map, velocity_error};
 
-/// Minimum and maximum centring parameter: the target of the products in a step divided by their present mean.
+/// Minimum and maximum centring parameter: the target for the products of slacks and multipliers in a step, divided by
+/// the present mean product.
 const AIMS: [f64; 2] = [1e-6, 1.0];
 /// Fraction of the longest feasible step that is taken, so that slacks and multipliers stay positive.
 const OFF_BORDER: f64 = 0.999;
-/// Largest second-order product of a predictor step, relative to the mean product of slacks and multipliers.
+/// Limit of the second-order term of the corrector, the product of the predicted changes of a slack and its multiplier,
+/// relative to the mean product of slacks and multipliers.
 const MOST_SECOND_ORDER: f64 = 1e3;
 /// Maximum number of corrections of a step after its corrector. Only steps shorter than [`LONG_ENOUGH`] are corrected.
 const CORRECTIONS: u32 = 3;
 const LONG_ENOUGH: f64 = 0.98;
-/// Minimum and maximum product of slack and multiplier, relative to the target, outside which a product is corrected.
+/// Range of the product of slack and multiplier, relative to its target. A product outside this range is corrected.
 const NEAR_AIM: [f64; 2] = [0.1, 10.0];
-/// Minimum increase of the step length by a correction, below which the correction is dropped.
+/// Minimum increase of the step length, as a fraction of the full Newton step, that a correction must achieve. A
+/// correction that achieves less is dropped.
 const WORTH_A_SOLVE: f64 = 0.02;
 
-/// Number of factorisations without a smaller residual after which a start on the path ends.
+/// Number of consecutive factorisations without a new smallest residual, after which an attempt to follow the path of a
+/// convex model ends.
 const PATIENCE: u32 = 15;
-/// Residual of the natural map, dimensionless, below which proximal multipliers are to finish the solve. They are not
-/// used on cones, where the path does not slow down.
+/// Residual of the natural map, dimensionless, at or below which proximal multipliers try to finish the solve. They are
+/// not used for the friction models with a cone (`associated`, `desaxce`), for which the path does not slow down.
 const POLISH_FROM: f64 = 1e-6;
-/// Proximal multipliers that have failed are tried again when the residual is below this fraction of its value at the
-/// failure.
+/// Condition for another attempt with proximal multipliers after a failed attempt: the residual must be at most this
+/// fraction of the residual at the failure.
 const POLISH_AGAIN: f64 = 0.1;
-/// Largest ratio of the path's velocity error to the velocity error after [`SWEEPS_INSTEAD`] sweeps, at which the
-/// result of the path is kept. With a larger ratio, huge impulses would count as a solution of a problem that has no
-/// solution.
+/// Ratio of the path's velocity error to the velocity error after [`SWEEPS_INSTEAD`] sweeps, below which the result of
+/// the path is kept although it misses the tolerance. With a larger ratio, huge impulses would count as a solution of a
+/// problem that has no solution.
 const FAR_NEARER: f64 = 1e-2;
-/// Number of sweeps whose result is used if the path finds no solution.
+/// Number of sweeps whose result is used if the path does not lead to a solution.
 const SWEEPS_INSTEAD: u32 = 100;
-/// Maximum number of starts on the path of a convex model, each further from the end of the path.
+/// Maximum number of attempts to follow the path of a convex model. Each attempt starts further from the end of the
+/// path.
 const STARTS: u32 = 4;
 
-/// Maximum number of starts on the path of Coulomb's law before another method continues.
+/// Maximum number of attempts to follow the path of Coulomb's law before another method continues the solve.
 const FOLDED_STARTS: u32 = 4;
-/// Number of sweeps between two starts on the path of Coulomb's law.
+/// Number of sweeps between two attempts to follow the path of Coulomb's law.
 const SWEEPS_BETWEEN: u32 = 30;
-/// Number of factorisations that have not halved the residual, after which a start on the path of Coulomb's law ends.
+/// Limit of an attempt to follow the path of Coulomb's law: it ends after this number of factorisations that have not
+/// halved the residual.
 const FOLDED_PATIENCE: u32 = 8;
-/// Number of consecutive steps shorter than [`SHORT_STEP`] after which a start also ends.
+/// Number of consecutive steps shorter than [`SHORT_STEP`] after which an attempt to follow the path of Coulomb's law
+/// ends, too.
 const SHORT_STEPS: u32 = 3;
 const SHORT_STEP: f64 = 0.05;
-/// Step length below which the contacts that limit the step get a larger regularisation ε.
+/// Step length, as a fraction of the full Newton step, below which the contacts that limit the step get a larger
+/// regularisation ε.
 const LONG_STEP: f64 = 0.3;
-/// Minimum and maximum regularisation ε of a contact that limits a step.
+/// Minimum and maximum regularisation ε of a contact that limits a step, relative to the compliance of a contact.
 const SOFT: [f64; 2] = [1e-3, 1.0];
 /// Factor by which the regularisation ε of a contact that limits a step grows per step.
 const SOFTENING: f64 = 30.0;
@@ -79,7 +88,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         (share, left)
     }
 
-    /// Takes a Newton step with predictor and corrections. Returns its length as a fraction of the full Newton step.
+    /// Takes a Newton step along the path, with predictor and corrections. Returns its length as a fraction of the full
+    /// Newton step.
     pub(super) fn newton_step(&mut self) -> f64 {
         self.assemble();
         let mean = self.mean_product();
@@ -117,7 +127,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         share
     }
 
-    /// Returns the mean of the products of slacks and multipliers, (m/s)².
+    /// Returns the mean of the products of slacks and multipliers over all contacts, (m/s)², which is 0 at the end of
+    /// the path.
     pub(super) fn mean_product(&self) -> f64 {
         self.mean_product_after(0.0)
     }
@@ -137,8 +148,9 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         sum / pairs as f64
     }
 
-    /// Corrects the targets of products that a longer step would move far from `aim`, (m/s)². `share` is the present
-    /// step length. Returns the new step length, or `None` if the correction gains too little.
+    /// Recomputes the step with corrected targets for the products (slack times multiplier) that a longer step would
+    /// move far from `aim`, (m/s)². `share` is the present step length. Returns the new step length, or `None` if the
+    /// correction lengthens the step too little.
     fn corrected(&mut self, share: f64, aim: f64) -> Option<f64> {
         let longer = (1.5 * share + 0.2).min(1.0);
         let [least, most] = NEAR_AIM.map(|factor| factor * aim);
@@ -160,7 +172,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         None
     }
 
-    /// Updates the contacts to the present velocities, and assembles and factorises the linear system of the step.
+    /// Updates the contacts to the present velocities, and assembles and factorises the linear system of a Newton step.
     fn assemble(&mut self) {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, system, contacts, .. } = &mut **workspace;
@@ -174,7 +186,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         system.assemble::<M, S>(problem, graph, answers);
     }
 
-    /// Computes the step to the target products with the present factors. Returns the longest feasible step length.
+    /// Computes the Newton step to the target products (slack times multiplier) with the present factors of the matrix.
+    /// Returns the longest step length, at most 1, that keeps slacks and multipliers positive.
     fn find_step(&mut self) -> f64 {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, system, vector, contacts, targets, step, .. } = &mut **workspace;
@@ -196,8 +209,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         share
     }
 
-    /// Follows the path of a convex model to its end. If rounding prevents that, starts again further from the end of
-    /// the path.
+    /// Solves a convex problem: follows the path to its end. If rounding prevents that, starts again further from the
+    /// end of the path. If no attempt succeeds, tries proximal multipliers, then sweeps.
     pub(super) fn solve_convex(mut self) -> SolveReport {
         if self.settles_in(SWEEPS_FIRST) {
             return self.report;
@@ -250,7 +263,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         self.report
     }
 
-    /// Returns true if the maximum number of sweeps and factorisations is reached, or if an onlooker ends the solve.
+    /// Returns true if sweeps and factorisations together have reached the maximum number of sweeps, or if an onlooker
+    /// (a callback that watches the progress) ends the solve.
     pub(super) fn is_spent(&self) -> bool {
         let sweeps = self.report.sweeps + self.report.factorisations;
         sweeps >= self.settings.max_sweeps || is_ended(SolveProgress { sweeps, residual: None })
@@ -298,8 +312,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         false
     }
 
-    /// Increases the regularisation ε of the contacts of bodies that limited a step of length `share`, and decreases ε
-    /// of all other contacts.
+    /// Increases the regularisation ε of all contacts of the bodies whose contacts limited the last step, which had the
+    /// length `share`. Decreases ε of all other contacts.
     fn soften(&mut self, share: f64) {
         let Self { problem, workspace, .. } = self;
         let PathWorkspace { contacts, step, stopped, .. } = &mut **workspace;
@@ -330,7 +344,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
     }
 }
 
-/// Iterates over the target products of a contact, with the index of the slack that each belongs to.
+/// Iterates over the target products of a contact, each with the index of its slack and multiplier.
 #[inline(always)]
 fn pairs<'a, S: Shape>(
     contact: &PathContact,

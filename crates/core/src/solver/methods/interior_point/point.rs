@@ -1,5 +1,5 @@
-//! The state of a solve by the interior point method: its start, the largest allowed impulses, and the tests that end
-//! it.
+//! The state of a solve by the interior point method: its first point on the path, the largest impulses that count as a
+//! solution, and the tests that end the solve.
 
 use std::marker::PhantomData;
 
@@ -17,22 +17,23 @@ use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 
 /// Number of sweeps before the first factorisation: many steps of a pile at rest need no more.
 pub(super) const SWEEPS_FIRST: u32 = 4;
-/// Sweeps are tried if the quantity that the stopping test limits is at most this many times the tolerance.
+/// Error of the impulses, in multiples of the tolerance of the stopping test, at or below which a few sweeps try to
+/// finish the solve.
 const SWEEPS_FROM: f64 = 10.0;
-/// Largest allowed impulse, relative to the impulses and velocities at the start of a solve. From a cold start on a
-/// pile of 100 layers, impulses grow by a factor of 10⁴.
+/// Largest impulse that counts as a solution, relative to the impulses and velocities at the start of a solve. From
+/// zero initial impulses on a pile of 100 layers, impulses grow by a factor of 10⁴.
 const LARGEST_IMPULSE: f64 = 1e7;
-/// Number of sweeps that may finish a solve.
+/// Number of sweeps that try to finish a solve when the path is near its end.
 const SWEEPS_LAST: u32 = 2;
 
-/// Product of slack and multiplier at the first start, divided by the mean square of the change that the natural map
-/// would make to the impulses. If it were smaller, contacts would change between open, stick and slip only slowly; if
-/// it were larger, a warm start would be lost.
+/// Product of slack and multiplier at the first start on the path, divided by the mean square of the change that an
+/// update of the natural map would make to the impulses. If it were smaller, contacts would change between open, stick
+/// and slip only slowly; if it were larger, good initial impulses (warm start) would have no advantage.
 const CENTRE: f64 = 1e3;
-/// Factor of the product of slack and multiplier from one start to the next.
+/// Factor by which the product of slack and multiplier is larger at each further start on the path.
 const FURTHER_UP: f64 = 1e3;
-/// Friction bounds below this fraction of the root mean square change of the impulses count as 0, because there is no
-/// room between them.
+/// Fraction of the root mean square change of the impulses below which a friction bound g counts as 0. The interval
+/// from −g to g would otherwise be too narrow for positive slacks at both of its ends.
 const LEAST_BOUND: f64 = 1e-10;
 
 /// Work memory of a solve whose bodies have `D` degrees of freedom.
@@ -40,22 +41,23 @@ const LEAST_BOUND: f64 = 1e-10;
 pub(super) struct PathWorkspace<const D: usize> {
     pub graph: ContactGraph,
     pub system: StepMatrix<D>,
-    /// Right-hand side of the linear system in elimination order, then its solution, the change of the velocities.
+    /// Right-hand side of the linear system in elimination order; after the solution of the system, the change of the
+    /// velocities.
     pub vector: Vec<[f64; D]>,
-    /// The contacts of the rows. The next three vectors also have one entry per row.
+    /// Impulses, slacks and multipliers of all contacts. The next three vectors also have one entry per contact.
     pub contacts: Vec<PathContact>,
     pub targets: Vec<[f64; PAIRS]>,
     pub step: Vec<PathStep>,
     pub other_step: Vec<PathStep>,
-    /// Impulses (σ, λ_t) of the rows with the smallest residual so far, m/s.
+    /// Impulses (σ, λ_t) of all contacts with the smallest residual so far, m/s.
     pub best: Vec<[f64; 2]>,
-    /// Impulses (σ, λ_t) of the rows at the start of the solve, m/s.
+    /// Impulses (σ, λ_t) of all contacts at the start of the solve, m/s.
     pub first: Vec<[f64; 2]>,
-    /// The contacts of the rows in the proximal multiplier method.
+    /// Impulses and velocities of all contacts in the proximal multiplier method.
     pub near: Vec<ProximalContact>,
     /// Momenta M(V − V_free) of the bodies in the proximal multiplier method, in elimination order, kg m/s.
     pub momenta: Vec<[f64; D]>,
-    /// True for each body with a contact that limited the last step.
+    /// True for each body with a contact that limited the length of the last step.
     pub stopped: Vec<bool>,
 }
 
@@ -66,9 +68,9 @@ pub(super) struct InteriorPoint<'a, M: Model, S, const D: usize> {
     pub workspace: &'a mut PathWorkspace<D>,
     pub numbers: ContactNumbers,
     pub report: SolveReport,
-    /// Largest shifted normal impulse σ that a solution may have, m/s.
+    /// Largest shifted normal impulse σ, m/s, with which a result counts as a solution.
     pub largest_impulse: f64,
-    /// The smallest residual of the natural map so far; `workspace.best` has its impulses.
+    /// The smallest residual of the natural map so far; `workspace.best` has the impulses with this residual.
     pub best: f64,
     pub shape: PhantomData<S>,
 }
@@ -95,14 +97,14 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         }
     }
 
-    /// Performs up to `sweeps` sweeps. Returns true if the stopping test is met.
+    /// Performs up to `sweeps` Gauss–Seidel sweeps. Returns true if the stopping test is met.
     pub(super) fn settles_in(&mut self, sweeps: u32) -> bool {
         let sweeps = sweeps.min(self.settings.max_sweeps - self.report.sweeps);
         settles_in(self.problem, self.settings, sweeps, &mut self.report)
     }
 
-    /// Returns true if the quantity that the stopping test limits is at most `times` the tolerance. `left` is the
-    /// residual of the natural map.
+    /// Returns true if the error of the present impulses is at most `times` the tolerance. The error is the velocity
+    /// error if the stopping test limits the velocity error, otherwise `left`, the residual of the natural map.
     pub(super) fn is_within(&self, left: f64, times: f64) -> bool {
         let tolerance = times * self.settings.tolerance;
         match self.settings.stop {
@@ -111,8 +113,9 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         }
     }
 
-    /// Performs sweeps that may end the solve, if the solution is near enough: sweeps set impulses exactly to their
-    /// bounds. If the sweeps do not end the solve, returns to the present point of the path.
+    /// Tries to finish the solve by a few sweeps, if the error is small enough: unlike the path, sweeps set impulses
+    /// exactly to their bounds. Returns true if the stopping test is then met; otherwise returns to the present point
+    /// of the path. `left` is the residual of the natural map.
     pub(super) fn finishes(&mut self, left: f64) -> bool {
         if !self.is_within(left, SWEEPS_FROM) || !self.is_bounded() {
             return false;
@@ -124,8 +127,8 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         finished
     }
 
-    /// Sets the impulses of the rows to the present point of the path, and the bodies to the velocities that follow
-    /// from them.
+    /// Sets the impulses of the problem to the present point of the path, and its bodies to the velocities that follow
+    /// from these impulses.
     pub(super) fn take_impulses(&mut self) {
         let contacts = &self.workspace.contacts;
         self.problem.write_impulses(contacts.iter().map(|contact| contact.impulse));
@@ -144,19 +147,20 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         self.keep(natural_map(self.problem));
     }
 
-    /// Returns true if no impulse is larger than a solution may have. On a path that does not lead to a solution
-    /// impulses grow, and all changes become small relative to them.
+    /// Returns true if no impulse of the path is larger than a solution may have. On a path that does not lead to a
+    /// solution impulses grow without limit; relative to them all changes become small, as if the solve converged.
     pub(super) fn is_bounded(&self) -> bool {
         let contacts = &self.workspace.contacts;
         contacts.iter().all(|contact| contact.impulse[0] <= self.largest_impulse)
     }
 
-    /// Tests the impulses of the rows in the same way as [`Self::is_bounded`] tests the impulses of the path.
+    /// Returns true if no impulse of the problem is larger than a solution may have.
     pub(super) fn has_bounded_rows(&self) -> bool {
         self.problem.rows().all(|(_, row)| row.shifted_impulse <= self.largest_impulse)
     }
 
-    /// Records the impulses of the rows, whose residual is `left`, as the best impulses so far.
+    /// Records the present impulses of the problem, whose residual is `left`, as the impulses with the smallest
+    /// residual so far.
     pub(super) fn keep(&mut self, left: f64) {
         self.best = left;
         self.problem.rows.read_impulses(&mut self.workspace.best);
@@ -166,8 +170,8 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         self.problem.write_impulses(self.workspace.best.iter().copied());
     }
 
-    /// Moves to the point of the path that is nearest to the result of one update of the natural map. `starts_before`
-    /// is the number of earlier starts of this solve, each of which moves the next start further from the end of the
+    /// Starts the path at its point nearest to the impulses that one update of the natural map gives. `starts_before`
+    /// is the number of earlier starts in this solve, each of which moves the next start further from the end of the
     /// path.
     pub(super) fn start(&mut self, starts_before: u32) {
         let Self { problem, workspace, numbers, .. } = self;

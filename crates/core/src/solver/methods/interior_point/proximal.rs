@@ -1,10 +1,10 @@
 //! Proximal multipliers with a semi-smooth Newton method and exact line search. They finish a solve if the steps of the
-//! interior point become short, and are tried if its path does not lead to a solution.
+//! interior point method become short, and are tried if the path of that method does not lead to a solution.
 //!
-//! Let p be the present impulses, (w, v) the velocities of a contact, R = diag(1, m_n/m_t), ε a compliance, Π the
-//! projection on the allowed impulses in the metric R, and y = p − R⁻¹(w, v)/ε. With the velocities V of the bodies,
-//! their inertias M and their velocities V_free without contacts, the map H from V to contact velocities, and the
-//! effective masses m of the contacts,
+//! Let p be the present impulses, (w, v) the velocities of a contact, R = diag(1, m_n/m_t), ε a compliance relative to
+//! the compliance of a contact, Π the projection on the allowed impulses in the metric R, and y = p − R⁻¹(w, v)/ε. With
+//! the velocities V of the bodies, their inertias M and their velocities V_free without contacts, the map H from V to
+//! contact velocities, and the effective masses m of the contacts,
 //!
 //! > F(V) = ½‖V − V_free‖²_M + Σ (m ε/2) (‖y‖²_R − ‖y − Π(y)‖²_R)
 //!
@@ -15,11 +15,12 @@
 //! J the derivative of Π. The Hessian is positive definite, with the blocks of the interior point's systems. At the
 //! minimum of F, V agrees with the impulses Π(y), and the update p ← Π(y) brings the impulses nearer to the solution
 //! (R. T. Rockafellar, 1976; with Newton's method inside X. Li, D. Sun, K.-C. Toh, 2018; for contacts A. Castro and
-//! others, 2022). F is quadratic as long as the pieces of Π stay the same, so a full step within one piece reaches the
-//! minimum. Along a line F′ is piecewise linear and rising; its root is found by Newton's method.
+//! others, 2022). Π is piecewise linear, so F is quadratic as long as no contact changes its piece of Π, and a full
+//! step without such a change reaches the minimum. Along a Newton step the derivative F′ is piecewise linear and
+//! increasing; its root, the step length, is found by Newton's method.
 //!
-//! V is not recomputed from the impulses: each step adds its changes to the velocities of contacts and to
-//! M(V − V_free), because a small ε magnifies rounding errors.
+//! V is not recomputed from the impulses: each step adds its changes to the velocities of contacts and to M(V −
+//! V_free), because a small ε magnifies rounding errors.
 
 use super::contact::Shape;
 use super::point::{InteriorPoint, PathWorkspace};
@@ -28,19 +29,22 @@ use super::system::{all_inertias, for_each_change, push_all};
 use crate::solver::kinematics::Model;
 use crate::solver::problem::natural_map;
 
-/// Initial compliance ε of a solve that starts far from a solution. `CLOSE` is for a solve that finishes the path.
+/// Initial compliance ε, relative to the compliance of a contact, of a solve that starts far from a solution. `CLOSE`
+/// is for a solve that finishes the path.
 const FAR: f64 = 0.1;
 const CLOSE: f64 = 1e-5;
-/// Minimum compliance ε. With a smaller ε, rounding errors would cost more than is gained.
+/// Minimum compliance ε, relative to the compliance of a contact. With a smaller ε, rounding errors would grow more
+/// than the error of the impulses would fall.
 const LEAST: f64 = 1e-10;
-/// Factor of the compliance ε from one minimum of F to the next.
+/// Factor by which the compliance ε is multiplied each time the minimum of F has been found.
 const FACTOR: f64 = 0.1;
-/// Number of factorisations that have not halved the residual, after which a solve ends that started far from a
-/// solution.
+/// Limit of a solve that started far from a solution: it ends after this number of factorisations that have not halved
+/// the residual.
 const PATIENCE: u32 = 40;
 /// Maximum number of factorisations of a solve that finishes the path of the interior point.
 const FEW: u32 = 16;
-/// Ratio of the squared gradient norm ∇F·M⁻¹∇F to its first value at the present compliance ε, at which ε is reduced.
+/// Ratio of the squared gradient norm ∇F·M⁻¹∇F to its first value at the present compliance ε, at or below which the
+/// minimum of F counts as found and ε is reduced.
 const NEAR_MINIMUM: f64 = 1e-4;
 /// Maximum number of evaluations of the derivative F′ in a line search.
 const TRIALS: u32 = 40;
@@ -48,13 +52,14 @@ const TRIALS: u32 = 40;
 const ROOT: f64 = 1e-9;
 
 impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
-    /// Continues from the present impulses of the path, which are near a solution. Returns true if the problem is then
-    /// solved.
+    /// Finishes a solve by proximal multipliers, from the present impulses of the path, which are near a solution.
+    /// Returns true if the problem is then solved.
     pub(super) fn polish(&mut self) -> bool {
         self.approach(CLOSE, FEW, FEW)
     }
 
-    /// Starts from the impulses with the smallest residual so far. Returns true if the problem is then solved.
+    /// Solves the problem by proximal multipliers, from the impulses with the smallest residual so far. Returns true if
+    /// the problem is then solved.
     pub(super) fn solve_from_far(&mut self) -> bool {
         let PathWorkspace { contacts, best, .. } = &mut *self.workspace;
         for (contact, &impulse) in contacts.iter_mut().zip(&*best) {
@@ -106,7 +111,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         }
     }
 
-    /// Sets impulses and velocities of the proximal multipliers from the contacts of the path.
+    /// Sets the initial impulses and velocities of the proximal multiplier method to the present impulses of the path,
+    /// projected on the allowed impulses.
     fn begin_near(&mut self) {
         let numbers = self.numbers;
         let PathWorkspace { near, contacts, .. } = &mut *self.workspace;
@@ -129,14 +135,15 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         push_all(problem, &graph.elimination, impulses, momenta);
     }
 
-    /// Sets the impulses of the rows to `impulse` of each contact, and recomputes the velocities of the bodies.
+    /// Sets the impulses of the problem to the result of `impulse` for each contact, m/s, and recomputes the velocities
+    /// of the bodies.
     fn take_near(&mut self, impulse: impl Fn(&ProximalContact) -> [f64; 2]) {
         let Self { problem, workspace, .. } = self;
         problem.write_impulses(workspace.near.iter().map(impulse));
     }
 
-    /// Sets the impulses of the rows to the allowed impulses Π(y). Returns the residual of the natural map at these
-    /// impulses.
+    /// Sets the impulses of the problem to the projected impulses Π(y). Returns the residual of the natural map at
+    /// these impulses.
     fn take_allowed(&mut self, compliance: f64) -> f64 {
         let numbers = self.numbers;
         self.take_near(|contact| {
@@ -145,7 +152,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         natural_map(self.problem)
     }
 
-    /// Writes −∇F to the right-hand side of the linear system. Returns the squared norm ∇F·M⁻¹∇F of the gradient, J.
+    /// Writes −∇F, the negative gradient of F by the velocities, to the right-hand side of the linear system. Returns
+    /// the squared norm ∇F·M⁻¹∇F of the gradient, J.
     fn gradient(&mut self, compliance: f64) -> f64 {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, vector, near, momenta, .. } = &mut **workspace;
@@ -165,7 +173,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         squared
     }
 
-    /// Takes a Newton step of F with the present gradient, with the length that the line search finds.
+    /// Takes a Newton step towards the minimum of F, from the present gradient. A line search determines the step
+    /// length.
     fn step_near(&mut self, compliance: f64) {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, system, vector, near, .. } = &mut **workspace;
@@ -195,7 +204,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         }
     }
 
-    /// Returns the step length at which F has its minimum along the Newton step.
+    /// Returns the step length at which F has its minimum along the Newton step (exact line search).
     fn least_on_line(&self, compliance: f64) -> f64 {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, vector, near, momenta, .. } = &**workspace;

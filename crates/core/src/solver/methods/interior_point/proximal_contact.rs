@@ -1,4 +1,4 @@
-//! A contact in the proximal multiplier method. The symbols are explained in `proximal`.
+//! Data and projection of a contact in the proximal multiplier method. The symbols are explained in `proximal`.
 
 use super::contact::{ContactNumbers, Shape};
 use crate::contact::law;
@@ -9,26 +9,27 @@ use crate::solver::linear::Block;
 pub(super) struct ProximalContact {
     /// Impulses p: shifted normal and tangential impulse (σ, λ), m/s.
     pub impulse: [f64; 2],
-    /// Velocities (w, v): normal velocity with the term that the law adds, and tangential velocity, m/s.
+    /// Velocities (w, v), m/s: w is the normal velocity plus the restitution term and the opening speed of the friction
+    /// model, v the tangential velocity.
     pub velocity: [f64; 2],
     /// Change of the velocities (w, v) in a Newton step of length 1, m/s.
     pub change: [f64; 2],
-    /// Friction bound g, which is fixed during a solve, m/s.
+    /// Friction bound g, which stays fixed during a solve, m/s.
     pub bound: f64,
 }
 
 /// A region of trial impulses in which the derivative J of the projection Π is constant.
 #[derive(Clone, Copy)]
 pub(super) enum ProjectionPiece {
-    /// For σ and for λ: true if the projected impulse follows the trial impulse, false if it stays at its bound.
+    /// One flag for σ and one for λ: true if the projected impulse equals the trial impulse, false if it is at a bound.
     Free([bool; 2]),
-    /// The projection is on an edge of the cone, given by the sign of λ.
+    /// The projected impulse is on an edge of the friction cone: λ = ±μσ with the given sign.
     Edge(f64),
 }
 
 impl ProjectionPiece {
-    /// Returns J R⁻¹/ε, with the metric R = diag(1, m_n/m_t) and the compliance ε. On an edge with direction d this is
-    /// d dᵀ/(ε dᵀR d).
+    /// Returns the stiffness J R⁻¹/ε of a contact, with the derivative J of the projection, the metric R = diag(1,
+    /// m_n/m_t) and the compliance ε. On an edge of the cone with the direction d the stiffness is d dᵀ/(ε dᵀR d).
     pub(super) fn stiffness(self, numbers: ContactNumbers, compliance: f64) -> Block<2> {
         let soft = numbers.tangential_compliance;
         match self {
@@ -46,7 +47,8 @@ impl ProjectionPiece {
 }
 
 impl ProximalContact {
-    /// Returns the trial impulses y = p − R⁻¹(w, v)/ε after a step of length `share`, m/s.
+    /// Returns the trial impulses y = p − R⁻¹(w, v)/ε after a Newton step whose length is the fraction `share` of the
+    /// full step, m/s.
     #[inline(always)]
     pub(super) fn trial(&self, numbers: ContactNumbers, compliance: f64, share: f64) -> [f64; 2] {
         let [normal, tangential] =

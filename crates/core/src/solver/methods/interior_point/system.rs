@@ -13,11 +13,11 @@ use crate::solver::linear::{
 };
 use crate::solver::problem::{DrivenBy, Row, StepProblem};
 
-/// The matrix of a Newton step, which is replaced by its factors.
+/// The matrix of the linear system of a Newton step; after the factorisation, its factors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StepMatrix<const D: usize> {
     symmetric: SymmetricBlockMatrix<D>,
-    /// The matrix under Coulomb's law, for which it is not symmetric.
+    /// The matrix under Coulomb's law, which makes the matrix unsymmetric.
     unsymmetric: BlockMatrix<D>,
 }
 
@@ -87,8 +87,8 @@ impl<const D: usize> StepMatrix<D> {
 /// Gradients of a contact's normal and tangential velocity (v_n, v_t) by a body's velocity.
 type Gradients<const D: usize> = [[f64; D]; 2];
 
-/// Returns the gradients of grain i. If the other body of the contact can move (grain or driven wall), also returns its
-/// number and gradients.
+/// Returns the gradients of a contact's (v_n, v_t) by the velocity of grain i. If the other body of the contact can
+/// move (grain or driven wall), also returns that body's number and gradients.
 #[inline(always)]
 fn bodies_of<M: Model, const D: usize>(
     problem: &StepProblem<M>,
@@ -107,8 +107,8 @@ fn bodies_of<M: Model, const D: usize>(
     (on_i, problem.walls.driven_row(number).map(|known| of_wall(known.by)))
 }
 
-/// Adds the momentum changes Hᵀ m p, kg m/s, to `momenta`, which are in elimination order. `impulses` are the impulses
-/// (σ, λ) of each contact, m/s.
+/// Adds to `momenta` the momentum changes Hᵀ m p of the bodies that follow from contact impulses, kg m/s, in
+/// elimination order. `impulses` are the impulses p = (σ, λ) of each contact, m/s.
 #[inline(always)]
 pub(super) fn push_all<M: Model, const D: usize>(
     problem: &StepProblem<M>,
@@ -173,13 +173,14 @@ pub(super) fn all_inertias<M: Model, const D: usize>(
     })
 }
 
-/// Returns m S⁻¹, kg: the effective mass of a contact times the 2×2 matrix `answer`.
+/// Returns m S⁻¹, kg: the effective mass of a contact times the 2×2 matrix S⁻¹, given as `answer`.
 #[inline(always)]
 fn heavy(mass: f64, answer: Block<2>) -> Block<2> {
     answer.map(|row| row.map(|entry| mass * entry))
 }
 
-/// Returns the block m H₁ᵀ S⁻¹ H₂, kg, of a contact for two bodies with the gradients H₁ = `one` and H₂ = `other`.
+/// Returns the D × D block m H₁ᵀ S⁻¹ H₂, kg, that a contact adds to the matrix for two bodies. The gradients of the
+/// contact's velocity by their velocities are H₁ = `one` and H₂ = `other`.
 #[inline(always)]
 fn stiffness<const D: usize>(
     [[nn, nt], [tn, tt]]: &Block<2>,

@@ -1,5 +1,5 @@
-//! Tests of the interior point with random contact problems that have a solution: proximal multipliers, which finish a
-//! solve or replace the path, find the same velocities as the path.
+//! Tests of the interior point method with random contact problems that have a solution: proximal multipliers find the
+//! same velocities as the method's path, no matter whether they finish a solve or replace the path.
 
 use super::*;
 use crate::contact::ContactLaw;
@@ -9,7 +9,8 @@ use crate::solver::{Line, Plane, SmoothPlane, SpinningPlane, StopTest};
 
 const FRICTION: f64 = 0.6;
 
-/// Returns a problem that has a solution, because bodies at rest violate no contact.
+/// Returns a random contact problem under a friction model. The problem has a solution, because bodies at rest satisfy
+/// the laws of all contacts.
 fn problem<M: Model>(seed: u64, model: FrictionModel) -> StepProblem<M> {
     let law = ContactLaw::new(FRICTION, 0.1, FrictionCone::Shifted);
     let mut problem = random_problem::<M>(seed, law, 40, 90, 6, 0.0..0.3);
@@ -22,8 +23,8 @@ fn problem<M: Model>(seed: u64, model: FrictionModel) -> StepProblem<M> {
     problem
 }
 
-/// Returns the velocities found by the path and by proximal multipliers without the path, and the number of
-/// factorisations of the proximal multipliers.
+/// Solves one problem by the path, and by proximal multipliers without the path. Returns both results for the
+/// velocities, and the number of factorisations of the proximal multipliers.
 fn both_ways<M: Model, S: Shape, const D: usize>(
     seed: u64,
     model: FrictionModel,

@@ -1,8 +1,8 @@
 //! Blocks of contacts: a block contains four contacts that share no grain, one per SIMD lane, as a structure of arrays.
 //!
 //! All four contacts are solved at once with the arithmetic of one contact (`methods::sweep`), in the vector registers
-//! of the processor. The result is bitwise the same as one contact after the other. If a colour does not fill a block,
-//! the idle lanes act on a placeholder body and change nothing.
+//! of the processor. The result is bitwise the same as one contact after the other. If a colour (a group of contacts
+//! that share no grain) does not fill a block, the idle lanes act on a placeholder body and change nothing.
 
 use fearless_simd::{Simd, SimdBase, SimdFrom, f64x4};
 
@@ -14,14 +14,14 @@ use crate::solver::problem::{Row, errors, project_by_coulomb, squared_impulse};
 /// Number of contacts per block: the number of f64 in a register of AVX2. Wider blocks would leave more lanes idle.
 pub(super) const LANES: usize = 4;
 
-/// The velocity of a body as blocks store it, one entry per degree of freedom; further entries are not used. The
-/// alignment keeps it within one cache line.
+/// The velocity of a body as blocks of contacts store it, one entry per degree of freedom; further entries are not
+/// used. The alignment keeps the velocity within one cache line.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
 pub(super) struct BodySlot([f64; LANES]);
 
 impl BodySlot {
-    /// Creates the slot that stores the velocity of a body.
+    /// Creates the memory slot for the velocity of a body.
     pub(super) fn of<M: Model>(body: &M::Body<f64>) -> Self {
         let [x, y, spin] = M::coordinates(body);
         Self([x, y, spin, 0.0])
@@ -40,7 +40,8 @@ impl BodySlot {
 pub(super) struct ContactBlock {
     i: [u32; LANES],
     j: [u32; LANES],
-    /// Mass ratio g_i of contacts between grains; surface speed along the tangent of contacts with fixed bodies, m/s.
+    /// For contacts between grains, the mass ratio g_i = m_ij/m_i; for contacts with fixed bodies, the speed of the
+    /// body's surface along the tangent, m/s.
     share_or_speed: [f64; LANES],
     normal: [[f64; LANES]; 2],
     shifted_impulse: [f64; LANES],
@@ -50,8 +51,8 @@ pub(super) struct ContactBlock {
 }
 
 impl ContactBlock {
-    /// Creates the block of up to four rows, each given with the slots of its grains and its mass ratio g_i or surface
-    /// speed. Idle lanes use the first slot.
+    /// Creates the block of up to four rows (the data of one contact each). Each row is given with the slots that store
+    /// the velocities of its grains, and with its mass ratio g_i or surface speed. Idle lanes use the first slot.
     pub(super) fn of<'a, M: Model>(
         rows: impl Iterator<Item = (&'a Row<M>, [u32; 2], f64)>,
     ) -> Self {
@@ -77,7 +78,7 @@ impl ContactBlock {
         block
     }
 
-    /// Copies the impulses from the block to its rows.
+    /// Copies the impulses from the block to the rows of its contacts.
     pub(super) fn store<'a, M: Model>(&self, rows: impl Iterator<Item = &'a mut Row<M>>) {
         for (lane, row) in rows.enumerate() {
             row.shifted_impulse = self.shifted_impulse[lane];
@@ -133,8 +134,8 @@ fn gather<S: Simd, M: Model>(
     M::from_coordinates([x, y, spin])
 }
 
-/// Transposes four vectors. Slots are read and written whole, in one access each: a read of a single number would have
-/// to wait until the previous block has written the whole slot.
+/// Transposes four vectors of four numbers. Slots are read and written whole, in one access each: a read of a single
+/// number would have to wait until the previous block has written the whole slot.
 #[inline(always)]
 fn transposed<S: Simd>([a, b, c, d]: [f64x4<S>; LANES]) -> [f64x4<S>; LANES] {
     let (ac, bd) = (a.zip_low(c), b.zip_low(d));
@@ -229,7 +230,7 @@ pub(super) fn squared_error<S: Simd, M: Model>(
     sum(sum_of_lanes.to_array())
 }
 
-/// Returns the sum over all SIMD lanes.
+/// Returns the sum of the numbers of all SIMD lanes.
 #[inline(always)]
 pub(super) fn sum([a, b, c, d]: [f64; LANES]) -> f64 {
     (a + b) + (c + d)

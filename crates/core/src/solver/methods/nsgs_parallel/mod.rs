@@ -26,22 +26,23 @@ use crate::solver::problem::{
 use crate::solver::settings::SolverSettings;
 use crate::threads;
 
-/// Number of blocks of four contacts from which tiles are distributed over threads: 60 µs of work per sweep. With half
-/// as many blocks two threads were slower than one thread.
+/// Minimum number of blocks of four contacts for which several threads are used. A sweep over this number of blocks
+/// takes 60 µs. With half as many blocks two threads were slower than one thread.
 const WORTH_THREADS: usize = 4096;
 
-/// Memory that is reused for the next step.
+/// Work memory of the method, which is reused for the next step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BlockMemory {
     layout: TileLayout,
     /// Change of the impulses of each tile's contacts in a sweep.
     changes: Vec<ImpulseChange>,
-    /// For each tile, a sum over its contacts: of squared errors or of squared impulses, (N·s)².
+    /// For each tile, a sum over its contacts: squared errors of the natural map, or squared impulses, (N·s)².
     sums: Vec<f64>,
 }
 
 impl BlockMemory {
-    /// Returns the sum of `add_up` over all blocks: tile by tile, then the blocks between tiles.
+    /// Returns the sum of the results of `add_up` for all blocks: tile by tile, then the blocks of contacts between
+    /// tiles.
     fn sum(
         &mut self,
         threads: bool,
@@ -62,7 +63,7 @@ pub(super) fn solve<M: Model>(
     solve_at::<M>(Level::new(), problem, memory, settings)
 }
 
-/// Solves a prepared problem with the vector instructions of `level`.
+/// Solves a prepared problem by sweeps with the vector instructions of `level`.
 fn solve_at<M: Model>(
     level: Level,
     problem: &mut StepProblem<M>,
@@ -75,11 +76,11 @@ fn solve_at<M: Model>(
     }
 }
 
-/// A problem whose tiles and colours are valid: all grains of its rows exist, and no two tiles and no two contacts of a
-/// colour share a grain.
+/// A contact problem arranged in tiles and colours that are valid: all its grains exist, and no two tiles and no two
+/// contacts of a colour share a grain.
 ///
-/// Until [`Tiled::store`] is called, the present impulses and velocities are in the blocks and in their slots for
-/// bodies, and the problem has old ones.
+/// The present impulses and velocities are stored in blocks of four contacts and in slots for bodies. Until
+/// [`Tiled::store`] copies them back, `problem` has old impulses and velocities.
 struct Tiled<'a, M: Model> {
     level: Level,
     /// True if there are several tiles, several threads, and enough work for several threads.
@@ -91,7 +92,8 @@ struct Tiled<'a, M: Model> {
 }
 
 impl<'a, M: Model> Tiled<'a, M> {
-    /// Arranges the contacts of a problem in blocks. Returns `None` if the problem's tiles or colours are not valid.
+    /// Arranges the contacts of a problem in blocks of four. Returns `None` if the problem's tiles or colours are not
+    /// valid.
     fn new(
         level: Level,
         problem: &'a mut StepProblem<M>,
@@ -184,7 +186,8 @@ impl<'a, M: Model> Tiled<'a, M> {
         blocks.iter().zip(places).map(of_block).sum()
     }
 
-    /// Copies the impulses from the blocks to the rows, and the velocities from the slots to the bodies.
+    /// Copies the present impulses from the blocks to the rows of the problem, and the velocities from the slots to its
+    /// bodies.
     fn store(&mut self) {
         self.memory.layout.store::<M>(self.problem);
     }
@@ -224,7 +227,7 @@ fn for_each_tile<T: Send>(
     }
 }
 
-/// Marks a slot that has no grain, and a grain that has no slot.
+/// Marks a velocity slot that has no grain, and a grain that has no slot.
 const NOBODY: u32 = u32::MAX;
 
 /// A tile: contacts whose grains are in no other tile, so that one thread can solve them.
@@ -234,47 +237,49 @@ struct ContactTile {
     blocks: usize,
     /// Number of the tile's blocks whose contacts are with fixed bodies; these blocks come first.
     fixed: usize,
-    /// Number of slots, one per grain of the tile and one for idle lanes.
+    /// Number of velocity slots: one per grain of the tile, and one for idle SIMD lanes.
     slots: usize,
 }
 
-/// Slot, tile and last colour of a grain while blocks are created.
+/// Slot, tile and last colour of a grain, recorded while the blocks of contacts are created.
 #[derive(Clone, Copy, Debug)]
 struct GrainMark {
     slot: u32,
     /// Number of the grain's tile, from 1; 0 for the contacts between tiles.
     tile: u32,
-    /// The last colour that has a contact of the grain.
+    /// Number of the last colour in which a contact of the grain was found.
     colour: u32,
 }
 
 const UNSEEN: GrainMark = GrainMark { slot: NOBODY, tile: 0, colour: 0 };
 
-/// The tile that blocks of contacts are being added to.
+/// The tile to which blocks of contacts are being added.
 #[derive(Clone, Copy)]
 struct BlockPlace {
     /// Number of the tile, from 1; 0 for the contacts between tiles.
     tile: u32,
-    /// Index of the tile's first slot, from which the slot indices of its blocks count.
+    /// Index of the tile's first velocity slot, from which the slot indices in its blocks are counted.
     first_slot: u32,
 }
 
-/// The contacts and bodies of a problem, arranged in blocks and slots. The memory is reused for the next step.
+/// The contacts of a problem arranged in blocks of four, and the velocities of its bodies arranged in slots. The memory
+/// is reused for the next step.
 #[derive(Clone, Debug, Default)]
 struct TileLayout {
-    /// Tiles in the order of their blocks and slots.
+    /// Tiles, in the order in which their blocks and slots are stored.
     tiles: Vec<ContactTile>,
-    /// Blocks of contacts tile by tile, and within a tile colour by colour. Their slot indices count from the tile's
-    /// first slot. The blocks between tiles come last; their slot indices count from the first of all slots.
+    /// Blocks of contacts tile by tile, and within a tile colour by colour. Their slot indices are counted from the
+    /// tile's first slot. The blocks of contacts between tiles come last; their slot indices are counted from the first
+    /// of all slots.
     blocks: Vec<ContactBlock>,
-    /// Number of blocks between tiles whose contacts are with fixed bodies.
+    /// Number of blocks that belong to no tile and whose contacts are with fixed bodies.
     fixed_between: usize,
     /// Velocities of the bodies tile by tile, in the order in which blocks first use them. The first slot of a tile is
     /// a placeholder for idle lanes.
     slots: Vec<BodySlot>,
-    /// For each block, the range of its row numbers in the problem.
+    /// For each block, the range of the row numbers of its contacts in the problem.
     places: Vec<Range<u32>>,
-    /// For each slot, the index of its grain, or [`NOBODY`].
+    /// For each velocity slot, the index of its grain, or [`NOBODY`].
     grains: Vec<u32>,
     marks: Vec<GrainMark>,
     colours: u32,
@@ -296,8 +301,8 @@ impl TileLayout {
         visit(Blocks { all: between, fixed: *fixed_between }, slots)
     }
 
-    /// Arranges the contacts of a problem in blocks. Returns `None` if a grain does not exist, or if two tiles or two
-    /// contacts of a colour share a grain.
+    /// Arranges the contacts of a problem in blocks of four. Returns `None` if a grain does not exist, or if two tiles
+    /// or two contacts of a colour share a grain.
     fn fill<M: Model>(&mut self, problem: &StepProblem<M>) -> Option<()> {
         self.tiles.clear();
         self.blocks.clear();
@@ -355,8 +360,8 @@ impl TileLayout {
         Some(fixed_blocks)
     }
 
-    /// Adds the blocks of a colour. `rows` are the rows of the colour, numbered from `first`, each with its mass ratio
-    /// g_i (pairs of grains) or its surface speed (fixed bodies, m/s).
+    /// Adds the blocks of a colour. `rows` are the rows (the data of one contact each) of the colour, numbered from
+    /// `first`, each with its mass ratio g_i (pairs of grains) or its surface speed (fixed bodies, m/s).
     fn add<'a, M: Model>(
         &mut self,
         rows: impl ExactSizeIterator<Item = (&'a Row<M>, f64)> + Clone,

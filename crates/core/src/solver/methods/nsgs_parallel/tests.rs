@@ -1,5 +1,5 @@
-//! Tests of Gauss–Seidel by tiles with random contact problems: for any vector registers and any number of threads the
-//! result is bitwise the same as for one contact after the other.
+//! Tests of Gauss–Seidel by tiles with random contact problems: with any width of the vector registers and any number
+//! of threads the result is bitwise the same as if one contact is solved after the other.
 
 use rayon::ThreadPoolBuilder;
 
@@ -12,7 +12,8 @@ use crate::solver::settings::StopTest;
 use crate::solver::{Line, Plane, SmoothPlane, SpinningPlane};
 use crate::world::FrictionCone::{self, Compressive, Shifted};
 
-/// Returns a problem of random contacts between bodies with similar numbers, sorted by tiles and colours.
+/// Returns a problem with random contacts, sorted by tiles and colours. The indices of the two bodies of a contact
+/// differ by less than 64.
 fn problem<M: Model>(
     seed: u64,
     bodies: usize,
@@ -26,7 +27,7 @@ fn problem<M: Model>(
     problem
 }
 
-/// Returns the bits of all impulses, then of all velocities.
+/// Returns the bit patterns of all impulses, then of all velocities.
 fn bits<M: Model>(problem: &StepProblem<M>) -> Vec<u64> {
     let impulses =
         problem.rows().flat_map(|(_, row)| [row.shifted_impulse, row.tangential_impulse]);
@@ -34,7 +35,7 @@ fn bits<M: Model>(problem: &StepProblem<M>) -> Vec<u64> {
     impulses.chain(velocities).map(f64::to_bits).collect()
 }
 
-/// Returns settings for exactly `max_sweeps` sweeps: their stopping test is never met.
+/// Returns settings for exactly `max_sweeps` sweeps, with a stopping test that is never met.
 fn sweeps(max_sweeps: u32) -> SolverSettings {
     let stop = StopTest::ImpulsePerMass;
     SolverSettings { stop, tolerance: 0.0, max_sweeps, ..SolverSettings::SWEEPS }

@@ -19,9 +19,9 @@ pub(in super::super) struct ClosedBond {
 }
 
 impl Shocks {
-    /// Changes a problem so that it continues from its shocks. Bodies begin with their velocities after the shocks, v⁺.
-    /// Each contact may close the gap that the pair would have if its bodies had moved with their present velocities
-    /// since the beginning of the step.
+    /// Changes the contact problem of a step so that it continues from the shocks. Bodies begin with their velocities
+    /// after the shocks, v⁺. Each contact may close the gap that the pair would have if its bodies had moved with their
+    /// present velocities since the beginning of the step.
     ///
     /// **Grains that pass by.** The constraint on a gap uses the speed along the normal at the beginning of the step,
     /// so it stops a grain that would have passed another grain. If the constraint would act although the two grains do
@@ -71,8 +71,8 @@ impl Shocks {
         }
     }
 
-    /// Returns the closing speed that a contact may have after the shocks, m/s, relative to a moving wall, and its new
-    /// normal if the normal has changed. Returns `None` if neither has changed.
+    /// Returns the closing speed that a contact may have after the shocks, m/s, relative to a moving wall, and the new
+    /// contact normal if the normal has changed. Returns `None` if neither the speed nor the normal has changed.
     fn closing_left<M: Model>(
         &self,
         at: &ShockInputs<'_, M>,
@@ -108,16 +108,17 @@ impl Shocks {
         (changes || normal.is_some()).then_some((allowed, normal))
     }
 
-    /// Returns the capture speed with which a row was prepared, and the capture speed for the rest of the step after a
-    /// shock has closed the pair's bond, m/s. Returns `None` if no shock has closed the bond.
+    /// Returns two capture speeds (opening speeds that the bond of a contact can stop), m/s: the value before the
+    /// shocks, and the value for the rest of the step after a shock has closed the bond. Returns `None` if no shock has
+    /// closed the bond.
     fn capture_left<M: Model>(&self, problem: &StepProblem<M>, number: usize) -> Option<[f64; 2]> {
         let before = *problem.rows.captures.get(number)?;
         let ClosedBond { part, .. } = self.closed(number)?;
         Some([before, part * problem.law.capture_speed()])
     }
 
-    /// Returns the rest of the step for the bond of a row, if a shock closed that bond. A pair that touched before the
-    /// shock and was bonded keeps its bond unchanged.
+    /// Returns the bond of contact `number` if a shock closed this bond; otherwise `None`. A pair that touched and was
+    /// bonded before the shock keeps its bond unchanged.
     pub(in super::super) fn closed(&self, number: usize) -> Option<ClosedBond> {
         let pair = self.pairs.get(number)?;
         let closes = pair.impulse > 0.0 && (pair.touch == Touch::Met || !pair.is_bonded);
@@ -127,17 +128,17 @@ impl Shocks {
         })
     }
 
-    /// True if the impulse of the step on a row acts only after a meeting. A pair that met at the time t, and whose
-    /// grains were not struck later, has the gap 0 at t. So its gap at the end of the step is (Δt − t) v^n, minus ½a(Δt
-    /// − t)² if its grain falls.
+    /// True if the impulse on contact `number` from the solution of the step, without shocks, acts only after the pair
+    /// has met within the step. A pair that met at the time t, and whose grains were not struck later, has the gap 0 at
+    /// t. So its gap at the end of the step is (Δt − t) v^n, minus ½a(Δt − t)² if its grain falls.
     fn acts_late(&self, number: usize, i: usize, j: Option<usize>) -> bool {
         let pair = &self.pairs[number];
         pair.touch == Touch::Met && pair.impulse > 0.0 && self.since(i, j) <= pair.struck_at
     }
 
-    /// Records the results of a solved step. The impulse λ of the step on a pair that met at the time t moves its
-    /// grains only for the rest of the step, and not by Δt·λ. Also adds the impulses of shocks and step to the sums of
-    /// the contacts.
+    /// Records the results of a solved step. If a pair met at the time t, the impulse λ of the step on it moves its
+    /// grains only for the rest of the step: by (Δt − t)·λ, and not by Δt·λ. Also adds the impulses of shocks and step
+    /// to the sums of the contacts.
     pub(in super::super) fn finish<M: Model>(
         &mut self,
         problem: &StepProblem<M>,
@@ -172,8 +173,8 @@ impl Shocks {
         }
     }
 
-    /// Moves each grain by the part of its displacement in the step that its last velocity does not give, because of
-    /// shocks and free fall.
+    /// Moves each grain by the difference, caused by shocks and free fall, between its displacement in the step and Δt
+    /// times its velocity at the end.
     pub(in super::super) fn shift(&self, world: &mut World) {
         let grains = &mut world.grains;
         for (index, body) in self.bodies.iter().enumerate() {

@@ -30,8 +30,8 @@
 //! steps the fall is divided. The displacement by the last velocity alone would exceed the parabola by Δt v^n − ½aΔt²,
 //! so this excess is subtracted. If the grain meets a fixed body at the time t, the closing velocity is u = v_n + a_n
 //! t. The step adds the gravity of the whole step to v⁺, but only gravity after the meeting should count. So v⁺ is
-//! chosen such that v⁺ + a_n t = −ρu. Works are computed with the speeds at the meeting. A supported grain counts as
-//! held, as far as this is known before the step is solved, and has u = v_n.
+//! chosen such that v⁺ + a_n t = −ρu. Works are computed with the speeds at the meeting. A grain that is known to be
+//! supported before the step is solved does not fall, so u = v_n.
 //!
 //! **Bonds.** A bond with the stretch s gives the energy C₀s back before its pair meets: u² = v_n² + 2C₀s/m_ij.
 //!
@@ -69,14 +69,14 @@ use crate::solver::{
 };
 use crate::world::World;
 
-/// Largest number of passes in a step. Contacts that still close after the last pass are stopped by the step, without a
-/// bounce. With a smaller value, restitution is lost if many grains meet in a step; with a larger value, a wedge of
-/// grains that bounces ever faster costs much time.
+/// Largest number of passes in the calculation of a step's shocks. Contacts that still close after the last pass are
+/// stopped by the solution of the step, without a bounce. With a smaller value, too few contacts bounce if many grains
+/// meet in a step; with a larger value, a wedge of grains that bounces ever faster costs much time.
 const MOST_PASSES: u32 = 24;
 
-/// Closing speed, divided by the fastest shock of the step, above which contacts of struck grains are struck again.
-/// With a smaller value, clusters of touching grains need more passes; with a larger value, restitution is lost in
-/// clusters.
+/// Closing speed, divided by the fastest shock of the step, above which contacts of grains that were struck before are
+/// struck again. With a smaller value, clusters of touching grains need more passes; with a larger value, some of their
+/// contacts do not bounce.
 const LEAST_AGAIN: f64 = 1e-3;
 
 /// Speed of approach below which a grain rests on a body that it touches, in units of the speed that gravity adds in a
@@ -84,15 +84,16 @@ const LEAST_AGAIN: f64 = 1e-3;
 /// just come down would not have the speed of its fall.
 const RESTS_BELOW: f64 = 2.0;
 
-/// Fraction of Δt within which meetings count as simultaneous, so that symmetric motions stay symmetric.
+/// Difference in time, divided by Δt, up to which meetings count as simultaneous, so that symmetric motions stay
+/// symmetric.
 const SAME_MOMENT: f64 = 1e-6;
 
-/// Stands for a time that is never reached.
+/// Value for a time that is never reached.
 const NEVER: f64 = f64::INFINITY;
 
-/// Computes the shocks of a step. Afterwards the bodies of the problem begin with the velocities v⁺ after the shocks.
-/// Returns the works and reports of the shocks, or `None` without shocks. Their `gravity_work` contains, with a minus
-/// sign, the work of gravity before meetings, because the step counts this work again.
+/// Computes the shocks of a step. Afterwards the bodies of the contact problem begin with the velocities v⁺ after the
+/// shocks. Returns the works and reports of the shocks, or `None` without shocks. Their `gravity_work` contains, with a
+/// minus sign, the work of gravity before meetings, because the solution of the step counts this work again.
 pub(super) fn pass<M: Model>(
     stage: &mut Stage<'_, M>,
     shocks: &mut Shocks,
@@ -123,7 +124,7 @@ pub(super) fn pass<M: Model>(
     result
 }
 
-/// State of a pair of bodies during the shocks.
+/// State of a pair of bodies in the calculation of a step's shocks.
 #[derive(Clone, Copy, Debug)]
 struct ShockPair {
     contact: Contact,
@@ -132,44 +133,45 @@ struct ShockPair {
     stretch: f64,
     /// Unit normal n, from j to i: at the beginning of the step, or at the last meeting of the pair.
     normal: DVec2,
-    /// Gap along n at the beginning of the step, m. After a meeting: the value with which the gap is 0 at the time of
-    /// the meeting.
+    /// Gap along n at the beginning of the step, m. After a meeting: the value for which [`ShockPair::gap_at`] is 0 at
+    /// the time of the meeting.
     gap: f64,
     /// Change of the gap because shocks have changed the paths of the two grains, m.
     shift: f64,
     /// Normal velocity v_n of the pair, relative to the wall if the other body is a moving wall, m/s.
     speed: f64,
-    /// Acceleration a_n along n of a grain that falls on a fixed body, m/s²; 0 for other pairs.
+    /// Acceleration a_n along n of a grain that falls on a fixed disc or a boundary, m/s²; 0 for other pairs.
     acceleration: f64,
     touch: Touch,
     next: NextImpact,
-    /// Role of the pair in the present pass.
+    /// Role of the pair in the present pass: struck, connected to a struck pair, or neither.
     role: Role,
-    /// Sum of the normal impulses of the pair's shocks, divided by the effective mass, m/s.
+    /// Sum of the normal impulses of the pair's shocks so far, divided by the effective mass, m/s.
     impulse: f64,
-    /// Time of the pair's last shock since the beginning of the step, s.
+    /// Time of the pair's last shock, counted from the beginning of the step, s.
     struck_at: f64,
-    /// Velocity that gravity had given the pair by the time of this shock, m/s.
+    /// Velocity that gravity had given the pair by the time of its last shock, m/s.
     gained: f64,
 }
 
-/// Whether and since when a pair touches.
+/// Contact state of a pair: apart, touching since the beginning of the step, or touching since a meeting within the
+/// step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Touch {
     Apart,
     FromStart,
-    /// The pair met within the step: it closed a gap.
+    /// The pair had a gap, and met within the step.
     Met,
 }
 
-/// Next impact of a pair.
+/// Next impact of a pair in the present step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum NextImpact {
     /// The next impact is not known: it was not searched for yet, or the velocities of the two bodies have changed
     /// since.
     Unknown,
     Never,
-    /// The pair touches, and closes from this time on, s.
+    /// The pair touches, and closes from this time (s) on.
     Closes(f64),
     /// The pair has a gap that closes: it meets at the time `secs` (s) with the normal `normal`.
     Meets {
@@ -178,7 +180,7 @@ enum NextImpact {
     },
 }
 
-/// Role of a pair in a pass.
+/// Role of a pair in a pass of the calculation of shocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Role {
     Apart,
@@ -188,13 +190,13 @@ enum Role {
     Struck,
 }
 
-/// State of a grain during the shocks.
+/// State of a grain in the calculation of a step's shocks.
 #[derive(Clone, Copy, Debug)]
 struct ShockBody {
     /// Offset −Σ t Δv of the grain's path by its shocks, each a change of velocity Δv at a time t, m. One entry per
     /// degree of freedom.
     offset: [f64; 3],
-    /// Change of this grain's path offset in the last pass, m.
+    /// Change of the grain's `offset` in the last pass along x and y, m.
     shift: DVec2,
     /// Time of the grain's last shock, s.
     since: f64,
@@ -204,15 +206,16 @@ struct ShockBody {
     struck_in_pass: bool,
     /// Change of the grain's velocity by gravity in the whole step, m/s.
     gain: [f64; 3],
-    /// True if the grain rests on a body or is bonded, and so does not fall freely.
+    /// True if the grain does not fall freely, because it rests on a body or is bonded.
     is_supported: bool,
-    /// Displacement in the step that the velocity at its end does not give, m: −½aΔt² for a freely falling grain, and
-    /// −Σ tλ of the step's impulses on pairs that met at a time t.
+    /// Displacement of the grain in the step minus Δt times its velocity at the end, m: −½aΔt² for a freely falling
+    /// grain, and −Σ tλ for the impulses λ of the step on pairs that met at a time t.
     rest_of_way: DVec2,
-    /// Next grain on the way to the representative grain of the cluster. A cluster is a set of grains that are struck
-    /// together.
+    /// Next grain on the path to the representative grain of this grain's cluster. A cluster is a set of grains that
+    /// are struck together.
     root: u32,
-    /// For the representative grain of a cluster: the time of the cluster's shock, s, and the number of its rows.
+    /// Only for the representative grain of a cluster: the time of the cluster's shock, s, and the number of the
+    /// cluster's contacts.
     cluster: (f64, u32),
 }
 
@@ -222,14 +225,14 @@ pub(super) struct Shocks {
     numbers: StepNumbers,
     pairs: Vec<ShockPair>,
     bodies: Vec<ShockBody>,
-    /// Impulses of the shocks, with the row of each, and impulses of the step, one per contact. Each is stored with its
-    /// normal.
+    /// Impulses of the shocks, each with the number of its contact and the contact normal. `of_step` contains the
+    /// impulses of the step, one for each contact, with the contact normals.
     of_shocks: Vec<(usize, (DVec2, Impulse))>,
     of_step: Vec<(DVec2, Impulse)>,
-    /// Largest error of a contact in a step that is solved to its residual tolerance, N·s.
+    /// Largest error of a contact's impulse in a step that is solved to its residual tolerance, N·s.
     least: f64,
-    /// Smallest effective mass times closing speed (N·s) and smallest closing speed (m/s) with which a touching contact
-    /// is struck. Both exceed the errors of solves.
+    /// Smallest product of effective mass and closing speed with which a touching contact is struck, N·s.
+    /// `least_closing` is the smallest closing speed, m/s. Both exceed the errors of solves.
     least_momentum: f64,
     least_closing: f64,
     /// Closing speed of the fastest shock of the step so far, m/s.
@@ -243,15 +246,15 @@ struct ShockInputs<'a, M: Model> {
     candidates: &'a Candidates,
 }
 
-/// Returns the grains of row `number`: grain i, and grain j unless the other body is fixed.
+/// Returns the grains of contact `number`: grain i, and grain j unless the other body is a fixed disc or a boundary.
 fn grains<M: Model>(problem: &StepProblem<M>, number: usize) -> (usize, Option<usize>) {
     let row = problem.rows.get(number);
     let is_pair = number >= problem.rows.fixed.len();
     (row.i as usize, is_pair.then_some(row.j as usize))
 }
 
-/// Returns the scale of a problem's residual: the norm ‖m_n (v_n^free + term)‖ of the normal impulses that would stop
-/// the free velocities, N·s. `term` is the term that the contact law adds to v_n.
+/// Returns the number by which the residual of a contact problem is divided, N·s: the norm ‖m_n (v_n^free + term)‖ of
+/// the normal impulses that would stop the free velocities. `term` is the term that the contact law adds to v_n.
 fn scale<M: Model>(problem: &StepProblem<M>) -> f64 {
     let mut squared = 0.0;
     for_each_row(problem, |_, row, motion| {
@@ -261,7 +264,8 @@ fn scale<M: Model>(problem: &StepProblem<M>) -> f64 {
     squared.sqrt()
 }
 
-/// Returns the normal of a row, and the impulse of a contact from the impulses `reduced` by the effective mass, m/s.
+/// Returns the normal of a contact, and its impulses (N·s). `reduced` contains these impulses divided by the effective
+/// mass, m/s.
 fn along_normal<M: Model>(row: &Row<M>, reduced: [f64; 2]) -> (DVec2, Impulse) {
     let [normal, tangential] = reduced.map(|along| row.effective_mass * along);
     (M::components(row.normal).into(), Impulse { normal, tangential })
@@ -274,8 +278,8 @@ fn along_axes<M: Model>(body: &M::Body<f64>) -> DVec2 {
 }
 
 impl ShockBody {
-    /// Creates the state of a grain that no shock has struck yet, from its velocities at the beginning of the step and
-    /// after the gravity of the whole step.
+    /// Creates the state of a grain that no shock has struck yet. `before` is its velocity at the beginning of the
+    /// step, and `free` its velocity after the gravity of the whole step.
     fn untouched<M: Model>(before: &M::Body<f64>, free: &M::Body<f64>) -> Self {
         let [before, free] = [before, free].map(M::coordinates);
         Self {
@@ -353,7 +357,7 @@ impl Shocks {
 }
 
 impl NextImpact {
-    /// Returns the time of the impact, s, or [`NEVER`].
+    /// Returns the time of the next impact, s, or [`NEVER`].
     fn secs(self) -> f64 {
         match self {
             Self::Unknown | Self::Never => NEVER,
@@ -363,7 +367,7 @@ impl NextImpact {
 }
 
 impl ShockPair {
-    /// Returns the gap along the pair's normal at a time, m. The true gap is never smaller.
+    /// Returns the gap of the pair along its normal at the time `secs` (s), m. The true gap is never smaller.
     fn gap_at(&self, secs: f64) -> f64 {
         self.gap + self.shift + secs * (self.speed + 0.5 * self.acceleration * secs)
     }

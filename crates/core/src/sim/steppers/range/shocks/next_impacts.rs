@@ -1,4 +1,4 @@
-//! Selects the pairs that are struck next, and the contacts that are struck with them.
+//! Selects the pairs that the next shocks strike, and the contacts that are struck together with them.
 
 use glam::DVec2;
 
@@ -11,7 +11,7 @@ use crate::sim::steppers::range::step_numbers::StepNumbers;
 use crate::solver::{Model, StepProblem};
 
 impl Shocks {
-    /// Finds the next impact of each pair, and returns the time of the first impact of all, s.
+    /// Finds the next impact of each pair, and returns the time of the earliest impact of all pairs, s.
     pub(super) fn find_next<M: Model>(&mut self, at: &ShockInputs<'_, M>) -> f64 {
         let mut first = NEVER;
         for number in 0..self.pairs.len() {
@@ -27,8 +27,8 @@ impl Shocks {
         first
     }
 
-    /// Returns the acceleration a_n along the normal, m/s², of a grain that falls on a fixed body and has not met it
-    /// yet; 0 for other pairs.
+    /// Returns the acceleration a_n along the normal, m/s², of a grain that falls on a fixed disc or a boundary and has
+    /// not met it yet; 0 for other pairs.
     fn acceleration<M: Model>(&self, problem: &StepProblem<M>, number: usize) -> f64 {
         let (i, j) = grains(problem, number);
         let pair = &self.pairs[number];
@@ -43,7 +43,7 @@ impl Shocks {
         along_axes::<M>(&M::from_coordinates(self.bodies[grain].gain))
     }
 
-    /// Returns the motion of the grain of row `number` relative to the other body.
+    /// Returns the motion of the grain of contact `number` relative to the other body, after the shocks so far.
     pub(super) fn course<M: Model>(
         &self,
         problem: &StepProblem<M>,
@@ -87,7 +87,7 @@ impl Shocks {
         end.flatten().is_none_or(|(_, gap)| gap <= touch)
     }
 
-    /// Returns the normal and the gap (m) of a pair at the time `secs`, s.
+    /// Returns the normal and the gap (m) of a pair at the time `secs` (s).
     pub(super) fn approach<M: Model>(
         &self,
         at: &ShockInputs<'_, M>,
@@ -98,7 +98,7 @@ impl Shocks {
         self.course(at.problem, number).approach(at.world, at.candidates, contact, secs, M::AXES)
     }
 
-    /// Returns the next impact of a pair.
+    /// Returns the next impact of contact `number` in the step.
     fn next_of<M: Model>(&self, at: &ShockInputs<'_, M>, number: usize) -> NextImpact {
         let pair = &self.pairs[number];
         let (i, j) = grains(at.problem, number);
@@ -120,7 +120,7 @@ impl Shocks {
         self.meeting(at, number, from).unwrap_or(NextImpact::Never)
     }
 
-    /// Returns the meeting of a pair after the time `from` (s), or `None` if the pair does not meet within the step.
+    /// Returns the meeting of a pair after the time `from` (s); `None` if the pair does not meet within the step.
     fn meeting<M: Model>(
         &self,
         at: &ShockInputs<'_, M>,
@@ -134,8 +134,8 @@ impl Shocks {
         Some(NextImpact::Meets { secs, normal })
     }
 
-    /// Finds the exact time at which a pair closes that touches within the tolerance. Only for pairs that are struck
-    /// alone, that is without a common grain with another pair.
+    /// Computes the exact meeting times of pairs that count as touching because their gaps are below the touch
+    /// tolerance. Only for pairs that are struck alone, that is without a common grain with another pair.
     pub(super) fn refine<M: Model>(&mut self, at: &ShockInputs<'_, M>) {
         for (number, row) in at.problem.rows() {
             let root = self.root(row.i as usize);
@@ -201,7 +201,8 @@ impl Shocks {
         }
     }
 
-    /// Returns the representative grain of a grain's cluster, the grains that are struck together.
+    /// Returns the representative grain of the cluster of `grain`. A cluster is a set of grains that are struck
+    /// together.
     pub(super) fn root(&mut self, grain: usize) -> usize {
         let mut at = grain;
         while self.bodies[at].root as usize != at {

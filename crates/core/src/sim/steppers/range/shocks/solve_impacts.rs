@@ -1,4 +1,4 @@
-//! Solution of one pass of shocks: the struck pairs form a contact problem of their own.
+//! Solution of one pass, the shocks that are computed together: the struck pairs form a contact problem of their own.
 
 use glam::DVec2;
 
@@ -10,19 +10,19 @@ use crate::solver::{
     StopTest, measure, solve, sweep,
 };
 
-/// Number of rows above which shocks are solved to the tolerance of the step and not to the smaller tolerance of
+/// Number of contacts above which shocks are solved to the tolerance of the step, and not to the smaller tolerance of
 /// [`TIGHTLY`].
 const FEW: usize = 16;
 
-/// Solver settings for shocks with few rows: a small tolerance costs almost nothing there.
+/// Solver settings for shocks with few contacts, for which a small tolerance costs almost nothing.
 const TIGHTLY: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-13, 500);
 
-/// Largest tolerance of shocks, relative to the shocks themselves. It takes effect if shocks are small compared with
-/// the velocities of the step.
+/// Largest tolerance of shocks, relative to the impulses of the shocks. It takes effect if shocks are small compared
+/// with the velocities of the step.
 const LOOSEST: f64 = 1e-3;
 
-/// Solves shocks that share grains, to the tolerance of the step. `least` is the largest error that a contact of the
-/// step may have, N·s.
+/// Solves the contact problem of shocks that share grains, to the tolerance of the step. `least` is the largest impulse
+/// error that a contact of the step may have, N·s.
 fn solve_together<M: Model>(
     part: &mut StepProblem<M>,
     memory: &mut Memory,
@@ -51,8 +51,8 @@ fn solve_together<M: Model>(
 }
 
 impl Shocks {
-    /// Fills `part` with pairs struck in this pass: if `alone` is true, the pairs that share no grain with another
-    /// struck pair, otherwise all other pairs. Returns true if there are any.
+    /// Fills the contact problem `part` with pairs struck in this pass: if `alone` is true, the pairs that share no
+    /// grain with another struck pair, otherwise all other pairs. Returns true if there are such pairs.
     pub(super) fn set_up<M: Model>(
         &mut self,
         problem: &mut StepProblem<M>,
@@ -88,8 +88,8 @@ impl Shocks {
         true
     }
 
-    /// Returns the term that the law of a shock adds to the normal velocity v_n of a row, m/s. If the pair meets, also
-    /// turns the row to the normal at the meeting.
+    /// Returns the term that the law of a shock adds to the normal velocity v_n of contact `number`, m/s. If the pair
+    /// meets within the step, also sets the contact normal to the normal at the meeting.
     fn strike_row<M: Model>(&mut self, problem: &mut StepProblem<M>, number: usize) -> f64 {
         let numbers = self.numbers;
         let mut wall_speed = problem.wall_speed(number);
@@ -123,8 +123,8 @@ impl Shocks {
         bounce + gained - wall_speed
     }
 
-    /// Solves the problem in `part`, and stores its impulses and velocities. If pairs are struck alone (`alone`), a
-    /// single sweep is exact.
+    /// Solves the contact problem in `part`, and stores its impulses and velocities. If `alone` is true, the pairs
+    /// share no grain, so a single sweep is exact.
     pub(super) fn solve<M: Model>(
         &mut self,
         problem: &mut StepProblem<M>,
@@ -189,7 +189,7 @@ impl Shocks {
         }
     }
 
-    /// Updates the gaps and speeds of all pairs of grains that were struck in this pass.
+    /// Updates the gaps and speeds of all pairs that contain a grain struck in this pass.
     pub(super) fn move_on<M: Model>(&mut self, problem: &StepProblem<M>) {
         let bodies = &self.bodies;
         let shift = |grain: usize| {
