@@ -8,7 +8,7 @@ use crate::chart::Rgb;
 /// A row of an error budget: the effect of one change of the scene on a quantity.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct CauseRow {
-    /// Group of the cause: grains, contact law or numerical method.
+    /// Group of the cause of this effect: grains, contact law or numerical method.
     pub share: Share,
     pub cause: &'static str,
     /// Description of the change, for example the new time step.
@@ -108,7 +108,7 @@ pub struct BudgetAnswer {
 /// The effect of one change of the scene on a quantity.
 #[derive(Clone, Debug)]
 pub struct BudgetEffect {
-    /// Group of the cause: grains, law or method.
+    /// Group of the cause of this effect: "grains", "law" or "method".
     pub share: &'static str,
     /// Colour of the group of causes in pictures.
     pub colour: Rgb,

@@ -39,7 +39,7 @@ impl FinishedStudy {
     }
 }
 
-/// Returns the parameters and the readings (measured numbers) of a run by name.
+/// Returns the parameters and the measured numbers of a run, each with its name.
 fn measured(config: &Config, result: &RunResult) -> MeasuredCase {
     let Config { source, parameters, solver, .. } = config;
     let at = [

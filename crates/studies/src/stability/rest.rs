@@ -87,7 +87,8 @@ const STANDING_SECS: f64 = 0.2;
 const SMALL_ROWS: usize = 4;
 /// Friction coefficient below which a pile of three equal logs slides apart: tan 15° = 2 − √3.
 const FRICTION_OF_LOGS: f64 = 0.267_949_192_431_122_7;
-/// Longest displacement of a grain at the end of a test, from which on the pile counts as sliding, in mean diameters d.
+/// Displacement of the grain that has moved farthest, at and above which a pile counts as sliding at the end of a test,
+/// in mean diameters d.
 const SLID: f64 = 0.02;
 const SLIDING_SECS: f64 = 0.2;
 /// Factors that define the range in which the friction coefficient or slope angle at which a pile slides is searched,

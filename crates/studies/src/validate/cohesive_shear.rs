@@ -6,8 +6,8 @@
 //! P in units of m g/d, η = Bond/(2P).
 //!
 //! If the contact law defines the work W that breaks a bond, there is a third number, E = W/(m γ̇² d²) with the shear
-//! rate γ̇. It is the ratio of this work to the kinetic energy with which grains pass each other. Under `range` the
-//! work is W = C₀ δ_c with the debonding distance δ_c, so E = η (δ_c/d)/I².
+//! rate γ̇. It is the ratio of this work to the kinetic energy with which grains pass each other. With the stepper
+//! `range` the work is W = C₀ δ_c with the debonding distance δ_c, so E = η (δ_c/d)/I².
 
 use super::experiment::*;
 use super::fit::rank_correlation;

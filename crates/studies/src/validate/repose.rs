@@ -32,7 +32,8 @@ const DRUM: f64 = 0.0;
 const INCLINE: f64 = 1.0;
 /// Simulated time from which on the slope in the drum is measured, s. The drum has then turned by three radians.
 const STEADY_SECS: f64 = 1.5;
-/// Displacement of the centre of mass along the tilted plane from which on a layer counts as flowing, in diameters.
+/// Displacement of its centre of mass along the tilted plane at which a layer of grains counts as flowing, in
+/// diameters.
 const FLOWN: f64 = 0.5;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
