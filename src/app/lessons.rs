@@ -125,8 +125,8 @@ pub const LESSONS: [Lesson; 7] = [
         watch: if IN_BROWSER {
             "One pile twice, with the same cohesion. Only the time step Δt of the solver differs: 0.1 ms and 5 ms."
         } else {
-            "One pile twice, with the same cohesion. Only the time step Δt of the solver differs: 0.1 ms and 5 ms. Idle \
-             cores compute other piles with the same settings: thin lines in the plot, once they are there."
+            "One pile twice, with the same cohesion. Only the time step Δt of the solver differs: 0.1 ms and 5 ms. The \
+             slump Δy is the drop of the mean height, divided by that height. Thin lines will be other initial states."
         },
         question: Some(Question {
             text: "Will both piles slump alike?",
@@ -135,7 +135,7 @@ pub const LESSONS: [Lesson; 7] = [
             result: predictions::two_time_steps,
         }),
         learnt: "Long steps act like glue: in each step cohesion stops grains that separate at up to Bond·g·Δt, 0.02 m/s at \
-                 0.1 ms and 1 m/s at 5 ms.",
+                 0.1 ms and 1 m/s at 5 ms. Shorter steps are more accurate.",
         worlds: |base| two_time_steps(base, 20.0),
         ..PILE
     },
@@ -176,8 +176,8 @@ pub const LESSONS: [Lesson; 7] = [
             rows: predictions::last_rows,
             result: predictions::unsolved_steps,
         }),
-        learnt: "Unsolved steps are an error that looks like weaker glue. Here it works against the glue of the long step: a slump \
-                 as in lesson 1 at 0.1 ms is two errors that cancel.",
+        learnt: "Unsolved steps are an error that looks like weaker glue. Here it happens to cancel the glue of the long step: five \
+                 sweeps slump like the short step of lesson 1, but by two errors.",
         worlds: |base| {
             let base = base.with_bond(20.0).over(5e-3);
             vec![sweeps(base, 5), sweeps(base, 40), base]

@@ -48,19 +48,17 @@ pub(super) fn last_rows(frame: &LiveFrame) -> Option<Vec<Observables>> {
     last.map(|row| row.filter(ended)).collect()
 }
 
-/// Returns the observables of the last step with the longest Δt and of the last step of the run; `None` until the pile
-/// was watched for [`WATCHED_SECS`] with a shorter Δt. While a slider is dragged, a few steps have a Δt between the
-/// two.
+/// Returns the observables of the last step with the first Δt of the run and of the last step of the run; `None` until
+/// the pile was watched for [`WATCHED_SECS`] with a shorter Δt. While a slider is dragged, a few steps have other values
+/// of Δt.
 pub(super) fn rows_around_change(frame: &LiveFrame) -> Option<Vec<Observables>> {
     let curve = &frame.worlds.first()?.curve;
     let last = *curve.last()?;
     let taken = || curve.rows().filter(|row| row.step > 0);
-    let longest_secs = taken().map(|row| row.time_step_secs).fold(last.time_step_secs, f64::max);
-    let is_before = |row: &&Observables| {
-        row.time_step_secs == longest_secs && longest_secs > last.time_step_secs
-    };
-    let before = *taken().filter(is_before).last()?;
-    (last.time_secs >= before.time_secs + WATCHED_SECS).then(|| vec![before, last])
+    let first_secs = taken().next()?.time_step_secs;
+    let before = *taken().filter(|row| row.time_step_secs == first_secs).last()?;
+    let was_watched = last.time_secs >= before.time_secs + WATCHED_SECS;
+    (was_watched && last.time_step_secs < first_secs).then(|| vec![before, last])
 }
 
 /// Evaluates the question of lesson 1: does the pile slump alike with two time steps?

@@ -213,7 +213,7 @@ fn a_heap_has_the_slope_and_the_base_of_its_triangle() {
 }
 
 /// Command that repeats the calibrations of [`calibrations_of_piles_contain_the_parameters_that_made_their_targets`].
-const TEST: &str = "cargo test --release --test program calibrations_of_piles -- --ignored";
+pub const TEST: &str = "cargo test --release --test program calibrations_of_piles -- --ignored";
 const GRAINS: usize = 60;
 const RUNS: usize = 100;
 /// Number of initial states that are simulated at each point (μ, Bond), and how many of them each calibration uses.
@@ -288,7 +288,7 @@ fn calibrations_of_piles_contain_the_parameters_that_made_their_targets() {
     }
     if let Ok(path) = std::env::var("SLUMP_REPORT") {
         let report = serde_json::json!({
-            "program": "slump", "test": TEST, "grains": GRAINS, "mu": TRUTH[0], "bond": TRUTH[1], "box": BOX,
+            "program": "slump", "command": TEST, "grains": GRAINS, "mu": TRUTH[0], "bond": TRUTH[1], "box": BOX,
             "runs": RUNS * STATES[1], "states_of_targets": TARGET_STATES[1],
             "contained": contained, "largest_share": largest, "tries": tries,
         });

@@ -261,6 +261,7 @@ fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
     let mean = summary.band.at(time_secs);
     let of = if count < planned { format!("{count} of {planned}") } else { count.to_string() };
     match (mean, summary.settling) {
+        (Some(_), _) if time_secs == 0.0 => format!("other piles: {of} computed"),
         (Some((mean, half)), _) if half.is_finite() => {
             // Half the width of the interval is shown with two digits, or with one digit if it is below 0.01.
             let decimals = if half >= 0.1 { 2 } else { 3 };
@@ -323,5 +324,6 @@ mod tests {
         assert_eq!(said(&told(&[], Some((2, 0.5))), 0.0), "other piles: making pile 2 of 3");
         assert_eq!(said(&told(&[], None), 0.0), "other piles: none yet");
         assert_eq!(said(&told(&[0.25], None), 9.0), "other piles end earlier");
+        assert_eq!(said(&told(&[0.25], None), 0.0), "other piles: 1 of 3 computed");
     }
 }

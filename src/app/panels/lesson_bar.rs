@@ -9,6 +9,7 @@ use crate::app::lessons::{LESSONS, Lesson, lesson};
 use crate::app::predictions::{Prediction, Question};
 use crate::app::theme;
 use crate::app::watched_run::WatchedRun;
+use crate::number::millis_text;
 use crate::sim::Settings;
 
 /// State of the bar above the scene, which shows the present lesson.
@@ -132,6 +133,15 @@ fn prediction(
     let waits = is_there && context.run.frame.at_start() && !context.run.frame.playing;
     // This is a later run, after another run has decided the question.
     if predicted.as_ref().is_some_and(|it| it.was_right.is_some()) && is_there && !waits {
+        let run = &context.run;
+        if let (true, true, [world]) = (run.has_ended(), run.slumps(), &run.frame.worlds[..]) {
+            let row = world.snapshot.observables;
+            let step = millis_text(row.time_step_secs);
+            let slump = row.slump;
+            ui.label(format!(
+                "Computed with {step} from the start, the pile slumped by {slump:.2}."
+            ));
+        }
         ui.label(LESSONS[at].learnt);
         return;
     }

@@ -58,6 +58,8 @@ fn commands_of_documents_are_taken() {
 
 /// First words of the command that an example program writes into its report.
 const EXAMPLE: &str = "cargo run --release --example ";
+/// First words of the command that a test of the program writes into its report.
+const TEST: &str = "cargo test --release --test program ";
 
 #[test]
 fn commands_of_reports_are_taken_and_name_no_folder_of_a_machine() {
@@ -76,6 +78,10 @@ fn commands_of_reports_are_taken_and_name_no_folder_of_a_machine() {
         if let Some(example) = command.strip_prefix(EXAMPLE) {
             let name = example.split(' ').next().unwrap_or_default();
             assert!(root().join(format!("examples/{name}.rs")).is_file(), "{command}");
+            continue;
+        }
+        if command.starts_with(TEST) {
+            assert_eq!(command, crate::calibration::TEST);
             continue;
         }
         let words = command_in(&command).unwrap_or_else(|| panic!("{}: {command}", path.display()));

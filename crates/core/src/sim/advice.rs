@@ -37,7 +37,7 @@ words! {
             "the cohesion force is Bond·m·g, and g is 0; try a bond-acceleration above 0 m/s²";
         BondsOfRange = "bonds-of-range", "try the stepper range without remedies: its bonds do not depend on turning";
         BondsOfDem = "bonds-of-dem", "try the stepper dem without remedies: its bonds do not depend on turning";
-        Cohesion = "cohesion", "set cohesion = true under [physics] in the scene file";
+        Cohesion = "cohesion", "set cohesion = true in the section physics of the scene file";
     }
 }
 

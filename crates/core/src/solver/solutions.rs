@@ -40,7 +40,7 @@ pub struct SolutionSearch {
 pub struct Solution<M: Model> {
     /// The problem with the impulses and velocities of this solution under Coulomb's law.
     pub problem: StepProblem<M>,
-    /// Residual of the contact laws, dimensionless ([`residual`](super::residual)).
+    /// Residual of the contact laws, dimensionless ([`super::residual`]).
     pub residual: f64,
     /// Estimated distance of the solution's velocities from the velocities of an exact solution, m/s.
     pub velocity_error: f64,

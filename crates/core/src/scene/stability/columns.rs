@@ -18,7 +18,7 @@ pub fn column(count: usize) -> Scene {
     on_floor("column", (0..count).map(|k| disc(0.0, place(k))).collect())
 }
 
-/// Returns the scene of [`column`] turned onto the x axis, with gravity along this axis. It uses the smallest
+/// Returns the scene of [`column`](fn@column) turned onto the x axis, with gravity along this axis. It uses the smallest
 /// mechanical model: one axis, without friction and rotation.
 pub fn column_on_line(count: usize) -> Scene {
     let mut scene = column(count);

@@ -1,7 +1,7 @@
 //! Writes recordings as files for ParaView and other readers of VTK. `vtk/grains.pvd` and `vtk/contacts.pvd` are series
 //! with one `.vtp` file per frame. Grains are points with a radius. Contacts are lines from centre to centre, or from
 //! the centre to the touched point of a boundary. `fields/fields.pvd`, a separate format, is a series of images
-//! (`.vti`) of smoothed fields on a grid ([`Fields`]).
+//! (`.vti`) of smoothed fields on a grid ([`Fields`](crate::granular::Fields)).
 //!
 //! Arrays have the names of the tables' columns. Two columns that form a vector become one array (`velocity`, `normal`,
 //! `force` or `point`), because vectors of VTK have three components; the components have the names of the columns.
