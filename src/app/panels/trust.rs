@@ -1,8 +1,8 @@
 //! The verdict "Can I trust this?" on the displayed run: one word in the status bar, and a panel that gives the
 //! reasons. The panel contains a sentence, the bars of an error budget (estimated effects of initial state, contact
 //! law, time step and solver on a result), how well the steps were solved, warnings, and the mean slump of runs from
-//! other initial states. Idle cores compute the error budget after the panel was opened. They continue when the panel
-//! is closed, until the settings change.
+//! other initial states. Idle cores compute the error budget after the panel was opened. The cores continue when the
+//! panel is closed, until the settings change.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -42,8 +42,9 @@ const UNDER_WAY: &str = "Idle cores compute an error budget. The first answer ta
 
 /// Width of the names to the left of the bars, points.
 const NAMES: f32 = 150.0;
-/// Height of a bar of the error budget with its spacing, and of the bar alone, points.
+/// Height of a bar of the error budget including the space to the next bar, points.
 const ROW: f32 = 18.0;
+/// Height of a bar of the error budget without the space to the next bar, points.
 const BAR: f32 = 9.0;
 
 /// The verdict "Can I trust this?" in the status bar, and the panel with its reasons.
