@@ -20,8 +20,8 @@ pub(crate) enum Feature {
         shape: HalfSpace,
     },
     /// A segment that discs can touch from both sides. Neighbouring segments of a polyline share a corner. Only the
-    /// later segment reports a contact with this corner, and only if the corner is the nearest point of both
-    /// segments. Otherwise an inner point of one of the segments is nearer.
+    /// later segment reports a contact with this corner, and only if the corner is the nearest point of both segments.
+    /// If the corner is not the nearest point of both, an inner point of one of the two segments is nearer to the disc.
     Segment {
         /// The segment.
         shape: Segment,

@@ -28,7 +28,7 @@ pub(crate) struct Seams(pub(super) Vec<Seam>);
 /// A corner of one feature (segment or polygon) that lies on a feature of another boundary, called the other piece.
 #[derive(Clone, Debug)]
 pub(super) struct Seam {
-    /// Index of the corner in its own feature.
+    /// Index of the corner among the corners of the feature (segment or polygon) that stores it.
     pub corner: usize,
     /// The feature (half-space, segment or polygon) of another boundary on which the corner lies.
     pub other: Piece,
