@@ -13,6 +13,7 @@ const TOUCH_TOLERANCE: f64 = 1e-3;
 const RESTITUTION_THRESHOLD: f64 = 2.0;
 /// Tolerance of the solver in the preset `robust`: largest residual of a solved step.
 const TOLERANCE: f64 = 1e-8;
+/// Largest number of sweeps of the solver per step in the preset `robust`.
 const MAX_SWEEPS: u32 = 5_000;
 
 words! {
