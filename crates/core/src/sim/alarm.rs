@@ -138,8 +138,8 @@ pub(super) struct Watch {
     pub losses: Losses,
     /// True if grains were placed (at the start, or moved by the user) and no step has been taken since.
     are_placed: bool,
-    /// Largest overlap of any contact minus the travel of its grains ([`DeepestContact`]), in diameters of the smaller
-    /// disc: the minimum over the time since grains were last placed.
+    /// Overlap of the deepest contact ([`DeepestContact`]), in diameters of the smaller disc: the smallest value since
+    /// grains were last placed.
     placed_overlap: f64,
     /// Longest distance that each grain has moved in a single step so far, m.
     travels: Vec<f64>,

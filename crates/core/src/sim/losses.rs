@@ -162,9 +162,9 @@ impl Losses {
         new
     }
 
-    /// Returns the slump Δy_G (relative drop of the mean height, paper eq. 11) of all grains that are not lost: both
-    /// sums in its formula exclude lost grains. Returns NaN if all grains are lost, because the mean height of no
-    /// grains is undefined.
+    /// Returns the slump Δy_G (relative drop of the mean height; Abramian & Staron 2020, eq. 11) of all grains that are
+    /// not lost: both sums in its formula exclude lost grains. Returns NaN if all grains are lost, because the mean
+    /// height of no grains is undefined.
     pub(super) fn slump(&self, world: &World) -> f64 {
         if self.count as usize == self.lost.len() {
             return f64::NAN;

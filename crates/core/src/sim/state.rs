@@ -70,8 +70,9 @@ impl State {
         (settings.stepper.info().substeps)(&self.world, self.physics, &settings.parameters)
     }
 
-    /// Begins a step of length `time_step_secs`, s. If the step length has changed, rescales the stored impulses so
-    /// that the contact forces stay the same. Also sets the velocities of walls and the direction of gravity.
+    /// Begins a step with the time step `time_step_secs` (s). If the time step has changed, rescales the stored
+    /// impulses so that the contact forces stay the same. Also sets the velocities of walls and the direction of
+    /// gravity.
     pub(crate) fn begin(&mut self, time_step_secs: f64) {
         let before = self.time_step_of_impulses_secs;
         if time_step_secs != before {
@@ -138,8 +139,8 @@ impl State {
         self.world.periodic.map_or(0.0, |periodic| periodic.border_speed().abs())
     }
 
-    /// Moves the grains by their velocities: x^n = x^{n−1} + Δt v^n (paper eq. 12), and likewise the angles if grains
-    /// turn. Also moves walls and sheared borders, and advances the direction of gravity.
+    /// Moves the grains by their velocities: x^n = x^{n−1} + Δt v^n (Abramian & Staron 2020, eq. 12), and likewise the
+    /// angles if grains turn. Also moves walls and sheared borders, and advances the direction of gravity.
     pub(crate) fn integrate<M: Model>(&mut self, time_step_secs: f64) {
         let grains = &mut self.world.grains;
         for (position, velocity) in grains.positions.iter_mut().zip(&grains.velocities) {

@@ -1,6 +1,6 @@
-//! Registry of the remedies: optional corrections for known failures of a stepper, such as overlap. The paper's scheme
-//! uses no remedy. Each remedy has an entry in [`REMEDIES`] and a setting in [`Remedies`]; its code is in
-//! `sim::remedies`.
+//! Registry of the remedies: optional corrections for known failures of a stepper, such as overlap. The scheme of
+//! Abramian & Staron (2020) uses no remedy. Each remedy has an entry in [`REMEDIES`] and a setting in [`Remedies`]; its
+//! code is in `sim::remedies`.
 
 use crate::setting::{Group, Value, settings};
 use crate::sim::settings::stepper::Stepper;

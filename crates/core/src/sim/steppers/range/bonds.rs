@@ -42,7 +42,7 @@ const STRENGTH_OF_RESTLESS_BONDS: f64 = 0.5;
 /// increase of a load is missed; with a smaller value, errors within the solver's tolerance count as motion.
 const STANDING_IN_DEBONDING_DISTANCES: f64 = 1e-3;
 
-/// Relative decrease of a bond's bound (its largest impulse) for which the step is solved again.
+/// Smallest relative decrease of a bond's bound (its largest impulse) for which the step is solved again.
 const FALL: f64 = 1e-6;
 
 /// Data that the stepper `range` keeps from one step to the next.

@@ -46,7 +46,7 @@ const SUBSTEP_IN_BOND_TIMES: f64 = 0.4;
 const MOST_TRAVEL: f64 = 0.1;
 
 /// Largest number of substeps into which a step is divided. With more substeps, a step would no longer be comparable to
-/// a step of the requested length.
+/// a step with the requested time step.
 const MOST_SUBSTEPS: f64 = 16.0;
 
 /// Returns the distances within which the present step searches for contacts. They are sufficient if no grain becomes

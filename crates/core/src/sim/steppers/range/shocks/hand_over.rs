@@ -12,7 +12,7 @@ use crate::world::World;
 /// Bond that a shock closed within the step.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct ClosedBond {
-    /// Time from the shock to the end of the step, divided by the step length.
+    /// Time from the shock to the end of the step, divided by the time step.
     pub part: f64,
     /// Velocity that gravity had given the pair by the time of the shock, m/s.
     pub gained: f64,
