@@ -29,7 +29,8 @@ fn grain(position: DVec2, radius: f64, tone: u8) -> GrainView {
     }
 }
 
-/// Returns a heap of ten rows on a rough base. Its flanks move outwards, and its left wall still exists.
+/// Returns a heap of ten rows on a rough base. Its flanks move outwards. The snapshot contains the left wall of the box
+/// in which the heap was made.
 pub fn pile() -> Snapshot {
     let base = |k: i32| Disc { position: DVec2::new(f64::from(k) * D, 0.0), radius: D / 2.0 };
     let fixed_discs: Vec<Disc> = (-12..=12).map(base).collect();
