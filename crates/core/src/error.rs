@@ -83,7 +83,8 @@ pub enum Error {
 pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
-    /// Returns an error about the value of a field that is not allowed.
+    /// Returns an error about a field, named `field`, whose value `value` is not allowed. `allowed` describes the
+    /// allowed values.
     pub fn value(
         field: impl Into<String>,
         value: impl std::fmt::Display,
@@ -92,7 +93,7 @@ impl Error {
         Self::Value { field: field.into(), value: value.to_string(), allowed: allowed.into() }
     }
 
-    /// Returns an error about a file or folder that cannot be read or written.
+    /// Returns an error about the file or folder `path`, which cannot be read or written for the given `reason`.
     pub fn file(path: impl AsRef<Path>, reason: impl std::fmt::Display) -> Self {
         // Messages of parsers contain line breaks and end with them. The sentence of an error has no line break.
         let reason = reason.to_string().trim_end().replace('\n', " ");

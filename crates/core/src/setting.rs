@@ -163,7 +163,7 @@ pub enum Kind {
     Count,
     /// A switch that is on or off.
     Switch,
-    /// One of the listed words.
+    /// The value is one of the listed words.
     Word(&'static [Word]),
 }
 

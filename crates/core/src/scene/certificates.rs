@@ -90,8 +90,8 @@ fn gap<M: Model>(problem: &StepProblem<M>) -> (f64, f64) {
     (gap, masses.filter(|(_, touches)| *touches).map(|(mass, _)| mass).sum())
 }
 
-/// Returns the settings with which the test runs a scene: two steppers, each with four values of friction, restitution
-/// and time step.
+/// Returns the settings with which the test runs a scene, derived from the settings `settings` of the scene: two
+/// steppers, each with four combinations of friction, restitution and time step.
 fn variants(settings: Settings) -> impl Iterator<Item = Settings> {
     let steppers = [Stepper::Moreau, Stepper::Range];
     let numbers = [(0.0, 1.0), (0.2, 1.0), (0.9, 1.0), (0.5, 8.0)];

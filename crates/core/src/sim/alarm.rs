@@ -207,7 +207,8 @@ impl Watch {
     }
 
     /// Checks the state after a step, and raises alarms. Counts the grains that went through a wall or left the world
-    /// in `observables`, and excludes them from the slump.
+    /// in `observables`, and excludes them from the slump. `finite` is false if a position, a velocity or the kinetic
+    /// energy is not finite.
     pub(super) fn look(
         &mut self,
         state: &State,

@@ -158,7 +158,7 @@ impl Simulation {
         self.look()
     }
 
-    /// Clears the data that contacts keep if the last step had another stepper: the data of steppers differ.
+    /// Clears the data that contacts keep if the last step was not taken by `stepper`: steppers keep different data.
     fn become_of(&mut self, stepper: Option<Stepper>) {
         if self.last_stepper != stepper {
             self.state.contacts.forget();

@@ -150,7 +150,7 @@ impl State {
                 *position += time_step_secs * *velocity;
             }
         }
-        // Depends on the physics and not on the compiled model: grains keep turning while friction is off.
+        // This condition is not about the compiled model, because grains keep turning while friction is off.
         if self.physics.rotation {
             for (angle, spin) in grains.angles.iter_mut().zip(&grains.angular_velocities) {
                 *angle += time_step_secs * spin;

@@ -20,8 +20,8 @@ use crate::world::Grain;
 
 /// Time step while the pile settles, s. The overlaps of the grains in the initial state are proportional to it.
 const TIME_STEP_SECS: f64 = 1e-4;
-/// Speed in √(g·d) (g: gravity, d: mean diameter). A pile is at rest if all its grains have been slower than this
-/// speed for [`REST_SECS`].
+/// Largest speed of a grain in a pile at rest, in √(g·d) (g: gravity, d: mean diameter). A pile is at rest if all its
+/// grains have been slower than this speed for [`REST_SECS`].
 const REST_SPEED: f64 = 2e-4;
 const STEPS_PER_LOOK: u32 = 100;
 

@@ -215,7 +215,8 @@ enum Obstacle {
     Nothing,
 }
 
-/// Rolls a disc to one side, from disc to disc, until it meets a second support or falls off.
+/// Rolls a disc to one side, from disc to disc, until it meets a second support or falls off. Returns its position of
+/// rest, or the beginning of its fall.
 fn rolled(deposit: &Deposit, mut roll: RollingDisc) -> RollEnd {
     loop {
         let RollingDisc { radius, on, side, .. } = roll;

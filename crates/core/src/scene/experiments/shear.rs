@@ -86,8 +86,8 @@ pub fn shear_of(cell: ShearCell, pressure: f64, speed: f64) -> Scene {
 
 /// Number of columns of grains at the start in the scene `shear-periodic`.
 const COLUMNS: u32 = 16;
-/// Number of rows of grains at the start in the scene `shear-periodic`. It is even, because every other row is shifted
-/// by half a spacing and the rows repeat across the periodic borders.
+/// Number of rows of grains at the start in the scene `shear-periodic`. This number is even, because every other row is
+/// shifted by half a spacing and the rows repeat across the periodic borders.
 const ROWS: u32 = 14;
 /// Distance between the centres of neighbouring grains at the start, in diameters. It is slightly more than the
 /// largest diameter. The grains cover a fraction of 0.74 of the cell.

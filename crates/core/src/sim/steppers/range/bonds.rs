@@ -34,8 +34,8 @@ use crate::solver::{Model, RowVelocities, SolveReport, StepProblem, for_each_row
 /// them again.
 const MOST_ROUNDS: u32 = 8;
 
-/// Fraction of the strength of bonds in the search for restless bonds: a bond is restless, that is about to break, if
-/// it would break in the step with only this fraction of its strength.
+/// Fraction of the strength of bonds in the search for restless bonds: a bond counts as restless (about to break) if it
+/// would break in the step with only this fraction of its strength.
 const STRENGTH_OF_RESTLESS_BONDS: f64 = 0.5;
 
 /// Largest motion of a grain in a step that counts as rest, in debonding distances δ_c. With a larger value, the slow
