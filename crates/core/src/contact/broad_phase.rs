@@ -103,8 +103,8 @@ type GridCell = [i64; 2];
 #[derive(Clone, Debug, Default)]
 pub struct Grid {
     cells_per_metre: f64,
-    /// For each bucket b, the start of its points in `entries`: it contains `entries[starts[b] .. starts[b + 1]]`. The
-    /// number of buckets is a power of two.
+    /// For each bucket, the index in `entries` at which its points start: the points of bucket b are `entries[starts[b]
+    /// .. starts[b + 1]]`. The number of buckets is a power of two.
     starts: Vec<u32>,
     /// Indices of the points, bucket by bucket, in increasing order within a bucket.
     entries: Vec<u32>,

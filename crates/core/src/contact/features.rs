@@ -16,7 +16,7 @@ pub(crate) enum Feature {
     HalfSpace {
         /// A point of the surface, m.
         point: DVec2,
-        /// The half-space with the same normal, moved so that its surface passes through the origin.
+        /// A copy of this half-space that is moved so that its surface passes through the origin.
         shape: HalfSpace,
     },
     /// A segment that discs can touch from both sides. Neighbouring segments of a polyline share a corner. Only the

@@ -53,9 +53,9 @@ impl Seams {
         self.0.is_empty()
     }
 
-    /// Returns true if this feature (segment or polygon) reports the contact of a disc with its corner number
-    /// `corner`. The disc has its centre at `centre` (m), and the corner is the point of this feature that is nearest
-    /// to the disc.
+    /// Returns true if this feature (segment or polygon) reports the contact between a disc and corner number `corner`
+    /// of this feature. The disc has its centre at `centre` (m), and the corner is the point of this feature that is
+    /// nearest to the disc.
     pub(super) fn reports(&self, corner: usize, centre: DVec2) -> bool {
         self.0.iter().filter(|seam| seam.corner == corner).all(|seam| {
             let nearest = match &seam.other {

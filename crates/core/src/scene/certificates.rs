@@ -16,8 +16,8 @@ use crate::solver::{
 /// Largest number of grains of a tested scene. Larger scenes would take longer and show the same.
 const MOST_GRAINS: usize = 250;
 
-/// Number of steps that the test computes before the tested steps, if a scene has walls that are driven by a force. It
-/// is chosen so that these walls have reached the grains.
+/// Number of steps that the test computes before the tested steps, if a scene has walls that are driven by a force.
+/// After this number of steps these walls have reached the grains.
 const STEPS_TO_TOUCH: u64 = 120;
 
 /// The default settings of the solver for bounded friction (the friction model `tresca`).

@@ -6,7 +6,7 @@ use crate::sim::{REMEDIES, Remedies, Settings};
 use crate::solver::{Method, SolverSettings, StopTest};
 
 /// Touch tolerance (largest gap at which grains touch) of the preset `robust`, in mean diameters. If the errors of a
-/// step open a contact by less than this, the two grains still touch.
+/// step open a contact by less than this length, the two grains still touch.
 const TOUCH_TOLERANCE: f64 = 1e-3;
 /// Restitution threshold of the preset `robust`, in units of g·Δt (gravity times time step): contacts that close
 /// slower than this do not bounce. With the value 2 nearly every step has a solution.

@@ -342,8 +342,8 @@ impl Watch {
         self.add(Alarm::new(kind, observables, advice));
     }
 
-    /// Raises an alarm whose advice is a shorter time step. `longest_time_step_secs` is the longest step that would
-    /// help, s, or `None` if it is unknown.
+    /// Raises an alarm whose advice is a shorter time step. `longest_time_step_secs` is the longest time step that
+    /// would help, s, or `None` if it is unknown.
     pub(super) fn raise(
         &mut self,
         kind: AlarmKind,

@@ -175,7 +175,8 @@ impl Losses {
         if self.on_line || initial == 0.0 { 0.0 } else { (initial - heights) / initial }
     }
 
-    /// True if these data fit a world with `grains` grains: one entry per grain, and a correct number of lost grains.
+    /// True if these data fit a world with `grains` grains: each list has one entry per grain, and the number of lost
+    /// grains is equal to the count of grains that are marked as lost.
     pub(super) fn is_of(&self, grains: usize) -> bool {
         [self.from.len(), self.lost.len(), self.initial_heights.len()] == [grains; 3]
             && self.lost.iter().filter(|&&lost| lost).count() == self.count as usize

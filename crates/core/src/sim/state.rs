@@ -35,7 +35,7 @@ pub(crate) struct State {
     pub body_forces: Vec<DVec2>,
     /// True while the user drags a wall. The last entry of the world's `motions` is then the motion of this wall.
     pub is_held: bool,
-    /// Length of the time step to which the impulses in `contacts` belong, s.
+    /// Time step for which the impulses in `contacts` were computed, s.
     pub time_step_of_impulses_secs: f64,
     /// Clock that measures the computing times of contact detection and solver; it runs only during a timed step.
     #[serde(skip)]
@@ -127,7 +127,7 @@ impl State {
 
     /// Returns the speed of the fastest grain, or `fastest_wall` if that is larger, m/s. Periodic images of grains
     /// beyond a sheared border slide with the border. Two grains that meet across the border share this sliding speed,
-    /// so half of it is added.
+    /// so half of the sliding speed is added to the result.
     fn fastest_with(&self, fastest_wall: f64) -> f64 {
         let speeds = self.world.grains.velocities.iter().map(|velocity| velocity.length());
         speeds.fold(fastest_wall, f64::max) + 0.5 * self.speed_of_border()

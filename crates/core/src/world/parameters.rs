@@ -29,8 +29,8 @@ pub(crate) const MAX_SUBSTEPS: u32 = 100_000;
 /// Largest allowed number of steps of a run. Even in the smallest scene more steps would take months of computing
 /// time.
 const MOST_STEPS: f64 = 1e12;
-/// Time step, s, below which it counts as unusually small. If a run with such a time step has too many steps, the
-/// error message names the time step as the cause.
+/// Smallest usual time step, s. If a run with a smaller time step has too many steps, the error message names the time
+/// step as the cause.
 const SMALL_TIME_STEP_SECS: f64 = 1e-7;
 
 settings! {

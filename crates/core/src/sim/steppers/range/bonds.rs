@@ -209,8 +209,8 @@ impl BondLimits<'_> {
         !lowered.is_empty()
     }
 
-    /// True if no grain or wall moves at the beginning of the step, and no pair separates or slides at its end, apart
-    /// from motions below [`STANDING_IN_DEBONDING_DISTANCES`].
+    /// True if no grain or wall moves at the beginning of the step, and no pair separates or slides at the end of the
+    /// step, apart from motions below [`STANDING_IN_DEBONDING_DISTANCES`].
     fn stands<M: Model>(&self, problem: &StepProblem<M>, fastest: f64) -> bool {
         let StepNumbers { time_step_secs, debonding_distance, .. } = self.numbers;
         let still = STANDING_IN_DEBONDING_DISTANCES * debonding_distance / time_step_secs;

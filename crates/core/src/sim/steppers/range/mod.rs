@@ -192,8 +192,8 @@ pub(super) fn separate<M: Model>(state: &mut State) {
 }
 
 /// Largest opening speed that the rotation of a bonded pair may cause in a step, divided by the escape speed of the
-/// bond (the smallest opening speed after a shock that breaks the bond). With a larger value, circling pairs separate
-/// too early; with a smaller value, steps are divided in vain.
+/// bond (the smallest opening speed after a shock at which the bond breaks). With a larger value, circling pairs
+/// separate too early; with a smaller value, steps are divided in vain.
 const MOST_OF_ESCAPE_SPEED: f64 = 0.5;
 
 /// True if a bonded pair circles so fast that a step of this length would treat the rotation of the contact normal as a

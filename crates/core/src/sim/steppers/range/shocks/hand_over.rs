@@ -128,9 +128,10 @@ impl Shocks {
         })
     }
 
-    /// True if the impulse on contact `number` from the solution of the step, without shocks, acts only after the pair
-    /// has met within the step. A pair that met at the time t, and whose grains were not struck later, has the gap 0 at
-    /// t. So its gap at the end of the step is (Δt − t) v^n, minus ½a(Δt − t)² if its grain falls.
+    /// True if the pair of contact `number` meets within the step, so that the impulse from the solution of the step
+    /// (without the impulses of shocks) acts on the pair only after the meeting. A pair that met at the time t, and
+    /// whose grains were not struck later, has the gap 0 at t. So its gap at the end of the step is (Δt − t) v^n, minus
+    /// ½a(Δt − t)² if its grain falls.
     fn acts_late(&self, number: usize, i: usize, j: Option<usize>) -> bool {
         let pair = &self.pairs[number];
         pair.touch == Touch::Met && pair.impulse > 0.0 && self.since(i, j) <= pair.struck_at
