@@ -68,7 +68,7 @@ impl SettlingProgress {
 }
 
 /// Estimates the finished fraction of a deposition, 0 to 1. The estimate assumes that grains fall for a quarter of the
-/// time limit, and that the speed of the fastest grain then decreases by [`ORDERS_OF_SETTLING`].
+/// time limit, and that the speed of the fastest grain then decreases by [`ORDERS_OF_SETTLING`] orders of magnitude.
 pub(super) fn settled_part(settling: &Settling) -> f64 {
     let rained = match settling.rains {
         true => (4.0 * settling.time_secs / settling.limit_secs).min(1.0),

@@ -232,7 +232,7 @@ pub struct RunHistory {
     /// Summaries of the earlier runs for display.
     #[serde(skip)]
     told: Arc<[PastRun]>,
-    /// Number of runs that have become earlier runs so far; the last number given to a run.
+    /// Number of runs that have become earlier runs so far. The newest of these runs has this number.
     #[serde(skip)]
     count: u64,
     #[serde(skip)]
@@ -417,7 +417,7 @@ impl RunHistory {
         self.told = past.chain(undone).collect();
     }
 
-    /// Copy with fewer keyframes and curve rows, for the window or a file. Failed earlier runs are left out.
+    /// Copy with fewer keyframes and curve rows, for the window or a file. Earlier runs that have failed are left out.
     pub(super) fn thinned(&self) -> Self {
         let thinned = |runs: &[LiveRun]| {
             let kept = runs.iter().filter(|run| !run.has_failed());

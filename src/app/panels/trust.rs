@@ -115,7 +115,7 @@ impl TrustPanel {
         (trust, reason)
     }
 
-    /// Returns the latest result of the error budget; `None` if there is none for the displayed run with the present
+    /// Returns the latest result of the error budget; `None` if no result exists for the displayed run with the present
     /// settings.
     fn of_budget(&self, run: &WatchedRun) -> Option<BudgetAnswer> {
         let budget = self.budget.as_ref()?;
@@ -214,7 +214,8 @@ impl TrustPanel {
         }
     }
 
-    /// If the panel is open, starts an error budget for the displayed run. Discards an error budget for other settings.
+    /// If the panel is open, starts to compute the error budget of the displayed run. Discards an error budget that was
+    /// computed for other settings.
     pub(super) fn follow(&mut self, ui: &Ui, context: &PanelContext<'_>) {
         if let Some(budget) = &mut self.budget
             && let Some(outcome) = outcome_of_ended(&mut budget.work)
