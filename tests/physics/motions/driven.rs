@@ -303,8 +303,8 @@ fn ways() -> impl Iterator<Item = (Stepper, Method)> {
     steppers.flat_map(move |stepper| methods(stepper).map(move |info| (stepper, info.method)))
 }
 
-/// Returns jumping grains with two driven walls: a damped one above (mass in kg), and one of three times its mass
-/// beside.
+/// Returns a scene of jumping grains below a damped piston of this mass (kg) and beside a piston of three times this
+/// mass.
 fn jumping(mass: f64) -> Scene {
     let mut scene = pressed(mass);
     for (k, grain) in (0..).zip(&mut scene.grains) {

@@ -9,8 +9,9 @@ const BOND: f64 = 20.0;
 /// time.
 const TIME_STEPS: [f64; 7] = [5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 
-/// Returns a run of a grain that leaves a disc at rest with a speed (m/s) while a load, given as an acceleration
-/// (m/s²), pulls it away. For every load the cohesion force C₀ is the same as for Bond [`BOND`] under g.
+/// Returns a run of a grain that touches a disc at rest and moves away from it at `speed` (m/s). A load, given as the
+/// acceleration `load` (m/s²), also pulls the grain away. For every load the cohesion force C₀ is the same as for Bond
+/// [`BOND`] under the gravity g.
 fn pair(time_step_secs: f64, speed: f64, load: f64, physics: Physics) -> Simulation {
     let direction = DVec2::X;
     let grain = moving(2.0 * RADIUS * direction, RADIUS, speed * direction);
