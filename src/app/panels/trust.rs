@@ -305,7 +305,7 @@ fn bar(ui: &mut Ui, effect: &BudgetEffect, within: f64, reach: f64) {
     response.response.on_hover_text(text);
 }
 
-/// Returns a warning if a grain at rest would fall too far in one time step of a simulation.
+/// Returns a warning if a grain at rest would fall too far in one step of a simulation.
 fn warning(world: &WorldFrame) -> Option<String> {
     too_long(&world.controls.settings, &world.snapshot.surroundings, world.substeps)
 }
