@@ -97,9 +97,9 @@ impl Runs {
         1.0 - OUTSIDE / ((self.all.len() + 1) * self.quantities) as f64
     }
 
-    /// Returns the mean of a number over initial states, with its confidence interval. For each initial state, `of`
-    /// computes this number from the quantity's values in the given `series` (the runs with certain changes of the
-    /// scene). Initial states for which a series has no value are left out.
+    /// Returns the mean of a number over the initial states, with its confidence interval. `series` lists series of
+    /// runs (a series: all runs with the same change of the scene). For each initial state, `of` computes the number
+    /// from the values of the quantity in these series. Initial states for which a series has no value are left out.
     pub(super) fn over_starts(
         &self,
         series: &[usize],
@@ -121,8 +121,8 @@ impl Runs {
         values.values[quantity].filter(|_| values.failure.is_none())
     }
 
-    /// Returns, with a confidence interval, the mean of a quantity in the unchanged scene (series 0), or the mean
-    /// effect of the change of another series on the quantity.
+    /// Returns the mean of a quantity in the unchanged scene if `series` is 0, otherwise the mean effect on the
+    /// quantity of the change with the number `series`. The result contains a confidence interval.
     pub(super) fn interval(&self, series: usize, quantity: usize) -> Mean {
         if series == 0 {
             self.over_starts(&[0], quantity, |values| values[0])
