@@ -121,12 +121,19 @@ impl Challenge {
     }
 }
 
-/// Names and values of driving parameters that several stability tests use.
+/// Name and unit of the driving parameter (the parameter that makes the test more difficult) of those stability tests
+/// in which it is the time step.
 const TIME_STEP: &str = "time step (s)";
+/// Name of the driving parameter (the parameter that makes the test more difficult) of those stability tests in which
+/// it is the ratio of two masses.
 const MASSES: &str = "ratio of masses";
+/// Time steps of a quick pass, s, in stability tests whose driving parameter is the time step.
 const STEPS: &[f64] = &[2e-4, 1e-3, 5e-3, 2e-2];
+/// Time steps of a quick pass, s, in the stability tests of heaps, arches and logs.
 const LONG_STEPS: &[f64] = &[1e-3, 5e-3, 2e-2];
+/// Time steps of a quick pass, s, in the stability tests of sliding discs.
 const SHORT_STEPS: &[f64] = &[1e-4, 1e-3, 5e-3];
+/// Mass ratios of a quick pass in stability tests whose driving parameter is the ratio of two masses.
 const RATIOS: &[f64] = &[10.0, 100.0, 1e3, 1e4];
 
 const fn challenge(
