@@ -127,7 +127,7 @@ pub fn warn_of_steps(steps: u64) {
     }
 }
 
-/// Number of the first signal to end (such as INT) that the program received; 0 if there was none.
+/// Number of the first signal, such as INT, that asked the program to end; 0 if no such signal has arrived.
 static CAUGHT: AtomicI32 = AtomicI32::new(0);
 
 /// A signal that asks the program to end.
