@@ -42,8 +42,9 @@ pub struct Row<M: Model> {
     pub j: u32,
     /// Unit normal n of the contact, from body j (or the fixed body) to grain i.
     pub normal: M::Normal<f64>,
-    /// The term that the contact law adds to v_n, m/s: ρ v_n^{n−1}, or 0 if the bodies approach each other more slowly
-    /// than the threshold of restitution, minus the speed of a moving wall along n (`problem::walls`).
+    /// The term that the contact law adds to v_n, m/s: ρ v_n^{n−1} minus the speed of a moving wall along n
+    /// (`problem::walls`). ρ v_n^{n−1} is replaced by 0 if the bodies approach each other more slowly than the
+    /// threshold of restitution.
     pub restitution_velocity: f64,
     /// Shifted normal impulse σ of the contact, m/s: λ_n plus the capture speed.
     pub shifted_impulse: f64,

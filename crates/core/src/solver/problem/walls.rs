@@ -116,7 +116,7 @@ pub struct DrivenRow {
     /// Values that the fields `restitution_velocity` and `surface_speed` of the contact's row would have if the wall's
     /// speed V was 0, m/s.
     pub still: [f64; 2],
-    /// Speed of the wall's surface along the contact's normal that remains if the wall's speed V is 0, m/s.
+    /// Part of the speed of the wall's surface along the contact's normal that is not due to the wall's speed V, m/s.
     pub speed: f64,
 }
 
@@ -159,9 +159,9 @@ impl MovingWalls {
         self.driven_rows.get(*self.driven_row_of.get(number)? as usize)
     }
 
-    /// Records the next contact with a fixed body: its driven wall (if it has one), the wall's speed along the normal,
-    /// and the fields `restitution_velocity` and `surface_speed` of the contact's row, all in m/s, for the wall's speed
-    /// at the beginning of the step.
+    /// Records the next contact with a fixed body. `by` is the driven wall of the contact, if it has one. For the
+    /// wall's speed at the beginning of the step, `wall_speed` is the speed along the normal, and `[added, slide]` are
+    /// the fields `restitution_velocity` and `surface_speed` of the contact's row, all in m/s.
     fn add_row(&mut self, by: Option<DrivenBy>, wall_speed: f64, [added, slide]: [f64; 2]) {
         if self.driven.is_empty() {
             return;
@@ -286,7 +286,8 @@ impl<M: Model> StepProblem<M> {
 
     /// Returns the work of moving surfaces and its tangential part, J, for the contacts of `part`, a problem with a
     /// subset of the contacts of this problem. `number_here` translates the row numbers of `part` to row numbers of
-    /// this problem. Unlike [`Self::surface_works`], counts a driven wall with its final speed.
+    /// this problem. In contrast to [`Self::surface_works`], the work of a driven wall is computed with the wall's
+    /// speed at the end of the step.
     pub(crate) fn surface_works_of(
         &self,
         part: &Self,
