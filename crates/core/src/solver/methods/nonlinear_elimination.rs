@@ -27,18 +27,18 @@ const SWEEPS: u32 = 100;
 /// from one call to the next.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NonlinearElimination {
-    /// Contribution of each contact to the squared residual, (N·s)². `by_square` has the numbers of the contacts in the
-    /// order of falling contributions.
+    /// Contribution of each contact to the squared residual, (N·s)².
     squares: Vec<f64>,
+    /// Numbers of the contacts, sorted by falling contribution to the squared residual.
     by_square: Vec<usize>,
-    /// True for each body with a contact that contributes much to the residual. `around` is true also for each body
-    /// that touches such a body.
+    /// True for each body with a contact that contributes much to the residual.
     at: Vec<bool>,
+    /// True for each body in `at`, and for each body that touches such a body.
     around: Vec<bool>,
     fixed: Vec<usize>,
     pairs: Vec<usize>,
-    /// Impulses (σ, λ_t) of all contacts before the elimination, m/s, to which they return if the elimination does not
-    /// help.
+    /// Impulses (σ, λ_t) of all contacts before the elimination, m/s. They are restored if the elimination does not
+    /// reduce the residual.
     saved: Vec<[f64; 2]>,
 }
 

@@ -123,7 +123,7 @@ pub(super) fn is_settled<P>(
 /// Number of sweeps after which the residual is compared for the first time. After fewer sweeps the comparison does not
 /// distinguish problems with and without a solution.
 const FIRST_LOOK: u32 = 512;
-/// Ratio of the residual to the residual after half as many sweeps, at or above which the residual counts as no longer
+/// Minimum ratio of the residual to the residual after half as many sweeps, from which the residual counts as no longer
 /// decreasing (flat).
 const FLAT: f64 = 0.95;
 /// Number of consecutive comparisons with a flat residual that end a solve, if its stopping test limits the residual or

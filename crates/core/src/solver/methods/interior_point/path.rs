@@ -61,9 +61,10 @@ const SWEEPS_BETWEEN: u32 = 30;
 /// Limit of an attempt to follow the path of Coulomb's law: it ends after this number of factorisations that have not
 /// halved the residual.
 const FOLDED_PATIENCE: u32 = 8;
-/// Number of consecutive steps shorter than [`SHORT_STEP`] after which an attempt to follow the path of Coulomb's law
-/// ends, too.
+/// Number of consecutive short steps after which an attempt to follow the path of Coulomb's law ends.
 const SHORT_STEPS: u32 = 3;
+/// Step length, as a fraction of the full Newton step, below which a step along the path of Coulomb's law counts as
+/// short.
 const SHORT_STEP: f64 = 0.05;
 /// Step length, as a fraction of the full Newton step, below which the contacts that limit the step get a larger
 /// regularisation ε.

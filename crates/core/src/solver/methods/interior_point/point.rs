@@ -20,8 +20,8 @@ pub(super) const SWEEPS_FIRST: u32 = 4;
 /// Error of the impulses, in multiples of the tolerance of the stopping test, at or below which a few sweeps try to
 /// finish the solve.
 const SWEEPS_FROM: f64 = 10.0;
-/// Largest impulse that counts as a solution, relative to the impulses and velocities at the start of a solve. From
-/// zero initial impulses on a pile of 100 layers, impulses grow by a factor of 10⁴.
+/// Largest normal impulse that a solution may have, divided by the largest impulse or velocity at the start of a solve.
+/// From zero initial impulses on a pile of 100 layers, impulses grow by a factor of 10⁴.
 const LARGEST_IMPULSE: f64 = 1e7;
 /// Number of sweeps that try to finish a solve when the path is near its end.
 const SWEEPS_LAST: u32 = 2;
@@ -44,7 +44,7 @@ pub(super) struct PathWorkspace<const D: usize> {
     /// Right-hand side of the linear system in elimination order; after the solution of the system, the change of the
     /// velocities.
     pub vector: Vec<[f64; D]>,
-    /// Impulses, slacks and multipliers of all contacts. The next three vectors also have one entry per contact.
+    /// Impulses, slacks and multipliers of all contacts.
     pub contacts: Vec<PathContact>,
     pub targets: Vec<[f64; PAIRS]>,
     pub step: Vec<PathStep>,

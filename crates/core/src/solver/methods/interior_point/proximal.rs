@@ -29,9 +29,10 @@ use super::system::{all_inertias, for_each_change, push_all};
 use crate::solver::kinematics::Model;
 use crate::solver::problem::natural_map;
 
-/// Initial compliance ε, relative to the compliance of a contact, of a solve that starts far from a solution. `CLOSE`
-/// is for a solve that finishes the path.
+/// Initial compliance ε, relative to the compliance of a contact, of a solve that starts far from a solution.
 const FAR: f64 = 0.1;
+/// Initial compliance ε, relative to the compliance of a contact, of a solve that starts near the end of the path of
+/// the interior point method.
 const CLOSE: f64 = 1e-5;
 /// Minimum compliance ε, relative to the compliance of a contact. With a smaller ε, rounding errors would grow more
 /// than the error of the impulses would fall.
