@@ -26,7 +26,8 @@ use crate::statistics::mean;
 
 /// Name of the journal that stores the runs of a calibration.
 const JOURNAL: &str = "calibrate";
-/// Default number of runs of a calibration, per coefficient of a cubic polynomial in the varied parameters.
+/// Default number of runs of a calibration, divided by the number of coefficients of a cubic polynomial in the varied
+/// parameters.
 const RUNS_PER_COEFFICIENT: usize = 10;
 /// Largest allowed number of varied parameters, and largest allowed number of runs. Larger numbers are probably a
 /// mistake.

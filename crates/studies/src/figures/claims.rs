@@ -119,8 +119,8 @@ const SHUFFLES: usize = 1000;
 pub(super) type Alike = Vec<(f64, f64)>;
 
 /// Returns the fraction of shuffles after which the test `holds` finds the claim true. Each shuffle exchanges the
-/// results within every group at random, and then adds `border`, the largest effect with which the claim is still
-/// false.
+/// results within every group of `groups` at random, and then adds `border` to them. `border` is the largest effect
+/// with which the claim is still false, as a function of the number in which the runs of a group differ.
 fn share_by_chance(
     groups: &[Alike],
     border: impl Fn(f64) -> f64,

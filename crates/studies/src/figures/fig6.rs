@@ -66,7 +66,8 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig6", sheet, claims, table: None })
 }
 
-/// Merges those groups of runs that have the same initial state. `count` is the number of initial states.
+/// Merges the groups of runs that have the same initial state. These groups follow each other in `groups`, and `count`
+/// is the number of initial states.
 fn joined(groups: &[Alike], count: usize) -> Vec<Alike> {
     groups.chunks((groups.len() / count.max(1)).max(1)).map(<[_]>::concat).collect()
 }

@@ -16,8 +16,9 @@ use crate::world::{Grain, Parameters};
 /// units of the cohesion force C₀, and the name of each case.
 const CASES: [(f64, &str); 3] = [(1.2, "A > 0"), (-0.5, "−C₀ < A < 0"), (-2.2, "A < −C₀")];
 const TIME_STEP_SECS: f64 = 1e-3;
-/// Values at the ends of the axes, which reach from minus to plus these values: the formal velocity in units of
-/// Δt·C₀/m_ij, and the normal force in units of C₀, with the cohesion force C₀ and the effective mass m_ij.
+/// Upper ends of the two axes; the lower ends are the negative of these values. The first axis is the formal velocity
+/// in units of Δt·C₀/m_ij, the second the normal force in units of C₀, with the time step Δt, the cohesion force C₀ and
+/// the effective mass m_ij.
 const REACH: (f64, f64) = (2.0, 3.0);
 
 pub(super) fn fig2(_: &StudyRunner) -> Result<Figure> {

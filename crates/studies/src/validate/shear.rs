@@ -216,7 +216,8 @@ fn inertial_secs() -> f64 {
     (DIAMETER / (GRAVITY * PRESSURE)).sqrt()
 }
 
-/// Returns the forces of the lower and of the upper plate on the grains, N.
+/// Returns the forces of the lower and of the upper plate on the grains, N. The plates consist of fixed discs; the
+/// discs of the upper plate have the indices from `of_plate` on.
 fn on_plates(moment: &Moment, of_plate: u32) -> [DVec2; 2] {
     let on = |is_upper: bool| -> DVec2 {
         let of_it = moment.contacts.iter().filter(|contact| {
