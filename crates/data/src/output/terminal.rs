@@ -24,7 +24,8 @@ pub fn print_text(text: impl Display) {
     remember(write!(std::io::stdout(), "{text}"));
 }
 
-/// Records whether a write to stdout by other code has failed, for [`lost_stdout`].
+/// Records the outcome of a write to stdout that was not made by this module. [`lost_stdout`] then reports a failure of
+/// this write.
 pub fn note_printed(outcome: std::io::Result<()>) {
     remember(outcome);
 }
