@@ -82,7 +82,7 @@ pub(super) struct Lammps {
 /// A dump file to which frames are added.
 struct GrowingDump {
     path: PathBuf,
-    /// The file; `None` before the first frame.
+    /// Open file of the dump; `None` before the first frame is added.
     file: Option<GrowingFile>,
 }
 

@@ -305,8 +305,8 @@ fn rgb((red, green, blue): Rgb) -> RGBColor {
     RGBColor(red, green, blue)
 }
 
-/// Largest distance between a coordinate and a tick mark at which the coordinate gets the label of the tick mark, as a
-/// fraction of the length of the axis.
+/// Tolerance for the labels of an axis, as a fraction of its length: a coordinate gets the label of a tick mark if
+/// their distance is at most this tolerance.
 const NEAR: f64 = 1e-6;
 
 /// An axis as the crate plotters needs it: the range of the coordinates along the axis (logarithms on a logarithmic
