@@ -38,7 +38,7 @@ pub struct SolutionSearch {
 /// A solution of the contact problem of a step, found by one or more searches.
 #[derive(Clone, Debug)]
 pub struct Solution<M: Model> {
-    /// The problem with the impulses and velocities of this solution under Coulomb's law.
+    /// The contact problem with the impulses and velocities of this solution. Its friction model is Coulomb's law.
     pub problem: StepProblem<M>,
     /// Residual of the contact laws, dimensionless ([`residual`](super::residual)).
     pub residual: f64,

@@ -201,7 +201,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         self.go_on_without(report)
     }
 
-    /// Performs up to `sweeps` Gauss–Seidel sweeps. Returns true if the stopping test is met.
+    /// Performs up to `sweeps` Gauss–Seidel sweeps and adds them to `report`. Returns true if the stopping test is met.
     fn settles_in(&mut self, sweeps: u32, report: &mut SolveReport) -> bool {
         settles_in(self.problem, self.settings, sweeps, report)
     }

@@ -74,8 +74,8 @@ pub(super) struct Terms<const D: usize> {
     tangent: [f64; D],
     /// Gradient of the contact's rolling velocity v_r by the body's velocity; 0 without rolling friction.
     rolling: [f64; D],
-    /// Direction of the impulse that responds to v_n: n, or n ± μt if the contact slips, plus ±μ_r times the gradient
-    /// of v_r if the rolling moment is at its bound.
+    /// Direction of the contact impulse that responds to v_n: the normal n, or n ± μt with the tangent t if the contact
+    /// slips, plus ±μ_r times the gradient of v_r if the rolling moment is at its bound.
     answer: [f64; D],
     /// Stiffness of the contact's response to v_n, kg.
     normal_stiffness: f64,

@@ -16,7 +16,8 @@ use crate::solver::problem::{
     ContactRows, CoulombFriction, FrictionProjection, StepProblem, errors, law_of_row, residual,
 };
 
-/// Fraction of the squared residual of all contacts that must come from the contacts that are selected.
+/// Minimum fraction of the squared residual that must come from the contacts that are solved separately. These contacts
+/// are selected in the order of falling contributions.
 const HELD: f64 = 0.9;
 /// Number of sweeps over the contacts that are solved separately. Of 21,600 steps of 138 grains, solved to 1e-6 with
 /// elimination from the first factorisation on, 1,339 are unsolved with 0 sweeps, 1,152 with 30, 878 with 100 and 759

@@ -1,5 +1,5 @@
-//! The contact problem of one time step (find impulses that satisfy the laws of all contacts): its data, its set-up,
-//! and the measures of its solution.
+//! The contact problem of one step (find impulses that satisfy the laws of all contacts): its data, its set-up, and the
+//! measures of its solution.
 //!
 //! [`StepProblem::prepare`] sets up a problem in this order: bodies, rows (the data of one contact each) in the order
 //! of the sweep, moving surfaces, the velocities due to the initial impulses, and last the friction bounds or opening
@@ -46,7 +46,7 @@ use crate::number::Parts;
 use crate::threads;
 use crate::world::{FrictionCone, World};
 
-/// The contact problem of one time step, including its present impulses. The memory is reused for the next step.
+/// The contact problem of one step, including its present impulses. The memory is reused for the next step.
 ///
 /// Code outside this crate can read a problem. Only methods change its impulses: the methods of this crate, or a method
 /// of your own through [`BodySystem`](crate::solver::BodySystem), which keeps bodies and rows consistent.

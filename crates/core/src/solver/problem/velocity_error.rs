@@ -185,8 +185,9 @@ impl ErrorSums {
         self.add(problem, number, row, of_contact, lacking);
     }
 
-    /// Adds a contact's contributions to the sums: to the duality gap S the term `of_contact`, (m/s)², times the
-    /// effective mass, and to the squared shortfalls `lacking`, the shortfall z of its normal velocity, m/s.
+    /// Adds a contact's contributions to the sums. The duality gap S increases by the effective mass times
+    /// `of_contact`, (m/s)². The sums of squared shortfalls increase due to `lacking`, the shortfall z of the contact's
+    /// normal velocity, m/s.
     #[inline(always)]
     fn add<M: Model>(
         &mut self,

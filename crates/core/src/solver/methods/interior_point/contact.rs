@@ -288,9 +288,9 @@ impl PathContact {
         }
     }
 
-    /// Moves the contact's impulses, slacks and multipliers to the path of the interior point method, near the impulses
-    /// that an update of the natural map would give: every product x·y of a slack and its multiplier becomes `centre`,
-    /// (m/s)². `trial` are the trial impulses (σ − w, λ − v m_t/m_n) of this update, m/s.
+    /// Moves the contact's impulses, slacks and multipliers to the central path of the interior point method, near the
+    /// impulses that an update of the natural map would give: every product x·y of a slack and its multiplier becomes
+    /// `centre`, (m/s)². `trial` are the trial impulses (σ − w, λ − v m_t/m_n) of this update, m/s.
     ///
     /// Let τ = `centre`. The new σ and its multiplier u must have the product τ, and the difference σ − u must be the
     /// normal trial impulse. These two conditions give a quadratic equation. With a fixed friction bound g, the smaller

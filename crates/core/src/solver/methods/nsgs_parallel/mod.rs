@@ -41,8 +41,8 @@ pub(super) struct BlockMemory {
 }
 
 impl BlockMemory {
-    /// Returns the sum of the results of `add_up` for all blocks: tile by tile, then the blocks of contacts between
-    /// tiles.
+    /// Calls `add_up` for the blocks of each tile, and for the blocks of contacts between tiles. Returns the sum of the
+    /// results, added in this order.
     fn sum(
         &mut self,
         threads: bool,
@@ -228,7 +228,7 @@ fn for_each_tile<T: Send>(
     }
 }
 
-/// Marks a velocity slot that has no grain, and a grain that has no slot.
+/// Number that marks a memory slot without a grain, or a grain whose velocity has no memory slot.
 const NOBODY: u32 = u32::MAX;
 
 /// A tile: contacts whose grains are in no other tile, so that one thread can solve them.
@@ -238,7 +238,7 @@ struct ContactTile {
     blocks: usize,
     /// Number of the tile's blocks whose contacts are with fixed bodies; these blocks come first.
     fixed: usize,
-    /// Number of velocity slots: one per grain of the tile, and one for idle SIMD lanes.
+    /// Number of memory slots for velocities: one per grain of the tile, and one for idle SIMD lanes.
     slots: usize,
 }
 
