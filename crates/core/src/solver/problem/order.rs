@@ -283,7 +283,7 @@ impl Tiles {
         }));
     }
 
-    /// Divides grains of unknown positions into tiles in the order of their numbers.
+    /// Divides grains whose positions are not known into tiles: grains with consecutive numbers form a tile.
     fn lay_by_number(&mut self, grains: usize) {
         if grains <= GRAINS_IN_ONE {
             return self.lay_one(grains);

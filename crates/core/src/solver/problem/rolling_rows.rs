@@ -1,5 +1,5 @@
-//! Rolling resistance of the contacts of a problem: computes its coefficients, its rolling velocity, and its moments in
-//! N·m·s for the next step.
+//! Rolling resistance of the contacts of a problem: sets its coefficients, computes rolling velocities, and stores the
+//! rolling impulses (moment times time step, N·m·s) for the next step.
 
 use super::{MovingSurfaces, NumbersOfContact, Rolling, Row, StepProblem};
 use crate::contact::{Contact, ContactList, Numbering, Other, law};

@@ -69,8 +69,8 @@ fn for_each_row_of<M: Model>(
     }
 }
 
-/// Computes the normal velocity of every contact, m/s, that follows from the body velocities `bodies`. It is relative
-/// to the wall if the wall moves. Clears `speeds` first.
+/// Writes the normal velocity of every contact, m/s, to `speeds`, which is cleared first. The velocities follow from
+/// the body velocities `bodies`, and are relative to the wall if it moves.
 pub fn relative_velocities<M: Model>(
     problem: &StepProblem<M>,
     bodies: &[M::Body<f64>],

@@ -231,8 +231,8 @@ impl<M: Model> ContactRows<M> {
         law_of_row([&self.frictions, &self.captures], number, law)
     }
 
-    /// Adds a copy of row `number` of `others`, modified by `change`. In `contacts`, the copy gets `number` instead of
-    /// the index of its contact.
+    /// Adds a copy of row `number` of `others`, modified by `change`. The list `contacts` gets the row number `number`
+    /// for this copy, instead of the index of a detected contact.
     pub(crate) fn push_copy(
         &mut self,
         others: &Self,

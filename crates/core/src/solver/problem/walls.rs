@@ -328,8 +328,8 @@ impl<M: Model> StepProblem<M> {
         self.walls.driven_row(number).is_some()
     }
 
-    /// Changes the law of the contact in row `number` so that its bodies may approach each other with up to `allowed`,
-    /// m/s. `wall_speed` is the speed of the fixed body along the normal, m/s.
+    /// Changes the law of the contact in row `number` so that its bodies may approach each other with a speed of up to
+    /// `allowed`, m/s. `wall_speed` is the speed of the fixed body along the normal, m/s.
     pub(crate) fn let_close(&mut self, number: usize, allowed: f64, wall_speed: f64) {
         self.rows.get_mut(number).restitution_velocity = allowed - wall_speed;
         let MovingWalls { driven_rows, driven_row_of, .. } = &mut self.walls;

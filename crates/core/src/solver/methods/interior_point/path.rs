@@ -346,7 +346,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
     }
 }
 
-/// Iterates over the target products of a contact, each with the index of its slack and multiplier.
+/// Iterates over the target products (slack times multiplier) of a contact, each with the index of its slack and
+/// multiplier.
 #[inline(always)]
 fn pairs<'a, S: Shape>(
     contact: &PathContact,
