@@ -7,8 +7,8 @@ use super::{Row, StepProblem};
 use crate::solver::kinematics::Model;
 use crate::threads;
 
-/// Relative (normal, tangential) velocities of one contact, m/s. The tangential velocity is relative to the surface of
-/// a fixed body if the surface moves.
+/// Relative (normal, tangential) velocities of one contact, m/s. If the grain touches a moving surface, the tangential
+/// velocity is relative to that surface.
 pub struct RowVelocities {
     /// Normal and tangential velocity at the end of the step, m/s.
     pub now: [f64; 2],

@@ -62,8 +62,8 @@ pub struct Row<M: Model> {
 pub struct FixedRow<M: Model> {
     /// The data that contacts with fixed bodies and contacts between grains have in common.
     pub row: Row<M>,
-    /// Speed of the fixed body's surface along the tangent, m/s. The tangential velocity v_t of the law is relative to
-    /// it.
+    /// Speed along the tangent, m/s, of the surface that the grain touches; 0 if the surface does not move. The
+    /// tangential velocity v_t of the law is relative to this surface.
     pub surface_speed: f64,
 }
 
@@ -210,8 +210,8 @@ impl<M: Model> ContactRows<M> {
         number.checked_sub(self.fixed.len()).map_or(1.0, |number| self.pairs[number].share)
     }
 
-    /// Returns the speed of the fixed body's surface along the tangent at the contact in row `number`, m/s; 0 for a
-    /// contact between grains.
+    /// Returns the speed along the tangent, m/s, of the surface that the grain touches at the contact in row `number`;
+    /// 0 for a contact between grains.
     #[inline(always)]
     pub(crate) fn surface_speed(&self, number: usize) -> f64 {
         self.fixed.get(number).map_or(0.0, |row| row.surface_speed)

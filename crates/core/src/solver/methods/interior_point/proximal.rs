@@ -38,7 +38,7 @@ const CLOSE: f64 = 1e-5;
 /// Minimum compliance ε, relative to the compliance of a contact. With a smaller ε, rounding errors would grow more
 /// than the error of the impulses would fall.
 const LEAST: f64 = 1e-10;
-/// Factor by which the compliance ε is multiplied each time the minimum of F has been found.
+/// Factor by which the compliance ε is multiplied each time the minimum of the objective function F has been found.
 const FACTOR: f64 = 0.1;
 /// Limit of a solve by proximal multipliers that started far from a solution: it ends after this number of
 /// factorisations that have not halved the residual.
@@ -46,12 +46,13 @@ const PATIENCE: u32 = 40;
 /// Maximum number of factorisations of a solve by proximal multipliers that starts near the end of the central path of
 /// the interior point method.
 const FEW: u32 = 16;
-/// Ratio of the squared gradient norm ∇F·M⁻¹∇F to its first value at the present compliance ε, at or below which the
-/// minimum of F counts as found and ε is reduced.
+/// Ratio of the squared gradient norm ∇F·M⁻¹∇F of the objective function F to its first value at the present compliance
+/// ε, at or below which the minimum of F counts as found and ε is reduced.
 const NEAR_MINIMUM: f64 = 1e-4;
-/// Maximum number of evaluations of the derivative F′ in a line search.
+/// Maximum number of evaluations of the derivative F′ of the objective function in a line search.
 const TRIALS: u32 = 40;
-/// Ratio of the derivative F′ to its value at the beginning of a line search, at or below which F′ counts as 0.
+/// Ratio of the derivative F′ of the objective function to its value at the beginning of a line search, at or below
+/// which F′ counts as 0.
 const ROOT: f64 = 1e-9;
 
 impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
