@@ -17,8 +17,8 @@ use crate::live::{Live, LiveOptions, Post, RemoteEngine, StartSource};
 use crate::output::give_file;
 pub use crate::output::written_files;
 
-/// Returns the engine that computes runs in a web worker. It sends its messages to `post`. While it makes an initial
-/// state, it calls `gives_up` to ask whether the user cancelled the loading.
+/// Returns the engine that computes runs in a web worker. The engine sends its messages to `post`. While the engine
+/// makes an initial state, it calls `gives_up` to ask whether the user cancelled the loading.
 pub fn engine(post: Post, gives_up: fn() -> bool) -> RemoteEngine<Opening> {
     RemoteEngine::new(post, LiveOptions { gives_up: Box::new(gives_up), ..LiveOptions::default() })
 }

@@ -47,8 +47,8 @@ pub(super) const FAST: Budget = Budget {
     settings: SolverSettings::to_residual(Method::NsgsParallel, 1e-6, 40),
 };
 
-/// Preset of the solver of the paper that Slump reproduces: Gauss-Seidel until a sweep changes the impulses by less
-/// than 1e-7 of their norm.
+/// Preset of the solver that Abramian & Staron (2020) use: Gauss-Seidel until a sweep changes the impulses by less than
+/// 1e-7 of their norm.
 pub(super) const PAPER: Budget = Budget {
     name: "Paper",
     hint: "The paper's solver: Gauss-Seidel to a relative change of 1e-7. With a touch tolerance of 0 it gives the \
@@ -92,7 +92,8 @@ pub(super) fn too_long(
     })
 }
 
-/// Time step from which on the window suggests to try a shorter time step instead of a longer one, s.
+/// Time step Δt (s) at and above which the window suggests a shorter time step. Below it, the window suggests a longer
+/// time step.
 const LONG_STEP_SECS: f64 = 5e-3;
 /// Touch tolerance (largest gap at which a contact pulls), in mean diameters, above which no hint on Δt is given,
 /// because Δt then changes cohesion less (`docs/theory.md`).

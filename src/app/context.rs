@@ -30,7 +30,7 @@ pub(crate) enum Request {
     ChooseFolder,
     /// Open the lesson with this index.
     Visit(usize),
-    /// Remove the points of the plot of slump against Δt (Fig. 5a of the paper).
+    /// Remove the points of the plot of slump against Δt (Fig. 5a of Abramian & Staron 2020).
     ForgetReleased,
     /// End the lessons.
     LeaveLessons,
@@ -79,7 +79,7 @@ impl PanelContext<'_> {
         self.exports.write(context, &self.preferences.folder, Vec::new(), job);
     }
 
-    /// Stores the rectangle of a control, points, for tests that control the window from outside.
+    /// Stores the rectangle `rect` (points) of the control `name`, for tests that control the window from outside.
     pub(crate) fn note_control(&mut self, name: &str, rect: Rect) {
         self.controls.insert(name.to_owned(), rect);
     }

@@ -52,8 +52,8 @@ impl Exports {
     }
 
     /// Writes a file into a folder on another thread. `job` receives copies of runs and returns the path of the file.
-    /// It starts when the solver's thread has sent the copies through the channels `runs`. Files are written one at a
-    /// time.
+    /// The job starts when the solver's thread has sent the copies through the channels `runs`. Files are written one
+    /// at a time.
     pub(super) fn write<R: Send + 'static>(
         &mut self,
         context: &egui::Context,

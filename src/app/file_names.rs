@@ -13,7 +13,7 @@ pub(crate) const STATE_ENDING: &str = "slump";
 pub(crate) const SESSION_ENDING: &str = "session";
 
 /// Returns the first part of the name of a file that shows a scene at one simulated time. It contains the scene's name,
-/// Bond and Δt of a single simulation or the number of simulations, and the time.
+/// Bond and Δt of a single simulation or the number of simulations, and the simulated time.
 pub(crate) fn stem(scene: &str, settings: &[Settings], time_secs: f64) -> String {
     let name: String = scene.chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
     let which = match settings {

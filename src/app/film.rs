@@ -36,7 +36,8 @@ impl FilmFormat {
     }
 }
 
-/// Fraction of the progress bar for computing the states of a film. The rest is for drawing and encoding its pictures.
+/// Part of a film's progress bar, 0 to 1, that shows the computation of its states. The rest of the bar shows the
+/// drawing and encoding of its pictures.
 const PART_OF_MOMENTS: f64 = 0.3;
 /// Largest number of pictures in a film. A larger number is probably a mistake of the user.
 const MOST_PICTURES: f64 = 1e5;

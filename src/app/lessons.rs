@@ -48,7 +48,7 @@ pub struct Lesson {
     pub asks_for: fn(&WatchedRun, &Preferences) -> &'static [&'static str],
 }
 
-/// Default values for lessons on the pile of the paper. The run is played slowly enough to be watched.
+/// Default values for lessons on the pile of Abramian & Staron (2020). The run is played slowly enough to be watched.
 const PILE: Lesson = Lesson {
     title: "",
     watch: "",
@@ -81,7 +81,7 @@ fn waits_at_start(run: &WatchedRun) -> bool {
 
 /// Seed of the lessons' pile. In all lessons the slump of this pile is within the interquartile range of the slumps of
 /// sixteen piles with other seeds. The slump of the built-in pile is not, because that pile was chosen to show the
-/// paper's pattern.
+/// pattern of Abramian & Staron (2020).
 const SEED: u64 = 15;
 /// CSV list of the grains at rest in the pile made from [`SEED`]. The list is stored because computing the deposition
 /// of this pile takes seconds.

@@ -153,8 +153,8 @@ impl RunLink {
         Config { source: self.source.clone(), ..Config::default() }
     }
 
-    /// Checks that the scene of the link exists and that all settings are valid. Makes no new pile, which would take
-    /// long.
+    /// Checks that the scene of the link exists and that all settings are valid. Does not deposit a new pile, because a
+    /// deposition takes long.
     pub(crate) fn check(&self) -> Result<()> {
         let base = self.config().without_settling()?.settings();
         let mut settings = self.plans(&base).into_iter().flat_map(|plan| {

@@ -14,8 +14,8 @@ use crate::render::{Legend, Painter, Picture, PictureArea};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TargetFormat(pub wgpu::TextureFormat);
 
-/// One painter for each scene that the window shows, by its number. A painter's instance buffers must exist until the
-/// render pass has drawn them.
+/// Painters of the scenes that the window shows, each stored under the number of its scene. The instance buffers of a
+/// painter must exist until the render pass has drawn them.
 #[derive(Default)]
 struct Painters(HashMap<usize, Painter>);
 

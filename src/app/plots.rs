@@ -153,13 +153,13 @@ fn end_secs(data: &PlotData) -> f64 {
     ends.map(|row| row.time_secs).fold(data.until_secs, f64::max)
 }
 
-/// Returns a curve up to the displayed time, so that runs from other initial states do not reveal the future.
+/// Returns the part of a curve up to the displayed time: later slumps of other initial states must not be visible yet.
 fn until_now(points: &[[f64; 2]], now_secs: f64) -> PlotPoints<'static> {
     points.iter().copied().take_while(|point| point[0] <= now_secs).collect()
 }
 
-/// Returns the slump curves of runs with a simulation's settings from other initial states, up to the displayed time: a
-/// thin line per run, and their mean as a dashed line.
+/// Returns lines that show the slumps of runs from other initial states with the settings of the simulation `world`, up
+/// to the displayed time: a thin line per run, and their mean as a dashed line.
 fn others(world: &WorldCurve, now_secs: f64) -> Vec<Line<'static>> {
     let Some(band) = world.others.as_ref().filter(|band| band.count > 0) else {
         return Vec::new();

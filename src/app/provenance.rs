@@ -27,7 +27,7 @@ impl WatchedRun {
     }
 
     /// Returns the texts, such as the command line, that a file contains about the simulations that it shows. The file
-    /// shows all simulations, either at one simulated time or at all their steps.
+    /// shows all simulations: at one simulated time if `is_of_a_moment` is true, otherwise at all their steps.
     pub(crate) fn texts(&self, is_of_a_moment: bool) -> Texts {
         if !self.compares() {
             return self.texts_of_world(0, is_of_a_moment);

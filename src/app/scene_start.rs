@@ -68,8 +68,9 @@ fn slumps(scene: &Scene) -> bool {
         && scene.boundaries.iter().all(is_level)
 }
 
-/// Returns the walls that are drawn around the built-in pile before its first step. The pile is at rest without these
-/// walls, but they show that it will spread when they are removed. Other scenes have no such walls.
+/// Returns the walls that are drawn around the built-in pile before its first step. These walls are not part of the
+/// simulation. They show why the pile is at rest before the first step and spreads after it. Other scenes have no such
+/// walls.
 fn walls(scene: &Scene) -> Vec<Boundary> {
     if scene.name != Config::DEFAULT_SCENE || !scene.boundaries.is_empty() {
         return Vec::new();

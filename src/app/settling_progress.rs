@@ -14,7 +14,7 @@ use crate::sim::{GrainView, Snapshot};
 const ORDERS_OF_SETTLING: f64 = 3.5;
 /// Least time between two displayed pictures of the pile. Users would not notice more frequent pictures.
 const INTERVAL: Duration = Duration::from_millis(30);
-/// Finished fraction of a deposition from which on the remaining computing time is estimated.
+/// Finished fraction of a deposition at which the window begins to estimate the remaining computing time.
 const PART_THAT_TELLS: f64 = 0.05;
 
 /// Progress of one deposition.
@@ -67,8 +67,8 @@ impl SettlingProgress {
     }
 }
 
-/// Estimates the finished fraction of a deposition, 0 to 1. The estimate uses the time for which grains have fallen, at
-/// most a quarter of the time limit, and the speed of the fastest grain.
+/// Estimates the finished fraction of a deposition, 0 to 1. The estimate assumes that grains fall for a quarter of the
+/// time limit, and that the speed of the fastest grain then decreases by [`ORDERS_OF_SETTLING`] orders of magnitude.
 pub(super) fn settled_part(settling: &Settling) -> f64 {
     let rained = match settling.rains {
         true => (4.0 * settling.time_secs / settling.limit_secs).min(1.0),

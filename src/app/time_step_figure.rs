@@ -1,5 +1,5 @@
-//! The plot of mean slump against the time step Δt, as in Fig. 5a of the paper. For each run that the user has started
-//! it has one point: the mean over runs with the same settings from other initial states.
+//! The plot of mean slump against the time step Δt, as in Fig. 5a of Abramian & Staron (2020). For each run that the
+//! user has started it has one point: the mean over runs with the same settings from other initial states.
 
 use egui::{Color32, Label, RichText, Ui};
 use egui_plot::{HoverPosition, Line, Points};
@@ -19,7 +19,7 @@ const TITLE: &str = "slump against Δt";
 /// Hover text of the title, which explains a point of the plot.
 const HINT: &str = "One point per released pile: the mean slump of its other piles at the end of the scene, with \
                     its 95 % interval.";
-/// First and last time step that the Δt axis shows at least, ms.
+/// The Δt axis extends at least from the first to the second of these values of the time step Δt, ms.
 const LEAST_MILLIS: [f64; 2] = [0.1, 10.0];
 /// Half of the width of the horizontal caps of an error bar, in decades of the logarithmic Δt axis.
 const CAP: f64 = 0.03;
@@ -36,7 +36,8 @@ struct FigurePoint {
 }
 
 impl FigurePoint {
-    /// Returns the coordinate along the Δt axis: the decimal logarithm of milliseconds.
+    /// Returns the coordinate of the point along the Δt axis: the decimal logarithm of the time step Δt in
+    /// milliseconds.
     fn decades(&self) -> f64 {
         (1e3 * self.time_step_secs).log10()
     }

@@ -31,7 +31,7 @@ pub struct WatchedRun {
     /// Newest frame of the solver's thread.
     pub frame: LiveFrame,
     /// Settings that the controls show, one entry per simulation. While the solver's thread has not yet handled a
-    /// change, they are newer than the settings in the frame.
+    /// change, these settings are newer than the settings in the frame.
     pub(crate) wanted: Vec<Controls>,
     /// Index of a simulation and its new settings while the user drags a main slider.
     pub(crate) draft: Option<(usize, Settings)>,

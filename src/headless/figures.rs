@@ -1,4 +1,4 @@
-//! Simulates the piles and the cradle of the paper and draws its Figs. 3, 4 and 7.
+//! Simulates the piles and the cradle of Abramian & Staron (2020) and draws Figs. 3, 4 and 7 of their paper.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -26,11 +26,11 @@ use crate::study::{
 };
 use crate::threads::make_threads;
 
-/// Width of a panel of Fig. 4 of the paper, pixels.
+/// Width of a panel of Fig. 4 of Abramian & Staron (2020), pixels.
 const PILE_PANEL_WIDTH: u32 = 640;
-/// Width of Fig. 3 of the paper, pixels.
+/// Width of Fig. 3 of Abramian & Staron (2020), pixels.
 const FIG3_WIDTH: u32 = 1280;
-/// Width of a panel of Fig. 7 of the paper, pixels.
+/// Width of a panel of Fig. 7 of Abramian & Staron (2020), pixels.
 const CRADLE_PANEL_WIDTH: u32 = 720;
 
 struct FigureRun {
@@ -39,7 +39,7 @@ struct FigureRun {
     recorded: Recorded,
 }
 
-/// Simulates the runs of Figs. 3, 4 and 7 of the paper on all cores and draws the figures into `folder`.
+/// Simulates the runs of Figs. 3, 4 and 7 of Abramian & Staron (2020) on all cores and draws the figures into `folder`.
 pub(super) fn draw(folder: &Path, earlier: EarlierFiles, renderer: RendererChoice) -> Result<()> {
     let mut renderer = Renderer::new(renderer)?;
     make_threads()?;

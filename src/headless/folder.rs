@@ -25,7 +25,7 @@ use crate::sim::{ForceSums, Simulation, Tally};
 /// Treatment of files that an earlier run left in the output folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum EarlierFiles {
-    /// The new run ends with an error if there are such files.
+    /// The new run ends with an error if the folder contains files of an earlier run.
     Refused,
     Cleared,
     /// The files are kept, because the run is resumed.
@@ -147,8 +147,8 @@ impl RunFolder {
     }
 }
 
-/// Returns the names of the files in the folder that have a name which runs give to their files, and of the file named
-/// `animation`.
+/// Returns the names of those files in `folder` that a run writes: pictures of frames, table, manifest and checkpoint
+/// files, and the file named `animation`. Their unfinished versions are included.
 fn files_of_a_run(folder: &Path, animation: Option<&str>) -> Result<Vec<String>> {
     let refuse = |error| Error::file(folder, error);
     let mut names = Vec::new();

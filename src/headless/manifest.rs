@@ -86,9 +86,10 @@ pub(super) struct RunEntry {
     pub went_on_at: Vec<Instant>,
     /// Warnings about the run, each with the change of settings that is most likely to help.
     pub alarms: Vec<AlarmEntry>,
-    /// Cohesive time Bond·Δt/√(d/g), dimensionless (paper §3.3).
+    /// Cohesive time Bond·Δt/√(d/g), dimensionless (§3.3 of Abramian & Staron 2020).
     pub cohesive_time: f64,
-    /// Capture speed Bond·g·Δt, the opening speed that one step of cohesion cancels, m/s (paper eq. 9).
+    /// Capture speed Bond·g·Δt, the opening speed that one step of cohesion cancels, m/s (eq. 9 of Abramian & Staron
+    /// 2020).
     pub capture_speed: f64,
     /// Substeps per step; 1 if the stepper solves each step as a whole.
     pub substeps: u32,

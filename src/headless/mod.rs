@@ -1,4 +1,4 @@
-//! Runs without a window, which draw the paper's figures or the frames of one scene.
+//! Runs without a window, which draw the figures of Abramian & Staron (2020) or the frames of one scene.
 
 mod figures;
 mod folder;
@@ -21,16 +21,15 @@ use crate::error::Result;
 use crate::output::heed_signals;
 use folder::EarlierFiles;
 
-/// Draws Figs. 3, 4 and 7 of the paper into a folder, with any available renderer.
+/// Draws Figs. 3, 4 and 7 of Abramian & Staron (2020) into a folder, with any available renderer.
 ///
-/// # Errors
-/// If the folder cannot be written to.
+/// # Errors If the folder cannot be written to.
 pub(crate) fn draw_snapshots(folder: &Path) -> Result<()> {
     figures::draw(folder, EarlierFiles::Kept, HeadlessOptions::default().renderer)
 }
 
 /// Runs the scene of `config` and writes the outputs that `options` name. If `options` name only a folder for frames,
-/// draws the paper's figures instead.
+/// draws Figs. 3, 4 and 7 of Abramian & Staron (2020) instead.
 pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
     heed_signals();
     let earlier = if options.overwrite { EarlierFiles::Cleared } else { EarlierFiles::Refused };

@@ -134,8 +134,8 @@ const DEFAULT_FPS: f64 = 25.0;
 const MOST_PICTURES: f64 = 1e5;
 
 impl HeadlessOptions {
-    /// True if the command draws the frames of a scene, because it has an option that has no effect on the paper's
-    /// figures.
+    /// True if the command draws the frames of a scene, because it has an option that has no effect on the figures of
+    /// Abramian & Staron (2020).
     pub(super) fn asks_for_frames(&self) -> bool {
         let Self { headless, overwrite, renderer, .. } = *self;
         let frames = self.frames.clone();

@@ -20,13 +20,13 @@ const MOST_PAST: usize = 50;
 const NEWEST: usize = 4;
 /// Divisor of the memory limit: each of the newest earlier runs gets 1/8 of the present run's memory for keyframes.
 const PART_OF_PAST: usize = 8;
-/// Memory for the keyframes (copies of the state) of the present run and of each earlier run, bytes, in a history that
-/// is sent to the window or to a file. States between keyframes can be computed again.
+/// Memory for the keyframes (copies of the state) of the present run in a history for the window or a file, bytes.
 const KEYFRAME_BYTES: usize = 8 << 20;
+/// Memory for the keyframes of each earlier run in a history for the window or a file, bytes.
 const PAST_KEYFRAME_BYTES: usize = 1 << 20;
-/// Largest number of rows of a curve in a history that is sent to the window or to a file, for the present run and for
-/// each earlier run. A row contains the observables after one step and takes about 500 bytes in a file.
+/// Largest number of rows (observables after one step) of the present run in a history for the window or a file.
 const ROWS: usize = 4096;
+/// Largest number of rows (observables after one step) of each earlier run in a history for the window or a file.
 const PAST_ROWS: usize = 512;
 /// Wall-clock time after which a tick is interrupted to handle commands. A tick is one step of the simulation with the
 /// longest time step; a simulation with a far shorter time step takes thousands of steps in a tick.
@@ -232,7 +232,7 @@ pub struct RunHistory {
     /// Summaries of the earlier runs for display.
     #[serde(skip)]
     told: Arc<[PastRun]>,
-    /// Number of runs that have become earlier runs so far; the last number given to a run.
+    /// Number of runs that have become earlier runs so far. The newest of these runs has this number.
     #[serde(skip)]
     count: u64,
     #[serde(skip)]
@@ -417,7 +417,7 @@ impl RunHistory {
         self.told = past.chain(undone).collect();
     }
 
-    /// Copy with fewer keyframes and curve rows, for the window or a file. Failed earlier runs are left out.
+    /// Copy with fewer keyframes and curve rows, for the window or a file. Earlier runs that have failed are left out.
     pub(super) fn thinned(&self) -> Self {
         let thinned = |runs: &[LiveRun]| {
             let kept = runs.iter().filter(|run| !run.has_failed());

@@ -41,7 +41,8 @@ enum Request {
     Seen,
 }
 
-/// A message from the solver to the window. A number in a message is that of the command to which it replies.
+/// A message from the solver to the window. The number in a message is the number of the command to which the message
+/// replies.
 #[derive(Serialize, Deserialize)]
 enum Reply {
     Frame(Box<FrameChange>),

@@ -5,7 +5,7 @@ use super::numbers::{round_above, si_prefix};
 use super::{ColourBy, Style};
 use crate::sim::{GrainView, Snapshot};
 
-/// Number of contacts of a grain from which on the colour does not change any more.
+/// Number of contacts at the upper end of the colour scale. A grain with more contacts has the same colour.
 pub(super) const MOST_CONTACTS: u32 = 6;
 
 /// A quantity that the colours of grains show, and its values at the two ends of the colour scale.

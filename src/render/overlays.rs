@@ -85,8 +85,9 @@ pub(super) fn force_links(
 const VELOCITY_LENGTH: f64 = 2.5;
 /// Smallest velocity that is drawn, as a fraction of the reference speed. Shorter arrows would look like dots.
 const LEAST_VELOCITY: f64 = 0.03;
-/// Half of the width of a velocity arrow's shaft, and length of the two barbs of its head, in mean diameters.
+/// Half of the width of a velocity arrow's shaft, in mean diameters.
 const VELOCITY_HALF_WIDTH: f64 = 0.05;
+/// Length of the two barbs of a velocity arrow's head, in mean diameters.
 const VELOCITY_BARB: f64 = 0.35;
 
 /// Returns the reference speed, m/s, which is drawn as an arrow of full length. It is the speed that the style states,
@@ -145,14 +146,16 @@ pub(super) fn velocity_links(
 
 // All lengths below are in units of the font size of the picture's labels.
 
-/// Length of an arrow for a moving wall or disc, and length of the two barbs of its head, in font sizes.
+/// Length of an arrow that shows how a wall or disc moves, in font sizes.
 const LENGTH_EM: f64 = 1.7;
+/// Length of the two barbs of the head of an arrow that shows how a wall or disc moves, in font sizes.
 const BARB_EM: f64 = 0.5;
 /// Distance between the two heads of an arrow that shows a driving force, in font sizes.
 const SECOND_HEAD_EM: f64 = 0.42;
-/// Half of the width of an arrow's lines, and width of the border around them, which has the ground's colour, in font
-/// sizes.
+/// Half of the width of the lines of an arrow that shows how a wall or disc moves, in font sizes.
 const HALF_WIDTH_EM: f64 = 0.075;
+/// Width of the border around the lines of an arrow that shows how a wall or disc moves, in font sizes. The border has
+/// the colour of the ground, so that the arrow is visible on grains.
 const HALO_EM: f64 = 0.07;
 /// Smallest distance between two arrows that show the same motion, in font sizes.
 const SPACING_EM: f64 = 4.0;
@@ -160,10 +163,11 @@ const SPACING_EM: f64 = 4.0;
 const BESIDE_EM: f64 = 0.75;
 /// Distance from a body that a force drives to the middle of the force's arrow, in font sizes.
 const LOAD_EM: f64 = 1.75;
-/// Arc that shows a rotation around a pivot: its radius, in font sizes, its angle, rad, and its number of straight
-/// pieces.
+/// Radius of the arc that shows a rotation around a pivot, in font sizes.
 const ARC_EM: f64 = 0.9;
+/// Angle of the arc that shows a rotation around a pivot, rad.
 const ARC_TURN: f64 = 0.75 * TAU;
+/// Number of straight pieces of which the arc that shows a rotation consists.
 const ARC_PIECES: usize = 18;
 /// Speed below which a wall or disc has no arrow, in mean diameters per second.
 const LEAST_DIAMETERS_PER_SEC: f64 = 1e-9;
@@ -179,11 +183,12 @@ struct MotionArrows<'a> {
 }
 
 struct Spot {
-    /// Position of the arrow in the scene, m (`place`), and in pixels from the middle of the picture (`at`).
+    /// Position of the arrow in the scene, m.
     place: DVec2,
+    /// Position of the arrow in the picture, pixels from the middle, y up.
     at: DVec2,
-    /// On a wall, its unit normal (out of the solid, if one side is solid), and true if neither side is solid; `None`
-    /// on a disc.
+    /// For an arrow on a wall: the unit normal of the wall (out of the solid, if one side is solid), and true if
+    /// neither side is solid. `None` for an arrow on a disc.
     normal: Option<(DVec2, bool)>,
 }
 

@@ -115,8 +115,8 @@ pub(crate) struct Palette {
     pub outline: Colour,
     pub fixed: Colour,
     pub boundary: Colour,
-    /// Colour of contact forces that push. `push` and `pull` are a pair of colours that colour-blind people can
-    /// distinguish (Okabe & Ito).
+    /// Colour of contact forces that push. Colour-blind people can distinguish it from `pull`, the colour of contact
+    /// forces that pull (Okabe & Ito).
     pub push: Colour,
     pub pull: Colour,
 }

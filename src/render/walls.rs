@@ -25,9 +25,9 @@ const HATCH_DEPTH_EM: f64 = 0.45;
 
 /// Half of the width of a dash of a periodic border, in font sizes of the labels.
 const DASH_HALF_WIDTH_EM: f64 = 0.035;
-/// Length of a dash of a periodic border, and distance between the beginnings of two dashes, in font sizes of the
-/// labels.
+/// Length of a dash of a periodic border, in font sizes of the labels.
 const DASH_EM: f64 = 0.45;
+/// Distance between the beginnings of two dashes of a periodic border, in font sizes of the labels.
 const DASH_SPACING_EM: f64 = 0.9;
 
 /// Converter of walls and solids to the thick lines (links) of one picture.

@@ -144,8 +144,8 @@ pub fn start(scene: &Scene) -> Simulation {
     scene.simulation().expect("a proper scene")
 }
 
-/// Returns the bit patterns of the positions, angles and velocities of all grains. Bit patterns differ for 0 and −0 and
-/// are equal for equal NaN; `==` treats both cases the other way round.
+/// Returns the bit patterns of the positions, angles and velocities of all grains. Bit patterns distinguish 0 from −0,
+/// and two equal NaN have equal bit patterns. The operator `==` does the opposite in both cases.
 pub fn bits(simulation: &Simulation) -> Vec<[u64; 6]> {
     let grains = &simulation.world().grains;
     let of = |k: usize| {

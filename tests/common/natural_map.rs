@@ -23,7 +23,7 @@ pub struct Judged {
 }
 
 /// Largest gap at which grains already push each other, in mean diameters; it allows for rounding of positions. If half
-/// the touch tolerance is smaller, that gap is used instead.
+/// the touch tolerance is smaller than this gap, half the touch tolerance is used instead.
 const ROUNDING: f64 = 1e-4;
 
 /// Velocities (m/s) and angular velocities (rad/s) of the grains.

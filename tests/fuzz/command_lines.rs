@@ -228,7 +228,7 @@ fn alarms(run: &Value, rows: &[Observables], stderr: &str) {
     let any = |wrong: fn(&Observables) -> bool| rows.iter().any(wrong);
     let is_told = ["grain-lost", "grain-left", "placed-in-overlap"].into_iter().any(has);
     assert!(!any(|row| row.lost_grains > 0) || is_told, "{run}");
-    // The table has overlaps in mean diameters, but the alarm uses diameters of the smaller disc.
+    // The table has overlaps in mean diameters, but the warning uses diameters of the smaller disc.
     assert!(!has("overlap") || any(|row| row.max_overlap > 0.0), "{run}");
     for alarm in alarms.iter().filter(|alarm| alarm["kind"] != "not-finite") {
         let message = alarm["message"].as_str().expect("a sentence");

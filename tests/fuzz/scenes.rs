@@ -153,7 +153,7 @@ fn scene(u: &mut Unstructured<'_>, size: f64) -> Result<Scene> {
     Ok(scene)
 }
 
-/// Returns a motion of the first boundary that a random force drives.
+/// Returns a motion in which a random force drives the first boundary of a scene. `size` is the size of the scene, m.
 fn driven(u: &mut Unstructured<'_>, size: f64) -> Result<Motion> {
     let drive = Drive {
         direction: point(u, size)?,
@@ -167,7 +167,8 @@ fn driven(u: &mut Unstructured<'_>, size: f64) -> Result<Motion> {
     Ok(Motion { boundaries: vec![0], drive: Some(drive), ..Motion::default() })
 }
 
-/// Returns a random prescribed motion for all bodies that are not grains and may move.
+/// Returns a random prescribed motion for all bodies that are not grains and may move. `size` is the size of the scene,
+/// m.
 fn motion(u: &mut Unstructured<'_>, size: f64, scene: &Scene) -> Result<Motion> {
     let is_free = |index: &usize| !matches!(scene.boundaries[*index], Boundary::Piston { .. });
     let (pivot, travel) = (point(u, size)?, *u.choose(&[None, None, Some(0.0), Some(0.3)])?);

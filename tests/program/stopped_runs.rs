@@ -5,8 +5,8 @@ use std::io::{BufRead, BufReader};
 
 use crate::program::*;
 
-/// Arguments of a run that takes several minutes and draws a picture every 40 steps. The option for the output folder
-/// is missing.
+/// Arguments of a run that takes several minutes and draws a picture every 40 steps. Each test adds the option for the
+/// output folder.
 const LONG: &str =
     "--headless --scene cradle --dt 1e-3 --duration 3000 --size 64x18 --renderer cpu --solver nsgs";
 

@@ -23,7 +23,7 @@ fn an_alarm_stands_in_the_status_bar_until_the_run_is_reset() {
 fn whoever_points_at_an_alarm_reads_it_whole_and_once() {
     let mut robot = Robot::open(scene("thin-wall"));
     robot.take_steps(40);
-    // The window is so narrow that the line of the alarm is cut.
+    // The window is so narrow that the line of the warning is cut.
     robot.harness.set_size(egui::vec2(800.0, 700.0));
     robot.frames(3);
     let count = |robot: &Robot| robot.harness.query_all_by_label_contains("▲").count();

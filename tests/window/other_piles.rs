@@ -99,8 +99,9 @@ fn the_mean_is_that_of_the_same_seeds_without_a_window() {
     assert_near(mean(&mut robot, 0, 0.1), headless(&other));
 }
 
-/// Lets the window save the points of the paper's Fig. 5a. Returns for each point the time step Δt (s) and, in
-/// parentheses, the mean slump, half of its interval and the number of piles.
+/// Lets the window save the points of its plot of slump against Δt (Fig. 5a of Abramian & Staron 2020). Returns for
+/// each point the time step Δt (s) and, in parentheses, the mean slump, half the width of its 95 % confidence interval,
+/// and the number of piles.
 fn saved_points(robot: &mut Robot) -> Vec<(f64, (f64, f64, usize))> {
     robot.click("CSV");
     let table = read(robot.saved());

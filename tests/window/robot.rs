@@ -333,7 +333,8 @@ pub fn bits(world: &WorldFrame) -> Vec<[u64; 6]> {
     world.snapshot.grains.iter().map(bits).collect()
 }
 
-/// Returns the configuration of the paper's pile, solved accurately enough for the tests.
+/// Returns the configuration of the built-in pile (that of Abramian & Staron 2020), solved accurately enough for the
+/// tests.
 pub fn pile() -> Config {
     let mut config = Config::default();
     (config.solver.tolerance, config.solver.max_sweeps) = (Some(1e-3), Some(500));

@@ -29,7 +29,8 @@ pub enum Error {
     /// A renderer (a graphics driver or the window) that is not available or fails. The text is the whole message.
     #[error("{0}")]
     Renderer(String),
-    /// A run that was ended by a signal of the operating system. The results up to this moment have been written.
+    /// A run that was ended by a signal of the operating system. The results up to the last computed step have been
+    /// written.
     #[error("stopped by {signal} at step {step} (t = {time_secs} s)")]
     Interrupted {
         /// Name of the signal, such as `SIGINT`.
@@ -41,7 +42,8 @@ pub enum Error {
         /// Simulated time after the last computed step, s.
         time_secs: f64,
     },
-    /// A solve that was ended by a signal of the operating system. The impulses of the last sweep have been written.
+    /// A solve of a contact problem that was ended by a signal of the operating system. The impulses after the last
+    /// computed sweep have been written.
     #[error("stopped by {signal} after {sweeps} sweeps")]
     SolveInterrupted {
         /// Name of the signal, such as `SIGINT`.
@@ -72,7 +74,7 @@ pub enum Error {
         restitution: f64,
         /// Friction coefficient in the last step.
         friction: f64,
-        /// Advice that ends the sentence: the change of settings that is most likely to help.
+        /// Advice at the end of the error message: the change of settings that is most likely to help.
         advice: String,
     },
 }
@@ -81,7 +83,8 @@ pub enum Error {
 pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
-    /// Returns an error about the value of a field that is not allowed.
+    /// Returns an error about a field, named `field`, whose value `value` is not allowed. `allowed` describes the
+    /// allowed values.
     pub fn value(
         field: impl Into<String>,
         value: impl std::fmt::Display,
@@ -90,7 +93,7 @@ impl Error {
         Self::Value { field: field.into(), value: value.to_string(), allowed: allowed.into() }
     }
 
-    /// Returns an error about a file or folder that cannot be read or written.
+    /// Returns an error about the file or folder `path`, which cannot be read or written for the given `reason`.
     pub fn file(path: impl AsRef<Path>, reason: impl std::fmt::Display) -> Self {
         // Messages of parsers contain line breaks and end with them. The sentence of an error has no line break.
         let reason = reason.to_string().trim_end().replace('\n', " ");

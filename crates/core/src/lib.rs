@@ -1,8 +1,8 @@
 //! The physics of Slump: Contact Dynamics of cohesive grains.
 //!
 //! The source is A. Abramian & L. Staron, *Time Steps v.s. Cohesion in Non-Smooth Contact Dynamics Algorithm* (2020,
-//! hal-02570097), called *the paper* in these pages. This example computes five steps of a pile and prints how far it
-//! has slumped:
+//! hal-02570097), called *the paper* in this documentation. This example computes five steps of a pile and prints how
+//! far it has slumped:
 //!
 //! ```
 //! let mut scene = slump_core::scene::built_in("pile")?;

@@ -38,13 +38,14 @@ pub struct About {
 pub enum Needs {
     /// The setting has an effect in every scene.
     Nothing,
-    /// Contacts with friction.
+    /// The setting has an effect only if contacts have friction.
     Friction,
-    /// Grains that rotate.
+    /// The setting has an effect only if grains rotate.
     Rotation,
-    /// Contacts with cohesion.
+    /// The setting has an effect only if contacts have cohesion.
     Cohesion,
-    /// Uniform gravity in the plane. Only this gravity has a direction that can be turned.
+    /// The setting has an effect only with uniform gravity in the plane, because only this gravity has a direction that
+    /// can be turned.
     Direction,
 }
 
@@ -59,7 +60,7 @@ pub struct Control {
     pub unit: &'static str,
     /// Explanation of one sentence, shown as a hint.
     pub hint: &'static str,
-    /// Smallest and largest value of the slider of a number. Values outside can be typed.
+    /// Smallest and largest value of the slider, if the setting is a number. Values outside this range can be typed.
     pub range: [f64; 2],
     /// Largest number that can be typed. Slump refuses a larger number as a typing error.
     pub most: f64,
@@ -162,7 +163,7 @@ pub enum Kind {
     Count,
     /// A switch that is on or off.
     Switch,
-    /// One of the listed words.
+    /// The value is one of the listed words.
     Word(&'static [Word]),
 }
 

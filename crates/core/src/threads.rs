@@ -62,9 +62,9 @@ pub fn make_threads() -> Result<()> {
 }
 
 /// Runs `work` on `count` items, with several threads if that is faster than one thread. If the caller is already on a
-/// thread of a pool, as when a study runs many simulations at the same time, the whole work stays on this thread.
-/// Otherwise the thread, while it waits for other threads, could start another simulation and return only when that
-/// simulation ends.
+/// thread of a pool, as when a study runs many simulations at the same time, the whole work stays on this thread. If
+/// the work were divided, this thread could start another simulation while it waits for the other threads, and return
+/// only when that simulation ends.
 pub(crate) fn together<R: Send>(count: usize, work: impl FnOnce() -> R + Send) -> R {
     // Check the count first, because asking for the number of threads creates the pool.
     let is_alone = || rayon::current_thread_index().is_some() || rayon::current_num_threads() == 1;
@@ -97,17 +97,17 @@ pub(crate) fn are_there() -> bool {
     SHARES.get()
 }
 
-/// Keeps the other threads of the pool awake for a while, if the loops of this thread are divided among them.
-/// Otherwise these threads fall asleep between two loops.
+/// Keeps the other threads of the pool awake for [`PATIENCE`] after their last task, if the loops of this thread are
+/// divided among them. Without this call these threads would fall asleep between two loops.
 pub(crate) fn rouse() {
     if are_there() {
         (1..rayon::current_num_threads()).for_each(|_| rayon::spawn(stay_awake));
     }
 }
 
-/// Executes tasks of the thread pool until there has been no task for [`PATIENCE`]. If another thread waits for this
-/// one, it waits hardly longer than that. The function is never called with a single thread, as in a browser, where
-/// `Instant` does not exist.
+/// Executes tasks of the thread pool until there has been no task for [`PATIENCE`]. A thread that waits for this thread
+/// is delayed by hardly more than [`PATIENCE`]. The function is never called with a single thread, as in a browser,
+/// where `Instant` does not exist.
 fn stay_awake() {
     if IS_AWAKE.replace(true) {
         return;

@@ -46,8 +46,8 @@ impl<Row> CellValue<Row> {
     }
 }
 
-/// Name of the column with the number of the time step since the start of the run. Every table of a recording has this
-/// column, and its rows are sorted by it.
+/// Name of the column with the number of the step since the start of the run. Every table of a recording has this
+/// column, and the rows of a table are sorted by it.
 pub(crate) const STEP: &str = "step";
 
 pub(crate) const fn column<Row>(

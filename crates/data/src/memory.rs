@@ -84,8 +84,9 @@ impl Seek for MemoryFile {
     }
 }
 
-/// Contents of the files that the web page has given to the program to read, by their paths.
+/// Contents of the files that the web page has given to the program to read; the keys are the paths of the files.
 static GIVEN: Mutex<BTreeMap<PathBuf, Vec<u8>>> = Mutex::new(BTreeMap::new());
+/// Paths and contents of the files that the program has written and the web page has not fetched yet.
 static WRITTEN: Mutex<Vec<(PathBuf, Vec<u8>)>> = Mutex::new(Vec::new());
 
 /// Adds a file of the web page, which the program can then read.

@@ -1,4 +1,4 @@
-//! Lists the simulation runs that Figs. 3, 4 and 7 of the paper (Abramian and Staron 2020) show.
+//! Lists the simulation runs that Figs. 3, 4 and 7 of Abramian & Staron (2020) show.
 
 use glam::DVec2;
 
@@ -6,12 +6,12 @@ use crate::error::Result;
 use crate::scene::{NewPile, Preset, Scene, cradle, paper_pile};
 use crate::world::Boundary;
 
-/// A simulation run that a figure of the paper shows, with the times of its pictures.
+/// A simulation run that a figure of Abramian & Staron (2020) shows, with the times of its pictures.
 #[derive(Clone, Debug)]
 pub struct PaperRun {
     /// File name of the run's pictures, without the time.
     pub name: String,
-    /// Name of the figure that shows the run: `fig3`, `fig4` or `fig7`.
+    /// Name of the figure of Abramian & Staron (2020) that shows the run: `fig3`, `fig4` or `fig7`.
     pub figure: &'static str,
     /// The simulated scene.
     pub scene: Scene,
@@ -19,16 +19,19 @@ pub struct PaperRun {
     pub times_secs: Vec<f64>,
 }
 
-/// Bond numbers of the runs in Fig. 4 of the paper. The figure has one row of pictures per Bond number.
+/// Bond numbers of the runs in Fig. 4 of Abramian & Staron (2020). The figure has one row of pictures per Bond number.
 pub const FIG4_BONDS: [f64; 2] = [20.0, 100.0];
-/// Time steps of the runs in Fig. 4 of the paper, s. The figure has one column of pictures per time step.
+/// Time steps of the runs in Fig. 4 of Abramian & Staron (2020), s. The figure has one column of pictures per time
+/// step.
 pub const FIG4_TIME_STEPS_SECS: [f64; 3] = [1e-4, 1e-3, 2e-3];
-/// Time steps of the runs in Fig. 7 of the paper, s. The figure has one column of pictures per time step.
+/// Time steps of the runs in Fig. 7 of Abramian & Staron (2020), s. The figure has one column of pictures per time
+/// step.
 pub const FIG7_TIME_STEPS_SECS: [f64; 2] = [5e-4, 1e-3];
-/// Simulated times of the pictures in Fig. 7 of the paper, s. The figure has one row of pictures per time.
+/// Simulated times of the pictures in Fig. 7 of Abramian & Staron (2020), s. The figure has one row of pictures per
+/// time.
 pub const FIG7_TIMES_SECS: [f64; 4] = [1.32, 1.76, 2.25, 2.5];
 
-/// Returns all runs of Figs. 3, 4 and 7 of the paper, the most expensive first.
+/// Returns all runs of Figs. 3, 4 and 7 of Abramian & Staron (2020), the most expensive first.
 ///
 /// # Errors
 /// Returns the errors of [`paper_pile`].

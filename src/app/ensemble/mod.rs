@@ -3,9 +3,9 @@
 //! interval.
 //!
 //! Piles are chaotic, so the window shows a mean over several runs. The built-in pile was chosen because it shows the
-//! paper's pattern, so its seed is never in the ensemble. Idle cores run the other piles from their initial state to
-//! the end of the scene, with constant settings. A run has no ensemble if its settings changed during the run or if the
-//! user pulled a grain, because such a run cannot be compared with runs under constant settings.
+//! pattern of Abramian & Staron (2020), so its seed is never in the ensemble. Idle cores run the other piles from their
+//! initial state to the end of the scene, with constant settings. A run has no ensemble if its settings changed during
+//! the run or if the user pulled a grain, because such a run cannot be compared with runs under constant settings.
 
 mod pool;
 mod runs;
@@ -161,7 +161,8 @@ impl Ensemble {
         self.released.len() > before
     }
 
-    /// Discards the settings and results of all started runs. The visible runs are added again with the next frame.
+    /// Discards the settings and results of all started runs. When the next frame arrives, the settings of the visible
+    /// runs are stored again.
     pub(super) fn forget_released(&mut self) {
         self.released.clear();
     }

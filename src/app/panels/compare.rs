@@ -12,7 +12,7 @@ use crate::solver::{FrictionModel, METHODS, Method, MethodInfo, SolverSettings};
 use crate::study::{FIG4_BONDS, FIG4_TIME_STEPS_SECS};
 use crate::world::{FrictionCone, Parameters};
 
-/// Time steps Δt that the paper compares, s.
+/// Time steps Δt that Abramian & Staron (2020) compare, s.
 const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 /// Largest number of worlds (simulations) side by side.
 const MOST_WORLDS: usize = 6;

@@ -124,7 +124,7 @@ fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Returns the name and the use of a file format.
+/// Returns the name of a file format and a sentence on the programs that can read it.
 fn words(format: FormatName) -> (&'static str, &'static str) {
     match format {
         FormatName::Parquet => ("Parquet", "For pandas, polars and similar programs."),

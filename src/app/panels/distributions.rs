@@ -93,8 +93,8 @@ impl Distributions {
     }
 }
 
-/// Returns one bar per bin of a histogram. The axis of overlaps is logarithmic. A bin that is open at one end is as
-/// wide as the first bin with two ends.
+/// Returns one bar per bin of a histogram. The axis of overlaps is logarithmic. A bin without a lower or an upper end
+/// is drawn as wide as the first bin that has both ends.
 fn bars(histogram: &Histogram) -> Vec<Bar> {
     let Histogram { edges, counts, quantity, .. } = histogram;
     let is_log = *quantity == "overlap";

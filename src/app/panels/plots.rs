@@ -135,8 +135,9 @@ fn ghosts(context: &PanelContext<'_>) -> Vec<WorldCurve> {
     pairs.collect()
 }
 
-/// True if a quantity is plotted. If the user chose no quantity that is meaningful in this scene, all meaningful
-/// quantities are plotted, or only the energy next to the plot of an experiment.
+/// True if a quantity is plotted: if the user chose it and it is meaningful in this scene. Without such a choice, all
+/// meaningful quantities are plotted. A scene with the plot of an experiment's main quantity has space for only one
+/// more plot, so then only the energy is plotted.
 fn is_shown(run: &WatchedRun, preferences: &Preferences, quantity: &Quantity<Observables>) -> bool {
     let is_chosen = |quantity: &Quantity<Observables>| {
         means_something(run, quantity)

@@ -19,11 +19,13 @@ const SCENE_GROUPS: [SceneGroup; 2] = [SceneGroup::Paper, SceneGroup::Experiment
 /// Largest number of grains of a new pile that the panel offers. The command line allows more.
 const MOST_GRAINS: usize = 20_000;
 
-/// Number of grains of a new pile from which on the panel states the computing time.
+/// Smallest number of grains of a new pile for which the panel states the computing time.
 const LARGE: usize = 2_000;
-/// Measured computing times of the deposition of [`LARGE`] grains, s on one core: by rain, then by rolling
+/// Measured computing time of the deposition of [`LARGE`] grains by rain (grains fall into the box), s on one core
 /// (`docs/runs.md`, new piles).
 const RAIN_SECS: f64 = 116.0;
+/// Measured computing time of the deposition of [`LARGE`] grains by rolling (each grain rolls over others until two
+/// hold it), s on one core (`docs/runs.md`, new piles).
 const ROLL_SECS: f64 = 0.2;
 /// Approximate computing time of a solved step of a slumping pile with [`LARGE`] grains, ms. The panel estimates the
 /// time for other numbers of grains from this value.
@@ -137,8 +139,8 @@ fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.data_mut(|data| data.insert_temp(id, pile));
 }
 
-/// Returns a text on the computing time of a large pile: of its deposition by both methods, and of each step after the
-/// deposition.
+/// Returns a text on the computing time of a pile of `grains` grains: of its deposition by rain, of its deposition by
+/// rolling, and of each step after the deposition.
 fn cost(grains: usize) -> String {
     // The number of steps of a deposition is proportional to the time of fall, which grows as the square root of the
     // height.

@@ -29,9 +29,9 @@ const COLOURS: [(ColourBy, &str); 6] = [
 
 /// Duration of the GIF that the button "GIF of 5 s" saves, s.
 const SHORT_GIF_SECS: f64 = 5.0;
-/// Zoom factors of the user interface: the factor for a presentation, and the factor above which the window counts as
-/// presenting.
+/// Zoom factor of the user interface for a presentation.
 const PRESENTATION_ZOOM: f32 = 2.0;
+/// Zoom factor of the user interface above which the window counts as presenting.
 const LEAST_PRESENTATION_ZOOM: f32 = 1.5;
 
 /// Makes text and controls twice as large for a projector, or restores their usual size. In the large size, pages and

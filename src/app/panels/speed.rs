@@ -25,8 +25,10 @@ const LIMIT_SECS: f64 = 0.25;
 /// Number of times that each solver solves the step to each tolerance. The shortest computing time is reported.
 const REPEATS: usize = 3;
 const MOST_SWEEPS: u32 = 20_000;
-/// Largest number of steps whose computing time is measured, and limit on the sum of these times, s.
+/// Largest number of steps whose computing time is measured.
 const TIMED_STEPS: u32 = 50;
+/// Largest sum of the measured computing times of steps, s. When the sum reaches this value, no further step is
+/// measured.
 const TIMED_SECS: f64 = 1.0;
 
 /// Measured results of one solver for all tolerances.
@@ -240,7 +242,7 @@ fn draw(ui: &mut Ui, curves: &[RaceCurve], now: Option<[f64; 2]>) {
 }
 
 /// Returns the colour and the line style of the curve with this index, and a character that shows the line style. No
-/// two curves have both in common.
+/// two curves have the same colour and the same line style.
 fn look(index: usize, dark: bool) -> (Color32, LineStyle, &'static str) {
     let (style, sign) = match index / COLOURS {
         0 => (LineStyle::Solid, "━"),

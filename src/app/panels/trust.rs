@@ -1,8 +1,8 @@
 //! The verdict "Can I trust this?" on the displayed run: one word in the status bar, and a panel that gives the
 //! reasons. The panel contains a sentence, the bars of an error budget (estimated effects of initial state, contact
 //! law, time step and solver on a result), how well the steps were solved, warnings, and the mean slump of runs from
-//! other initial states. Idle cores compute the error budget after the panel was opened. They continue when the panel
-//! is closed, until the settings change.
+//! other initial states. Idle cores compute the error budget after the panel was opened. The cores continue when the
+//! panel is closed, until the settings change.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -42,8 +42,9 @@ const UNDER_WAY: &str = "Idle cores compute an error budget. The first answer ta
 
 /// Width of the names to the left of the bars, points.
 const NAMES: f32 = 150.0;
-/// Height of a bar of the error budget with its spacing, and of the bar alone, points.
+/// Height of a bar of the error budget including the space to the next bar, points.
 const ROW: f32 = 18.0;
+/// Height of a bar of the error budget without the space to the next bar, points.
 const BAR: f32 = 9.0;
 
 /// The verdict "Can I trust this?" in the status bar, and the panel with its reasons.
@@ -114,7 +115,7 @@ impl TrustPanel {
         (trust, reason)
     }
 
-    /// Returns the latest result of the error budget; `None` if there is none for the displayed run with the present
+    /// Returns the latest result of the error budget; `None` if no result exists for the displayed run with the present
     /// settings.
     fn of_budget(&self, run: &WatchedRun) -> Option<BudgetAnswer> {
         let budget = self.budget.as_ref()?;
@@ -213,7 +214,8 @@ impl TrustPanel {
         }
     }
 
-    /// If the panel is open, starts an error budget for the displayed run. Discards an error budget for other settings.
+    /// If the panel is open, starts to compute the error budget of the displayed run. Discards an error budget that was
+    /// computed for other settings.
     pub(super) fn follow(&mut self, ui: &Ui, context: &PanelContext<'_>) {
         if let Some(budget) = &mut self.budget
             && let Some(outcome) = outcome_of_ended(&mut budget.work)
@@ -303,7 +305,7 @@ fn bar(ui: &mut Ui, effect: &BudgetEffect, within: f64, reach: f64) {
     response.response.on_hover_text(text);
 }
 
-/// Returns a warning if a grain at rest would fall too far in one time step of a simulation.
+/// Returns a warning if a grain at rest would fall too far in one step of a simulation.
 fn warning(world: &WorldFrame) -> Option<String> {
     too_long(&world.controls.settings, &world.snapshot.surroundings, world.substeps)
 }

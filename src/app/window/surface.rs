@@ -12,7 +12,7 @@ use crate::app::canvas::Screen;
 use crate::error::{Error, Result};
 use crate::render::RendererChoice;
 
-/// Side that font textures of egui may always have, pixels, because every driver allows it.
+/// Largest side of egui's font textures, pixels, that every graphics driver allows.
 const LARGEST_SIDE_NEEDED: u32 = 2048;
 
 /// Result of an attempt to draw a frame in the window.

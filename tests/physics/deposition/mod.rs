@@ -11,8 +11,9 @@ use crate::program::*;
 
 const FLOOR: f64 = -10.0;
 
-/// A test case: name, half the width of the box, discs that lie there already (x, y, radius), initial x and radius of
-/// the dropped disc, its expected position, and its expected supports (`None` if they are not checked).
+/// A test case: name, half the width of the box, discs that already lie in the box (x, y, radius), initial x and radius
+/// of the dropped disc, its expected position, and the discs or walls that are expected to support it (`None` if the
+/// supports are not checked).
 type Drop<'a> =
     (&'a str, f64, &'a [[f64; 3]], [f64; 2], [f64; 2], Option<(Support, Option<Support>)>);
 

@@ -136,7 +136,7 @@ fn within_bounds_that_sweeps_lead_to_friction_keeps_up_with_the_pressure_on_what
     }
 }
 
-/// Returns a run, after two steps, of a disc that slides on the floor and a second disc that rolls down on it.
+/// Returns a run of two discs after two steps: one disc slides on the floor, and the other rolls down on this disc.
 fn two_bodies(model: FrictionModel) -> Simulation {
     let below = moving(DVec2::new(0.0, 0.999 * RADIUS), RADIUS, DVec2::new(0.8, 0.0));
     let above = Grain::at_rest(below.position + 1.998 * RADIUS * DVec2::new(0.6, 0.8), RADIUS);

@@ -91,8 +91,8 @@ fn solved_steps_obey_the_model_as_world_data_show_it() {
 /// Friction coefficient of [`piles`].
 const MU_OF_PILES: f64 = 0.5;
 
-/// A visitor that solves a contact problem, starting from random impulses (the number is their seed). It returns the
-/// velocities of the bodies.
+/// A visitor that solves a contact problem with the given solver settings, starting from random impulses with the given
+/// seed. It returns the velocities of the bodies.
 struct FromRandomStarts<'a>(&'a SolverSettings, u64);
 
 impl ProblemVisitor for FromRandomStarts<'_> {
@@ -248,7 +248,7 @@ fn the_error_of_the_velocities_is_what_world_data_make_it() {
 }
 
 /// Upper bound on the velocity error (m/s) divided by the root of the residual (dimensionless). The largest value in
-/// 4,500 steps of such piles was 0.35.
+/// 4,500 steps of the piles of the next test was 0.35.
 const ERROR_PER_ROOT_OF_RESIDUAL: f64 = 0.5;
 
 proptest! {

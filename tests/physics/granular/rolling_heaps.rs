@@ -1,4 +1,5 @@
-//! Tests of heaps with rolling friction: they are steeper and shorter, up to a limit.
+//! Tests of heaps of grains with rolling friction: a larger rolling friction coefficient makes heaps steeper and
+//! shorter, until grains hardly roll.
 
 use rayon::prelude::*;
 use slump::config::Config;
@@ -11,8 +12,8 @@ const ROLLING: [f64; 4] = [0.0, 0.4, 4.0, 16.0];
 /// Number of initial states, each of which runs with every coefficient.
 const STATES: u64 = 8;
 
-/// Returns the angle of repose (degrees) and the run-out (m) of a heap of 60 grains without cohesion, 0.6 s after its
-/// release.
+/// Returns the angle of repose (degrees) and the run-out (m) of a heap of 60 grains without cohesion, 0.6 s after the
+/// walls of its box were removed.
 fn shape(seed: u64, rolling_friction: f64) -> [f64; 2] {
     let new = NewPile { grains: 60, box_width_in_diameters: 10.5, seed, ..NewPile::default() };
     let mut config = Config::default();
@@ -26,9 +27,10 @@ fn shape(seed: u64, rolling_friction: f64) -> [f64; 2] {
     [repose_angle, run_out]
 }
 
-/// Estrada et al. (arXiv:1105.4418, abstract) shear discs with rolling resistance by Contact Dynamics: it acts like the
-/// angularity of grains. Here the two trends that the literature agrees on are tested with paired initial states. If
-/// rolling friction had no effect, each of the four comparisons below would be true by chance in 1 of 40 cases.
+/// Checks that rolling friction makes heaps steeper (larger angle of repose) and shorter (smaller run-out), and that
+/// both effects stop growing when grains hardly roll. Rolling resistance acts like the angularity of grains (Estrada et
+/// al., arXiv:1105.4418, who shear discs by Contact Dynamics). Each coefficient is tried with the same initial states.
+/// If rolling friction had no effect, each of the four comparisons below would be true by chance in 1 of 40 cases.
 #[test]
 fn heaps_get_steeper_and_shorter_with_rolling_friction_until_grains_hardly_roll() {
     let pairs: Vec<(u64, f64)> =

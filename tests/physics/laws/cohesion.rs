@@ -1,5 +1,5 @@
-//! Tests of cohesion whose force is defined by an acceleration of its own (`bond_acceleration`), so that it needs no
-//! gravity.
+//! Tests of cohesion whose force is Bond times a prescribed acceleration (`bond_acceleration`) times the effective
+//! mass, so that cohesion acts without gravity.
 
 use crate::common::*;
 

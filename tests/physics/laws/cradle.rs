@@ -1,10 +1,12 @@
-//! Tests of the paper's cradle (§4): at which time steps the shock of disc k breaks the bond between discs i and j.
-//! Further tests are about chains of discs that hang by their cohesion.
+//! Tests of the cradle of Abramian & Staron (2020, §4): disc k falls on a pair of bonded discs, i and j. The tests
+//! check at which time steps Δt this shock breaks the bond of i and j. Further tests are about chains of discs that
+//! hang by their cohesion.
 
 use crate::common::*;
 
-/// Runs a cradle for 2.5 s. Returns true if the gap between the discs i and j is then more than 0.1 d, so that their
-/// bond is broken. The shock of disc k comes at the latest, if k starts 8.5 d away, at √(2·7.5 d/g) = 1.5 s.
+/// Runs the cradle `scene` for 2.5 s with the time step `dt` (s). Returns true if the falling disc k has broken the
+/// bond between the discs i and j: the gap between i and j is then more than 0.1 d (d: diameter). The shock comes at
+/// the latest, if k starts 8.5 d away, at √(2·7.5 d/g) = 1.5 s.
 fn opens(mut scene: Scene, dt: f64) -> bool {
     scene.parameters.time_step_secs = dt;
     let run = after(&scene, (2.5 / dt).round() as usize);
@@ -51,8 +53,9 @@ fn after_a_shock_solved_well_i_and_j_move_together() {
     assert!(relative(&run).abs() < 1e-9, "v_ij = {:e}", relative(&run));
 }
 
-/// Returns the fraction of 100 runs in which the bond between i and j breaks. In these runs disc k starts between 6 and
-/// 8.5 d away.
+/// Returns the fraction of 100 runs of the cradle in which the falling disc k breaks the bond between the discs i and
+/// j. In these runs k starts between 6 and 8.5 diameters away. `dt` is the time step (s) and `tolerance` the stopping
+/// tolerance (m/s).
 fn share_lost(dt: f64, tolerance: f64) -> f64 {
     let lost = (0..100).filter(|&k| {
         let mut scene = cradle_from(6.0 + 2.5 * (f64::from(k) + 0.5) / 100.0);
@@ -104,8 +107,8 @@ const TIME_STEPS: [f64; 4] = [1e-5, 1e-4, 1e-3, 5e-3];
 // more discs breaks under its first disc at Bond = 2(n − 1). With two discs both contacts reach their limits together,
 // at Bond = 2.
 
-/// Returns a run of n discs that hang below a disc that does not move, in a line along gravity. If the motion is
-/// one-dimensional, gravity acts along x.
+/// Returns a run of `n` discs that hang below a disc that does not move, in a line along gravity, with the Bond number
+/// `bond` and the time step `dt` (s). If the motion is one-dimensional, gravity acts along x.
 fn chain(n: usize, bond: f64, dt: f64, physics: Physics) -> Simulation {
     let down = if physics.axes == 1 { DVec2::X } else { -DVec2::Y };
     let place = |k: usize| k as f64 * (2.0 * RADIUS - OVERLAP) * down;
@@ -118,7 +121,7 @@ fn chain(n: usize, bond: f64, dt: f64, physics: Physics) -> Simulation {
     })
 }
 
-/// Returns the lowest Bond number at which a chain of n discs does not break.
+/// Returns the lowest Bond number at which a hanging chain of `n` discs does not break.
 fn breaking_bond(n: usize) -> f64 {
     (n as f64).max(2.0 * (n as f64 - 1.0))
 }

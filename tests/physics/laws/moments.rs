@@ -1,5 +1,5 @@
 //! Tests of the reported states of contacts against exact results: status, forces, ages, unsolved steps and residuals.
-//! Further tests check effects of the paper's §3 in small piles.
+//! Further tests check in small piles how Δt and cohesion affect the slump (Abramian & Staron 2020, §3).
 
 use rayon::prelude::*;
 

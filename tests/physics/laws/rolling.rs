@@ -379,7 +379,7 @@ fn what_does_not_compute_rolling_friction_refuses_it() {
     );
 }
 
-/// Returns the mean of eight numbers, and half the width of its 95 % interval.
+/// Returns the mean of the eight numbers `numbers`, and half the width of the 95 % confidence interval of the mean.
 fn interval(numbers: &[f64]) -> (f64, f64) {
     let count = numbers.len() as f64;
     let mean = numbers.iter().sum::<f64>() / count;

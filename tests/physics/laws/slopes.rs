@@ -160,8 +160,8 @@ fn a_disc_leaves_a_fixed_disc_at_four_sevenths() {
     }
 }
 
-/// Returns a scene with a cohesive disc on an inclined half-space, for a stepper that does not solve one contact
-/// problem for the whole step. `slope` is the tangent of the angle.
+/// Returns a scene with a cohesive disc (Bond number `bond`) on a half-space, under gravity inclined by θ (`slope` =
+/// tanθ). The stepper is one of [`SCHEMES`], which do not solve one contact problem for the whole step.
 fn on_slope(
     stepper: Stepper,
     physics: Physics,
@@ -174,8 +174,8 @@ fn on_slope(
     scene
 }
 
-/// Returns the velocity (m/s) and the acceleration (m/s²) of the disc along the slope, measured after it has settled
-/// into its contact.
+/// Runs 500 steps, in which the disc settles into its contact, and 200 further steps. Returns the final velocity of the
+/// disc along the slope (m/s) and its mean acceleration over the last 200 steps (m/s²).
 fn slides(scene: &Scene) -> (f64, f64) {
     let mut run = after(scene, 500);
     let velocity = run.velocity(0).x;

@@ -9,8 +9,8 @@ const BOND: f64 = 20.0;
 /// Largest rounding error that the tests allow in gaps, in diameters.
 const ROUNDING: f64 = 1e-4;
 
-/// Returns a scene with this touch tolerance (in diameters): two weightless discs with a gap (in diameters) separate at
-/// the speed `opening` (m/s).
+/// Returns a scene of two weightless discs with the gap `gap` (in diameters) that separate at the speed `opening`
+/// (m/s), under the touch tolerance `tolerance` (in diameters).
 fn pair(tolerance: f64, gap: f64, opening: f64, dt: f64, restitution: f64) -> Scene {
     let place = (RADIUS + 0.5 * gap * DIAMETER) * DVec2::X;
     let grains = [-1.0, 1.0]
@@ -55,8 +55,8 @@ fn discs_bounce_from_within_the_tolerance_as_from_the_surface() {
 }
 
 /// Checks that discs never separate faster than they approached. The pull takes from them at least the energy that it
-/// gave them on the approach. At restitution 1 most pairs keep all of it, but some slow pairs are caught, because a
-/// step ends with their gap at 0.
+/// gave them on the approach. At restitution 1 most pairs have the same speed after the collision as before, but some
+/// slow pairs stay together, because a step ends with their gap at 0.
 #[test]
 fn the_pull_within_the_tolerance_gives_no_more_energy_than_it_takes() {
     let (mut kept, mut lost) = (0, 0);

@@ -47,8 +47,9 @@ fn a_pair_breaks_at_the_spin_that_its_bond_bears_where_bonds_have_a_length() {
     }
 }
 
-/// Checks a pair whose circular motion needs only 2e-4 of the strength of its bond. A bond that ends at a gap of zero
-/// breaks nevertheless, and Slump warns. With the stepper that the warning recommends, the pair stays together.
+/// Checks that a bond can break although the circular motion of its pair needs only 2e-4 of the strength of the bond: a
+/// bond that ends at a gap of zero breaks, and Slump warns. With the stepper that the warning recommends, the pair
+/// stays together.
 #[test]
 fn a_bond_that_turning_ends_is_counted_and_the_advice_helps() {
     let (bond, rate) = (1000.0, 10.0);

@@ -81,7 +81,7 @@ fn a_piston_at_rest_carries_its_pressure_however_light_it_is() {
     }
 }
 
-/// Checks that an oblique driven wall with bounded friction moves alike with sweeps and the interior-point method.
+/// Checks that sweeps and the interior-point method move an obliquely driven wall alike, with bounded friction.
 #[test]
 fn sweeps_and_the_interior_point_move_a_wall_alike_within_bounds_of_friction() {
     let of_grain = std::f64::consts::PI * 1e-4;
@@ -303,7 +303,8 @@ fn ways() -> impl Iterator<Item = (Stepper, Method)> {
     steppers.flat_map(move |stepper| methods(stepper).map(move |info| (stepper, info.method)))
 }
 
-/// Returns jumping grains between a damped piston of this mass (kg) above and one of three times this mass at a side.
+/// Returns a scene of jumping grains below a damped piston of this mass (kg) and beside a piston of three times this
+/// mass.
 fn jumping(mass: f64) -> Scene {
     let mut scene = pressed(mass);
     for (k, grain) in (0..).zip(&mut scene.grains) {

@@ -131,8 +131,8 @@ fn courses() -> Vec<(&'static str, MotionCourse, DVec2, f64)> {
     ]
 }
 
-/// Runs 1 s. Returns the largest rate at which the gap of a contact has changed between 0.5 s and 1 s, in diameters per
-/// second.
+/// Runs a scene for 1 s. Returns the largest rate at which the gap of a contact has changed between 0.5 s and 1 s, in
+/// diameters per second. Fails if the number of contacts at one of these two times is not `contacts`.
 fn drift(scene: &Scene, contacts: usize) -> f64 {
     let half = (0.5 / scene.parameters.time_step_secs).round() as usize;
     let mut run = start(scene);
@@ -147,7 +147,8 @@ fn drift(scene: &Scene, contacts: usize) -> f64 {
     changes.fold(0.0, f64::max) / 0.5 / scene.mean_diameter
 }
 
-/// Checks that the change of the gaps is proportional to Δt² (second order), or as small as rounding errors.
+/// Checks that the change of the gaps in a run of `scene` is proportional to Δt² (second order), or as small as
+/// rounding errors. `contacts` is the number of contacts, and `what` the name of the case in the failure message.
 #[track_caller]
 fn assert_of_second_order(scene: &Scene, contacts: usize, what: &str) {
     let [coarse, fine] = [1.0, 0.5].map(|part| {

@@ -132,8 +132,8 @@ fn drum(radius: f64, sides: usize) -> Boundary {
 
 /// Checks a disc of radius r, which cannot rotate, in a drum of radius R that turns at the angular velocity Ω. The disc
 /// sticks to the wall and moves about the axis at ΩR/(R − r) until tan φ = μ, where φ is its angle from the lowest
-/// point. From then on it slides and swings like a pendulum about this angle, because friction does not depend on the
-/// sliding speed.
+/// point. From then on it slides and swings like a pendulum about the angle φ = atan μ, because friction does not
+/// depend on the sliding speed.
 #[test]
 fn a_disc_in_a_drum_goes_with_the_wall_until_friction_holds_it_no_more() {
     let (outer, radius, rate) = (1.0, 0.1, 0.2);

@@ -35,7 +35,7 @@ fn moved_discs() -> [Scene; 2] {
 }
 
 /// Returns scenes whose steps [`natural_map`] can check. They are chosen from all built-in scenes if `all` is true,
-/// otherwise only from the paper's scenes and the stability tests.
+/// otherwise only from the scenes of Abramian & Staron (2020) and of the stability tests.
 fn scenes(all: bool) -> Vec<Scene> {
     let small = [SceneGroup::Paper, SceneGroup::Stability];
     let is_small = |info: &&SceneInfo| info.name != "pile" && small.contains(&info.group);

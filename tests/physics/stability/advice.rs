@@ -65,7 +65,7 @@ fn overlap_that_grains_were_placed_with_is_no_matter_of_the_time_step() {
         }
         assert_eq!(kinds(&apart, 100), [], "{stepper}: placed apart");
     }
-    // The alarm is the same if grains are placed in overlap during the run.
+    // The warning is the same if grains are placed in overlap during the run.
     let mut run = start(&under(Stepper::Moreau, overlapped(0.0)));
     take_steps(&mut run, 3);
     let diameter = run.world().mean_diameter;

@@ -230,8 +230,8 @@ fn a_step_is_cut_into_no_more_than_a_hundred_pieces() {
 }
 
 /// Stability tests (scene and level of difficulty) that fail with every remedy (an optional correction of the
-/// simulation). At this distance from the origin, neighbouring floating-point numbers are 2·10⁻³ d apart, so positions
-/// are too coarse.
+/// simulation). In the scene `far` the grains are 10¹³ d away from the origin (d: mean diameter). There neighbouring
+/// floating-point numbers are 2·10⁻³ d apart, so positions are too coarse.
 const UNMENDED: [(&str, f64); 1] = [("far", 1e13)];
 
 #[test]
@@ -318,7 +318,7 @@ fn brittle(mut scene: Scene, bond: f64, time_step_secs: f64) -> Scene {
 
 #[test]
 fn a_break_that_a_step_is_too_long_to_see_is_told_of_with_the_step_that_is_not() {
-    // Runs until bonds have broken, or for 0.1 s. Returns the alarms about breaking bonds, and true if bonds broke.
+    // Runs until bonds have broken, or for 0.1 s. Returns the warnings about breaking bonds, and true if bonds broke.
     let run = |scene: &Scene| {
         let mut simulation = start(scene);
         let mut broken = 0.0;
@@ -342,7 +342,7 @@ fn a_break_that_a_step_is_too_long_to_see_is_told_of_with_the_step_that_is_not()
     let words = said[0].message(&long.settings());
     assert!(words.contains("time step of at most 4.5e-4 s"), "{words}");
     // With this time step, breaking bonds are resolved. Without bonds, or if no bond is about to break, longer steps
-    // raise no alarm either.
+    // raise no warning either.
     assert_eq!(run(&brittle(pile.clone(), 20.0, 4.5e-4)), (Vec::new(), true));
     assert_eq!(run(&brittle(pile, 0.0, 5e-3)), (Vec::new(), false));
     assert_eq!(run(&brittle(heap(5), 20.0, 5e-3)), (Vec::new(), false));

@@ -10,8 +10,9 @@ use slump::study::stability::contraction_of_column;
 
 use crate::common::*;
 
-/// Number of steps after which a column that is not solved completely sinks at a steady speed: each step reduces the
-/// deviation from this speed to a tenth or less.
+/// Number of steps before the speed is measured at which a column sinks if its steps are not solved completely. Each
+/// step reduces the difference between the present speed and the final, steady speed to a tenth or less, so after this
+/// number of steps the speed is steady.
 const STEADY: usize = 40;
 
 fn cold(sweeps: u32) -> SolverSettings {

@@ -1,5 +1,5 @@
-//! Tests of the steppers other than the paper's (`range`, `tgs-soft`, `avbd`, `dem`), and of properties of all
-//! steppers.
+//! Tests of the steppers `range`, `tgs-soft`, `avbd` and `dem` (all except `moreau`, the scheme of Abramian & Staron
+//! 2020), and of properties of all steppers.
 
 mod own_laws;
 mod range;

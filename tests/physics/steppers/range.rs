@@ -5,12 +5,13 @@ use crate::common::*;
 
 const RADIUS: f64 = 2.5e-3;
 const BOND: f64 = 20.0;
-/// Time steps from a tenth of to about ten times the time in which a bond breaks, s. A bond breaks in 0.7 ms at Bond
-/// 20.
+/// Time steps, s. A bond breaks in 0.7 ms at Bond 20, so the time steps range from a tenth to about ten times this
+/// time.
 const TIME_STEPS: [f64; 7] = [5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
 
-/// Returns a run of a grain that leaves a disc at rest with a speed (m/s) while a load, given as an acceleration
-/// (m/s²), pulls it away. For every load the cohesion force C₀ is the same as for Bond [`BOND`] under g.
+/// Returns a run of a grain that touches a disc at rest and moves away from it at `speed` (m/s). A load, given as the
+/// acceleration `load` (m/s²), also pulls the grain away. For every load the cohesion force C₀ is the same as for Bond
+/// [`BOND`] under the gravity g.
 fn pair(time_step_secs: f64, speed: f64, load: f64, physics: Physics) -> Simulation {
     let direction = DVec2::X;
     let grain = moving(2.0 * RADIUS * direction, RADIUS, speed * direction);
@@ -399,8 +400,8 @@ fn methods_agree_on_nearly_all_steps_with_bonds() {
     }
 }
 
-/// Checks that all steps of a pile are solved with bounded friction, and not all of them under Coulomb friction. At Δt
-/// = 5e-3 s, half the steps of a slumping pile are unsolved under Coulomb friction.
+/// Checks that all steps of a pile are solved with bounded friction, and that some of them are unsolved under Coulomb
+/// friction. At Δt = 5e-3 s, half the steps of a slumping pile are unsolved under Coulomb friction.
 #[test]
 fn under_bounds_of_friction_no_piece_of_a_step_is_left_unsolved() {
     let run = |bond: f64, time_step_secs: f64, solver: SolverSettings| {

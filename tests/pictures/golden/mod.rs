@@ -9,8 +9,8 @@
 //! SLUMP_BLESS=1 cargo test --release --test pictures -- --ignored with_driver
 //! ```
 //!
-//! This draws them with Vulkan or else with OpenGL, never on the processor. The tests in `with_driver` need Vulkan or
-//! OpenGL.
+//! This command draws the pictures with Vulkan or else with OpenGL, never on the processor. The tests in `with_driver`
+//! need Vulkan or OpenGL.
 
 mod compare;
 mod states;

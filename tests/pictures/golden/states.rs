@@ -9,9 +9,11 @@ use slump::world::{Boundary, Disc};
 
 /// Mean diameter of the pile, m.
 const D: f64 = 0.005;
-/// Radii of the pile's grains in units of d/2. The grains take them in turn.
+/// Radii of the pile's grains in units of d/2 (d: mean diameter). The first seven grains have these radii in this
+/// order, the next seven again, and so on.
 const RADII: [f64; 7] = [0.97, 0.88, 1.0, 0.93, 0.9, 0.99, 0.95];
-/// Grey values of the pile's grains, from 0 (black) to 255 (white). The grains take them in turn.
+/// Grey values of the pile's grains, from 0 (black) to 255 (white). The first five grains have these values in this
+/// order, the next five again, and so on.
 const TONES: [u8; 5] = [205, 225, 190, 240, 175];
 
 fn grain(position: DVec2, radius: f64, tone: u8) -> GrainView {
@@ -29,7 +31,8 @@ fn grain(position: DVec2, radius: f64, tone: u8) -> GrainView {
     }
 }
 
-/// Returns a heap of ten rows on a rough base. Its flanks move outwards, and its left wall still exists.
+/// Returns a heap of ten rows on a rough base. Its flanks move outwards. The snapshot contains the left wall of the box
+/// in which the heap was made.
 pub fn pile() -> Snapshot {
     let base = |k: i32| Disc { position: DVec2::new(f64::from(k) * D, 0.0), radius: D / 2.0 };
     let fixed_discs: Vec<Disc> = (-12..=12).map(base).collect();

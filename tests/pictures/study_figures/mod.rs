@@ -8,7 +8,8 @@ use slump::study::chart::{Axis, Chart, Layer, Look, MapCell, PALETTE, Point, She
 
 use crate::program::*;
 
-/// Names of the paper's figures that take at most a few seconds to compute.
+/// Names of the figures of Abramian & Staron (2020), and of related figures, that take at most a few seconds to
+/// compute.
 const FAST: [&str; 5] = ["fig2", "two-body", "fig8", "cradle-choices", "cradle-map"];
 /// Largest fraction of pixels of a chart that may differ from the stored chart, because processors round differently.
 const MOST_DIFFERENT: f64 = 0.002;

@@ -6,7 +6,8 @@ use slump::setting::{Group, Kind, Value};
 use super::{bytes_of, read_back};
 use crate::common::*;
 
-/// Number of steps that are taken before a state is saved, and again after that.
+/// Number of steps before a state is saved. The same number of steps is then compared between the original and the copy
+/// that was read.
 const STEPS: usize = 4;
 
 /// Takes a step in each of two runs and checks that the runs are equal after it, even if the state is then no longer

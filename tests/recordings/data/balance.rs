@@ -214,7 +214,7 @@ fn off_by(run: &mut Simulation, frames: usize, every: usize) -> Off {
     off
 }
 
-/// Largest allowed error, relative to the sums of a step; it allows for rounding.
+/// Largest allowed relative error of the balances of momentum, energy, work and stress; it allows for rounding.
 const EXACT: f64 = 1e-10;
 
 /// Test cases: scene, Bond number, time step (s), number of steps before the comparison, and number of compared steps.

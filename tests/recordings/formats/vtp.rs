@@ -239,7 +239,7 @@ fn what_is_written_for_other_programs_is_refused_as_an_initial_state() {
     assert_refused(folder.path(), "has grains for other programs alone");
 }
 
-/// Returns two numbers by their names from the file of smoothed fields of one frame.
+/// Returns the numbers with these two names from the file of smoothed fields of frame `number`.
 fn of_fields(folder: &Path, number: usize, names: [&str; 2]) -> [f64; 2] {
     let file = bytes(folder.join(format!("fields/fields_{number:06}.vti")));
     let text = String::from_utf8_lossy(&file);

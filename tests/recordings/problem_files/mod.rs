@@ -145,7 +145,7 @@ fn a_file_reads_back_bit_for_bit_and_solves_as_the_simulation_does() {
 }
 
 /// Checks that each method solves each stored problem to a residual of 1e-6, given as bodies and given only as the
-/// matrix W. Methods that need the bodies must refuse the matrix.
+/// Delassus matrix W. Methods that need the bodies must refuse the matrix.
 #[test]
 fn every_method_reaches_1e_6_on_every_kept_problem_or_says_that_it_cannot() {
     let mut on_matrix = 0;
@@ -186,8 +186,8 @@ struct Reference {
 }
 
 /// Checks that the velocities agree with those of Siconos to 1e-9 of the fastest free velocity, from warm and from cold
-/// starts, and with W instead of the bodies. Without friction the velocities are unique; in these problems they are
-/// unique with friction, too.
+/// starts, and with the Delassus matrix W instead of the bodies. Without friction the velocities are unique; in these
+/// problems they are unique with friction, too.
 #[test]
 fn velocities_are_those_that_siconos_finds() {
     let with_friction = [SICONOS, "bond_0.json", "bond_20.json", "pile_138_bond_50.json"];
@@ -212,8 +212,8 @@ fn velocities_are_those_that_siconos_finds() {
     }
 }
 
-/// Checks that methods that work on the matrix W solve contacts whose 2 × 2 block of W couples the normal and the
-/// tangential component. Grains that are not discs have such contacts.
+/// Checks that methods that work on the Delassus matrix W solve contacts whose 2 × 2 block of W couples the normal and
+/// the tangential component. Grains that are not discs have such contacts.
 #[test]
 fn methods_on_w_solve_contacts_that_couple_normal_and_tangent() {
     let mut random = random(5);

@@ -75,9 +75,10 @@ impl Contact {
 pub(crate) struct LookAhead {
     /// Time step Δt, s.
     pub time_step_secs: f64,
-    /// Distance, m. A pair is added if the gap would shrink to less than this distance within the step.
+    /// Distance, m. A pair of bodies is added to the contact list if its gap would shrink to less than this distance
+    /// within the step.
     pub distance: f64,
-    /// Largest gap, m. A pair with a larger gap is not added, unless it is bonded.
+    /// Largest gap, m. A pair of bodies with a larger gap is not added to the contact list, unless it is bonded.
     pub reach: f64,
     /// Criterion by which a contact counts as in touch, so that cohesion can pull.
     pub in_touch: InTouch,
@@ -111,7 +112,8 @@ impl LookAhead {
     /// speed within the step. If pairs stay bonded, it is half of `reach` (the largest gap of a contact), because
     /// bonds may be open even if their grains are slow.
     pub(crate) fn way_of_grain(&self, velocity: DVec2) -> f64 {
-        /// Factor that makes up for the rounding of a speed.
+        /// Factor that makes the margin slightly larger than the computed motion of the grain, because the speed is
+        /// rounded.
         const ROUNDING: f64 = 1.0 + 1e-9;
         match self.in_touch {
             InTouch::Bonded => 0.5 * self.reach,
@@ -134,7 +136,8 @@ impl LookAhead {
 /// Motion of a grain relative to the other body of a contact during a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RelativeMotion {
-    /// Relative position at the time 0 of this motion, minus the present relative position, m.
+    /// Position of the grain relative to the other body at the time 0 of this motion, minus the present relative
+    /// position, m.
     pub offset: DVec2,
     /// Relative velocity v at the time 0 of this motion, m/s.
     pub velocity: DVec2,

@@ -19,8 +19,9 @@ use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 
 /// Ratio of the largest to the smallest disc above which the search uses the tree. Below it, the search uses the grid.
-/// The sizes are the radii, with or without search margins. At a ratio of 1.5 both take about the same time. At 20 the
-/// grid takes 1.2 to 18 times as long as the tree (`cargo bench --bench broad_phase`).
+/// The sizes that are compared are the radii of the discs, and also the radii plus search margins. At a ratio of 1.5
+/// both take about the same time. At 20 the grid takes 1.2 to 18 times as long as the tree (`cargo bench --bench
+/// broad_phase`).
 const SIZE_RATIO_OF_TREE: f64 = 4.0;
 
 /// Search for pairs of nearby discs, by a grid or a tree.
@@ -102,8 +103,8 @@ type GridCell = [i64; 2];
 #[derive(Clone, Debug, Default)]
 pub struct Grid {
     cells_per_metre: f64,
-    /// For each bucket b, the start of its points in `entries`: it contains `entries[starts[b] .. starts[b + 1]]`. The
-    /// number of buckets is a power of two.
+    /// For each bucket, the index in `entries` at which its points start: the points of bucket b are `entries[starts[b]
+    /// .. starts[b + 1]]`. The number of buckets is a power of two.
     starts: Vec<u32>,
     /// Indices of the points, bucket by bucket, in increasing order within a bucket.
     entries: Vec<u32>,

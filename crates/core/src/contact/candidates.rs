@@ -360,8 +360,8 @@ mod tests {
     use super::*;
     use crate::world::{Grain, Grains, Gravity};
 
-    /// Returns a world with `count` discs in rows. Their centres are three of the largest radii apart, and their
-    /// radii repeat `radii`.
+    /// Returns a world with `count` discs on a square lattice. Neighbouring centres are three times the largest radius
+    /// apart. The radii of the discs are the values of `radii`, in turn.
     fn rows(count: usize, radii: &[f64], mean_diameter: f64) -> World {
         let largest = radii.iter().copied().fold(0.0, f64::max);
         let columns = (count as f64).sqrt() as usize;

@@ -413,7 +413,7 @@ impl ContactColumns {
         rolling.clear();
     }
 
-    /// Replaces all entries by those of `parts`, one part after the other.
+    /// Replaces all entries by the entries of the lists in `parts`, joined in order.
     fn take_all(&mut self, parts: &[Self]) {
         fn join<'a, T: Copy + 'a>(all: &mut Vec<T>, parts: impl Iterator<Item = &'a Vec<T>>) {
             parts.for_each(|part| all.extend_from_slice(part));

@@ -16,12 +16,12 @@ pub(crate) enum Feature {
     HalfSpace {
         /// A point of the surface, m.
         point: DVec2,
-        /// The half-space with the same normal, moved so that its surface passes through the origin.
+        /// A copy of this half-space that is moved so that its surface passes through the origin.
         shape: HalfSpace,
     },
     /// A segment that discs can touch from both sides. Neighbouring segments of a polyline share a corner. Only the
-    /// later segment reports a contact with this corner, and only if the corner is the nearest point of both
-    /// segments. Otherwise an inner point of one of the segments is nearer.
+    /// later segment reports a contact with this corner, and only if the corner is the nearest point of both segments.
+    /// If the corner is not the nearest point of both, an inner point of one of the two segments is nearer to the disc.
     Segment {
         /// The segment.
         shape: Segment,

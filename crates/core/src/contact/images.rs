@@ -17,8 +17,8 @@ use super::broad_phase::BroadPhase;
 use super::features::Feature;
 use crate::world::{Periodic, World};
 
-/// Offsets, in periods, from a disc to those of its periodic images that the search visits. They are only half of the
-/// images around the cell, because a pair across a border is found from either of its two discs.
+/// Offsets, in periods, from a disc to those of its periodic images that the search visits. Half of the images around
+/// the cell are enough, because each pair across a border is then found from one of its two discs.
 const HALF_AROUND: [DVec2; 4] = [DVec2::X, DVec2::Y, DVec2::ONE, DVec2::new(-1.0, 1.0)];
 
 /// Calls `found` once for every pair of discs, given by their indices, whose nearest periodic images are closer than

@@ -1,16 +1,16 @@
 //! The contact laws, written as projections of the impulse of one contact.
 //!
-//! Signorini's law with cohesion (paper eq. 3 and 8, Fig. 2b) requires 0 ≤ N + C₀ ⟂ v̄_n ≥ 0, with the normal force
-//! N, the cohesion force C₀ (N) and the formal velocity v̄ = (v^n + ρ v^{n−1}) / (1 + ρ). Here v^{n−1} and v^n are
-//! the relative velocities before and after the step, and ρ is the restitution. Over one step N = P/Δt, with the
-//! impulse P (N·s) and the time step Δt (s). A positive factor does not change a complementarity condition, so the
-//! law can be divided by the effective mass m_ij. With the reduced impulse λ = P/m_ij (m/s), the shifted reduced
+//! Signorini's law with cohesion (Abramian & Staron 2020, eq. 3 and 8, Fig. 2b) requires 0 ≤ N + C₀ ⟂ v̄_n ≥ 0, with
+//! the normal force N, the cohesion force C₀ (N) and the formal velocity v̄ = (v^n + ρ v^{n−1}) / (1 + ρ). Here v^{n−1}
+//! and v^n are the relative velocities before and after the step, and ρ is the restitution. Over one step N = P/Δt,
+//! with the impulse P (N·s) and the time step Δt (s). A positive factor does not change a complementarity condition, so
+//! the law can be divided by the effective mass m_ij. With the reduced impulse λ = P/m_ij (m/s), the shifted reduced
 //! impulse σ = λ_n + C₀Δt/m_ij and u = v_n^n + ρ v_n^{n−1}, the law is
 //!
 //! > 0 ≤ σ ⟂ u ≥ 0   ⇔   σ = max(σ − u, 0).
 //!
 //! C₀Δt/m_ij = Bond·a·Δt is the capture speed (m/s), with a = g unless another acceleration is given. It is the same
-//! for all contacts of a scene, unless pairs of materials have a cohesion of their own. In terms of σ, cohesion is
+//! for all contacts of a scene, unless the scene gives the cohesion for pairs of materials. In terms of σ, cohesion is
 //! only a constant pull against which the contact pushes. Without cohesion the capture speed is 0.
 //!
 //! Coulomb's law with the friction coefficient μ is |λ_t| ≤ μσ in the shifted cone and |λ_t| ≤ μ max(σ − capture
@@ -58,7 +58,8 @@ impl ContactLaw {
         self.capture_speed
     }
 
-    /// The friction cone, which determines the part of the normal force that bounds friction.
+    /// The friction cone of this law: shifted if the normal force plus the cohesion force bounds friction, or
+    /// compressive if only a pushing normal force does.
     pub fn cone(&self) -> FrictionCone {
         self.cone
     }
@@ -85,8 +86,8 @@ impl ContactLaw {
     }
 }
 
-/// Returns the cohesion force C₀ = Bond · m_ij · a, newton (paper eq. 10, with a = g), for an effective mass m_ij
-/// (kg) and an acceleration a (m/s²).
+/// Returns the cohesion force C₀ = Bond · m_ij · a, newton (Abramian & Staron 2020, eq. 10, with a = g), for an
+/// effective mass m_ij (kg) and an acceleration a (m/s²).
 pub(crate) fn cohesion_force(bond: f64, effective_mass: f64, acceleration: f64) -> f64 {
     bond * effective_mass * acceleration
 }

@@ -19,8 +19,8 @@ pub struct RowNumbers {
     pub cohesion_per_mass: f64,
 }
 
-/// Contact laws, one for each pair of materials. A world has them only if the scene gives some pairs of its materials
-/// coefficients of their own, instead of the parameters of the run.
+/// Contact laws, one for each pair of materials. They exist only if the scene gives coefficients for some pairs of
+/// materials. All other pairs have the parameters of the run.
 #[derive(Clone, Debug)]
 pub(crate) struct PairLaws {
     /// Number of materials of the world.

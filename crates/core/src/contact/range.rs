@@ -48,8 +48,8 @@ use super::law;
 
 /// Gap or overlap, in mean diameters, below which a contact counts as exactly closed, because rounding and the
 /// tolerance of the solver cause gaps of this size. The solver does not close such a gap or push out such an overlap,
-/// and the contact bounces. Without this allowance every contact of a bonded network, which has more contacts than its
-/// grains have degrees of freedom, would demand a gap of exactly zero, which is impossible.
+/// and the contact bounces. Without this allowance each contact of a bonded network would demand a gap of exactly zero.
+/// This is impossible, because a bonded network has more contacts than its grains have degrees of freedom.
 pub(crate) const TOUCH_IN_DIAMETERS: f64 = 1e-4;
 
 /// State of the bond of one contact under the law `range`: whether it exists, and how far it is stretched.
@@ -94,7 +94,7 @@ impl OpeningMotion {
 
 /// Returns the escape speed √(2C₀δ_c/m_ij), m/s, from the cohesion force per effective mass C₀/m_ij = `bond` ·
 /// `acceleration` (m/s²) and the debonding distance δ_c (m). Two bonded grains that are thrown apart faster than this
-/// separate.
+/// speed separate.
 pub fn escape_speed(bond: f64, acceleration: f64, debonding_distance: f64) -> f64 {
     (2.0 * law::cohesion_force(bond, 1.0, acceleration) * debonding_distance).sqrt()
 }

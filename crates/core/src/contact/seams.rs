@@ -28,7 +28,7 @@ pub(crate) struct Seams(pub(super) Vec<Seam>);
 /// A corner of one feature (segment or polygon) that lies on a feature of another boundary, called the other piece.
 #[derive(Clone, Debug)]
 pub(super) struct Seam {
-    /// Index of the corner in its own feature.
+    /// Index of the corner among the corners of the feature (segment or polygon) that stores it.
     pub corner: usize,
     /// The feature (half-space, segment or polygon) of another boundary on which the corner lies.
     pub other: Piece,
@@ -53,9 +53,9 @@ impl Seams {
         self.0.is_empty()
     }
 
-    /// Returns true if this feature (segment or polygon) reports the contact of a disc with its corner number
-    /// `corner`. The disc has its centre at `centre` (m), and the corner is the point of this feature that is nearest
-    /// to the disc.
+    /// Returns true if this feature (segment or polygon) reports the contact between a disc and corner number `corner`
+    /// of this feature. The disc has its centre at `centre` (m), and the corner is the point of this feature that is
+    /// nearest to the disc.
     pub(super) fn reports(&self, corner: usize, centre: DVec2) -> bool {
         self.0.iter().filter(|seam| seam.corner == corner).all(|seam| {
             let nearest = match &seam.other {

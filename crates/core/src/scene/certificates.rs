@@ -16,8 +16,8 @@ use crate::solver::{
 /// Largest number of grains of a tested scene. Larger scenes would take longer and show the same.
 const MOST_GRAINS: usize = 250;
 
-/// Number of steps that the test computes before the tested steps, if a scene has walls that are driven by a force. It
-/// is chosen so that these walls have reached the grains.
+/// Number of steps that the test computes before the tested steps, if a scene has walls that are driven by a force.
+/// After this number of steps these walls have reached the grains.
 const STEPS_TO_TOUCH: u64 = 120;
 
 /// The default settings of the solver for bounded friction (the friction model `tresca`).
@@ -90,8 +90,8 @@ fn gap<M: Model>(problem: &StepProblem<M>) -> (f64, f64) {
     (gap, masses.filter(|(_, touches)| *touches).map(|(mass, _)| mass).sum())
 }
 
-/// Returns the settings with which the test runs a scene: two steppers, each with four values of friction, restitution
-/// and time step.
+/// Returns the settings with which the test runs a scene, derived from the settings `settings` of the scene: two
+/// steppers, each with four combinations of friction, restitution and time step.
 fn variants(settings: Settings) -> impl Iterator<Item = Settings> {
     let steppers = [Stepper::Moreau, Stepper::Range];
     let numbers = [(0.0, 1.0), (0.2, 1.0), (0.9, 1.0), (0.5, 8.0)];

@@ -45,8 +45,9 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 }
 
 impl Default for NewPile {
-    /// Returns the parameters of the paper's pile of 138 grains. The seed is one of nine that were tried. With this
-    /// seed, single runs of the paper's Fig. 4 show the same effects as means over many initial states.
+    /// Returns the parameters of the pile of 138 grains with which Slump repeats the runs of Abramian & Staron (2020).
+    /// Of nine seeds that were tried, this seed was chosen: with it, single runs of their Fig. 4 show the same effects
+    /// as means over many initial states.
     fn default() -> Self {
         Self {
             grains: 138,

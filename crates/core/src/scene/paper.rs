@@ -1,4 +1,4 @@
-//! The scenes of the paper: the pile (§3), the collision (§2.2) and the cradle (§4).
+//! The scenes of Abramian & Staron (2020): the pile (§3), the collision (§2.2) and the cradle (§4).
 
 use std::ops::RangeInclusive;
 
@@ -17,16 +17,18 @@ pub(super) const GRAVITY: f64 = 9.8;
 const NAME: &str = "pile";
 /// Allowed widths of a rough base (a row of fixed discs on which a pile lies), in diameters.
 const BASE_WIDTHS_IN_DIAMETERS: RangeInclusive<f64> = 1.0..=1e5;
-/// Width of the rough base on either side of the box, divided by the height of the pile. In the paper's runs of one
-/// second, no grain of a collapsing pile leaves this base.
+/// Width of the rough base on either side of the box, divided by the height of the pile. In the runs of one second of
+/// Abramian & Staron (2020), no grain of a collapsing pile leaves this base.
 const BASE_MARGIN_IN_HEIGHTS: f64 = 5.0;
-/// Largest allowed height of a grain above the base, in diameters, to which two diameters per grain are added. The
-/// loosest initial lattice of a pile is a column with 1.3 diameters per grain, which is below this limit.
+/// Constant part of the largest allowed height of a grain above the base, in diameters. Two diameters per grain of the
+/// pile are added to this value. The loosest initial lattice of a pile is a column with 1.3 diameters per grain, which
+/// is below this limit.
 const LEAST_ROOM_IN_DIAMETERS: f64 = 1000.0;
 
 const INITIAL_STATE: &str = include_str!("../../assets/pile_138.csv");
 
-/// Returns the scene of the paper's pile of 138 grains, with the initial state that is shipped with Slump.
+/// Returns the scene of the pile of 138 grains of Abramian & Staron (2020), with the initial state that is shipped with
+/// Slump.
 ///
 /// # Errors
 /// If the file of the initial state has been modified and is not valid. The error names the wrong line.
@@ -95,12 +97,13 @@ pub fn put_on_base(scene: &mut Scene, width_in_diameters: f64) -> Result<()> {
 const LINE_DIAMETER: f64 = 0.3;
 const ON_LINE: Physics = Physics { axes: 1, friction: false, rotation: false, cohesion: true };
 
-/// Returns a view of the scene `collision` or `cradle`. The corners are given in diameters.
+/// Returns the rectangle that pictures of the scene `collision` or `cradle` show. The arguments are its lower left and
+/// its upper right corner, in diameters.
 fn view_on_line(min: DVec2, max: DVec2) -> Option<View> {
     Some(View { min: LINE_DIAMETER * min, max: LINE_DIAMETER * max })
 }
 
-/// Returns the scene of the collision with one contact (paper §2.2): a disc falls on a fixed disc.
+/// Returns the scene of the collision with one contact (Abramian & Staron 2020, §2.2): a disc falls on a fixed disc.
 ///
 /// Let A be the normal force (N) for which the formal velocity v̄ = (v⁺ + ρ v⁻)/(1 + ρ) of the contact would be 0
 /// (v⁻, v⁺: normal velocity before and after the step, ρ: restitution), and C₀ the cohesion force (N). The contact
@@ -121,23 +124,24 @@ pub fn collision() -> Scene {
     }
 }
 
-/// Initial distance between the centres of disc k and disc i on its right in the scene `cradle`, in diameters. With
-/// this distance the scene shows the paper's pattern: which time steps open the bond of i and j, and which do not. The
-/// paper does not state the distance. This value was found by a search.
+/// Initial distance, in diameters, between the centres of the falling disc and the disc that it hits in the scene
+/// `cradle`. With this distance, the impact breaks the bond of the other two discs at the same time steps as in
+/// Abramian & Staron (2020), who do not state the distance. The value was found by a search.
 const START_IN_DIAMETERS: f64 = 7.865;
 
-/// Returns the scene of the cradle (paper §4): three discs on a line, with an attraction towards a point.
+/// Returns the scene of the cradle (Abramian & Staron 2020, §4): three discs on a line, with an attraction towards a
+/// point.
 ///
 /// Disc i is at the centre of attraction, and disc j touches it on the right. Disc k starts at rest on the left and
-/// falls onto disc i. Whether this shock separates i and j depends on the time step. At small time steps it also
-/// depends on the remaining error of the solver: in an exactly solved step the relative velocity of i and j after the
-/// shock is 0.
+/// falls onto disc i. Whether this shock separates i and j depends on the time step. At small time steps the result
+/// also depends on the remaining error of the solver: in an exactly solved step the relative velocity of i and j after
+/// the shock is 0.
 pub fn cradle() -> Scene {
     cradle_from(START_IN_DIAMETERS)
 }
 
-/// Returns the cradle in which disc k starts `start_in_diameters` diameters to the left of disc i, from centre to
-/// centre.
+/// Returns the scene of the cradle with another initial distance, `start_in_diameters` (in diameters), between the
+/// centres of the falling disc and the disc that it hits.
 pub fn cradle_from(start_in_diameters: f64) -> Scene {
     let disc = |x: f64, tone: u8| Grain {
         tone,

@@ -6,13 +6,14 @@ use crate::sim::{REMEDIES, Remedies, Settings};
 use crate::solver::{Method, SolverSettings, StopTest};
 
 /// Touch tolerance (largest gap at which grains touch) of the preset `robust`, in mean diameters. If the errors of a
-/// step open a contact by less than this, the two grains still touch.
+/// step open a contact by less than this length, the two grains still touch.
 const TOUCH_TOLERANCE: f64 = 1e-3;
 /// Restitution threshold of the preset `robust`, in units of g·Δt (gravity times time step): contacts that close
 /// slower than this do not bounce. With the value 2 nearly every step has a solution.
 const RESTITUTION_THRESHOLD: f64 = 2.0;
 /// Tolerance of the solver in the preset `robust`: largest residual of a solved step.
 const TOLERANCE: f64 = 1e-8;
+/// Largest number of sweeps of the solver per step in the preset `robust`.
 const MAX_SWEEPS: u32 = 5_000;
 
 words! {

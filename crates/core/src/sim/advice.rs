@@ -128,7 +128,7 @@ pub(super) fn on_unsolved(state: &State, settings: &Settings, stalled: bool) -> 
     if stalled && may_bounce && stepper.reads("restitution-threshold") {
         return Advice::RestitutionThreshold;
     }
-    // Only under Coulomb friction: under another friction model, solver `newton` would solve a different law.
+    // This advice is for Coulomb friction only: with another friction model, solver `newton` would solve another law.
     if solver.friction_model == FrictionModel::Coulomb {
         let newton = Method::Newton.info();
         let is_driven = state.world.motions.iter().any(|motion| motion.drive.is_some());

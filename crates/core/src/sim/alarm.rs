@@ -138,8 +138,8 @@ pub(super) struct Watch {
     pub losses: Losses,
     /// True if grains were placed (at the start, or moved by the user) and no step has been taken since.
     are_placed: bool,
-    /// Largest overlap of any contact minus the travel of its grains ([`DeepestContact`]), in diameters of the smaller
-    /// disc: the minimum over the time since grains were last placed.
+    /// Overlap of the deepest contact ([`DeepestContact`]), in diameters of the smaller disc: the smallest value since
+    /// grains were last placed.
     placed_overlap: f64,
     /// Longest distance that each grain has moved in a single step so far, m.
     travels: Vec<f64>,
@@ -207,7 +207,8 @@ impl Watch {
     }
 
     /// Checks the state after a step, and raises alarms. Counts the grains that went through a wall or left the world
-    /// in `observables`, and excludes them from the slump.
+    /// in `observables`, and excludes them from the slump. `finite` is false if a position, a velocity or the kinetic
+    /// energy is not finite.
     pub(super) fn look(
         &mut self,
         state: &State,
@@ -341,8 +342,8 @@ impl Watch {
         self.add(Alarm::new(kind, observables, advice));
     }
 
-    /// Raises an alarm whose advice is a shorter time step. `longest_time_step_secs` is the longest step that would
-    /// help, s, or `None` if it is unknown.
+    /// Raises an alarm whose advice is a shorter time step. `longest_time_step_secs` is the longest time step that
+    /// would help, s, or `None` if it is unknown.
     pub(super) fn raise(
         &mut self,
         kind: AlarmKind,

@@ -162,9 +162,9 @@ impl Losses {
         new
     }
 
-    /// Returns the slump Δy_G (relative drop of the mean height, paper eq. 11) of all grains that are not lost: both
-    /// sums in its formula exclude lost grains. Returns NaN if all grains are lost, because the mean height of no
-    /// grains is undefined.
+    /// Returns the slump Δy_G (relative drop of the mean height; Abramian & Staron 2020, eq. 11) of all grains that are
+    /// not lost: both sums in its formula exclude lost grains. Returns NaN if all grains are lost, because the mean
+    /// height of no grains is undefined.
     pub(super) fn slump(&self, world: &World) -> f64 {
         if self.count as usize == self.lost.len() {
             return f64::NAN;
@@ -175,7 +175,8 @@ impl Losses {
         if self.on_line || initial == 0.0 { 0.0 } else { (initial - heights) / initial }
     }
 
-    /// True if these data fit a world with `grains` grains: one entry per grain, and a correct number of lost grains.
+    /// True if these data fit a world with `grains` grains: each list has one entry per grain, and the number of lost
+    /// grains is equal to the count of grains that are marked as lost.
     pub(super) fn is_of(&self, grains: usize) -> bool {
         [self.from.len(), self.lost.len(), self.initial_heights.len()] == [grains; 3]
             && self.lost.iter().filter(|&&lost| lost).count() == self.count as usize

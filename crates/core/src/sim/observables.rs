@@ -82,9 +82,9 @@ pub struct Observables {
     pub border_work: Option<f64>,
     /// Work of gravity, of body forces, and of the spring with which the user pulls a grain, in this step, J.
     pub gravity_work: f64,
-    /// Slump Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) with the heights y_i of the grains (paper eq. 11), dimensionless: the
-    /// relative drop of the mean height. Both sums exclude grains that went through a wall or left the world. 0 if Σ
-    /// y_i(0) is 0, and NaN if no grain remains.
+    /// Slump Δy_G = Σ(y_i(0) − y_i(t)) / Σ y_i(0) with the heights y_i of the grains (Abramian & Staron 2020, eq. 11),
+    /// dimensionless: the relative drop of the mean height. Both sums exclude grains that went through a wall or left
+    /// the world. 0 if Σ y_i(0) is 0, and NaN if no grain remains.
     #[serde(with = "number")]
     pub slump: f64,
     /// Work of bonds in this step, J; part of `normal_work`, and negative while bonds are being stretched. `None` under
@@ -174,7 +174,7 @@ pub(super) fn at_start<M: Model>(
 }
 
 /// Returns the observables of a state and of the step that led to it. Step number, time and lost grains, which depend
-/// on earlier steps, are 0; other code sets them. Every field is set by name here, so that none is forgotten.
+/// on earlier steps, are 0; other code sets them. Every field is set by name here, so that no field is forgotten.
 fn of_state<M: Model>(
     state: &State,
     result: StepResult,

@@ -36,7 +36,7 @@ pub struct Simulation {
     slots: Slots,
     memory: StepperMemory,
     observables: Observables,
-    /// Sum of the initial heights of all grains, Σ y_i(0), m (paper eq. 11).
+    /// Sum of the initial heights of all grains, Σ y_i(0), m (Abramian & Staron 2020, eq. 11).
     pub(super) initial_heights: f64,
     /// Stepper of the last step, whose data contacts keep; `None` at the start and after a step with your own stepper.
     last_stepper: Option<Stepper>,
@@ -158,7 +158,7 @@ impl Simulation {
         self.look()
     }
 
-    /// Clears the data that contacts keep if the last step had another stepper: each stepper keeps data of its own.
+    /// Clears the data that contacts keep if the last step was not taken by `stepper`: steppers keep different data.
     fn become_of(&mut self, stepper: Option<Stepper>) {
         if self.last_stepper != stepper {
             self.state.contacts.forget();

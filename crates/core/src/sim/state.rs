@@ -35,7 +35,7 @@ pub(crate) struct State {
     pub body_forces: Vec<DVec2>,
     /// True while the user drags a wall. The last entry of the world's `motions` is then the motion of this wall.
     pub is_held: bool,
-    /// Length of the time step to which the impulses in `contacts` belong, s.
+    /// Time step for which the impulses in `contacts` were computed, s.
     pub time_step_of_impulses_secs: f64,
     /// Clock that measures the computing times of contact detection and solver; it runs only during a timed step.
     #[serde(skip)]
@@ -70,8 +70,9 @@ impl State {
         (settings.stepper.info().substeps)(&self.world, self.physics, &settings.parameters)
     }
 
-    /// Begins a step of length `time_step_secs`, s. If the step length has changed, rescales the stored impulses so
-    /// that the contact forces stay the same. Also sets the velocities of walls and the direction of gravity.
+    /// Begins a step with the time step `time_step_secs` (s). If the time step has changed, rescales the stored
+    /// impulses so that the contact forces stay the same. Also sets the velocities of walls and the direction of
+    /// gravity.
     pub(crate) fn begin(&mut self, time_step_secs: f64) {
         let before = self.time_step_of_impulses_secs;
         if time_step_secs != before {
@@ -126,7 +127,7 @@ impl State {
 
     /// Returns the speed of the fastest grain, or `fastest_wall` if that is larger, m/s. Periodic images of grains
     /// beyond a sheared border slide with the border. Two grains that meet across the border share this sliding speed,
-    /// so half of it is added.
+    /// so half of the sliding speed is added to the result.
     fn fastest_with(&self, fastest_wall: f64) -> f64 {
         let speeds = self.world.grains.velocities.iter().map(|velocity| velocity.length());
         speeds.fold(fastest_wall, f64::max) + 0.5 * self.speed_of_border()
@@ -138,8 +139,8 @@ impl State {
         self.world.periodic.map_or(0.0, |periodic| periodic.border_speed().abs())
     }
 
-    /// Moves the grains by their velocities: x^n = x^{n−1} + Δt v^n (paper eq. 12), and likewise the angles if grains
-    /// turn. Also moves walls and sheared borders, and advances the direction of gravity.
+    /// Moves the grains by their velocities: x^n = x^{n−1} + Δt v^n (Abramian & Staron 2020, eq. 12), and likewise the
+    /// angles if grains turn. Also moves walls and sheared borders, and advances the direction of gravity.
     pub(crate) fn integrate<M: Model>(&mut self, time_step_secs: f64) {
         let grains = &mut self.world.grains;
         for (position, velocity) in grains.positions.iter_mut().zip(&grains.velocities) {
@@ -149,7 +150,7 @@ impl State {
                 *position += time_step_secs * *velocity;
             }
         }
-        // Depends on the physics and not on the compiled model: grains keep turning while friction is off.
+        // This condition is not about the compiled model, because grains keep turning while friction is off.
         if self.physics.rotation {
             for (angle, spin) in grains.angles.iter_mut().zip(&grains.angular_velocities) {
                 *angle += time_step_secs * spin;

@@ -58,7 +58,8 @@ pub struct MotionView {
 }
 
 impl MotionView {
-    /// Returns all motions of a world, with velocities for a step of length `time_step_secs`, s.
+    /// Returns all motions of boundaries and fixed discs of a world, with the velocities that these bodies have in a
+    /// step with the time step `time_step_secs` (s).
     fn all(world: &World, time_step_secs: f64) -> Vec<Self> {
         let by_themselves = world.boundaries.iter().enumerate().filter_map(|(index, boundary)| {
             let velocity = boundary.velocity_in(time_step_secs)?.velocity;
@@ -91,8 +92,9 @@ impl MotionView {
 }
 
 impl Surroundings {
-    /// Copies the boundaries, fixed discs and other surroundings of the grains from a world. The velocities of motions
-    /// are those for a step of length `time_step_secs`, s.
+    /// Returns copies of the parts of a world that pictures show in addition to the grains: boundaries, fixed discs,
+    /// periodic borders and materials. Moving bodies get the velocities that they have in a step with the time step
+    /// `time_step_secs` (s).
     pub(super) fn of(world: &World, time_step_secs: f64) -> Self {
         Self {
             fixed_discs: world.fixed_discs.clone(),

@@ -49,14 +49,17 @@ const NONE: u32 = u32::MAX;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Walls {
     moving: Vec<Wall>,
-    /// Length of the step or, if the stepper detects contacts in each substep, of a substep, s.
+    /// Time step, s. If the stepper detects contacts in each substep, the length of a substep.
     secs: f64,
-    /// For each boundary: index of its wall in `moving`, or [`NONE`]. The next two fields contain the same for each
-    /// fixed disc and for each feature (part of a boundary).
+    /// For each boundary, the index of its wall in `moving`, or [`NONE`] if the boundary does not move.
     of_boundary: Vec<u32>,
+    /// For each fixed disc, the index of its wall in `moving`, or [`NONE`] if the disc does not move.
     of_disc: Vec<u32>,
+    /// For each feature (part of a boundary), the index of its wall in `moving`, or [`NONE`] if the feature does not
+    /// move.
     of_feature: Vec<u32>,
-    /// Two flags for each feature: true if it is a half-space, and true if it moves only along its normal.
+    /// Two flags for each feature (part of a boundary): true if it is a half-space, and true if it moves only along its
+    /// normal.
     shapes: Vec<(bool, bool)>,
 }
 
@@ -156,7 +159,8 @@ impl Walls {
         !self.moving.is_empty()
     }
 
-    /// Changes the length of the step to that of a substep, for a stepper that detects contacts in each substep.
+    /// Divides the time step of these walls by the number of substeps, for a stepper that detects contacts in each
+    /// substep.
     pub(crate) fn divide(&mut self, substeps: u32) {
         self.secs /= f64::from(substeps);
     }

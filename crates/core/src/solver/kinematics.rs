@@ -69,8 +69,8 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     fn body(world: &World, index: usize) -> Self::Body<f64>;
     /// Writes a body's velocity back to grain `index` of a world.
     fn store(body: &Self::Body<f64>, world: &mut World, index: usize);
-    /// Returns the velocity of grain `index`, now `body`, after gravity has acted for `time_step_secs` at the grain's
-    /// present position.
+    /// Returns the velocity that grain `index` reaches from its velocity `body` if gravity at the grain's position acts
+    /// on the grain for `time_step_secs`.
     fn accelerated(
         body: &Self::Body<f64>,
         world: &World,

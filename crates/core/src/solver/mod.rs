@@ -1,4 +1,4 @@
-//! The contact problem of one time step, the methods that solve it, and the residual that measures the error of every
+//! The contact problem of one step, the methods that solve it, and the residual that measures the error of every
 //! method.
 //!
 //! * `kinematics`, `model`: velocities at contacts, and the models (variants of the mechanics) that a step is compiled

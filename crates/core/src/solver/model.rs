@@ -84,7 +84,8 @@ pub struct Slot<M: Model> {
     pub memory: Memory,
 }
 
-/// One [`Slot`] per model. The slots of models that a scene does not use allocate no memory.
+/// For each model, its contact problem and work memory (a [`Slot`]). The memory of models that a scene does not use
+/// allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Slots {
     line: Slot<Line>,

@@ -6,8 +6,9 @@ use crate::setting::{Group, settings, words};
 
 words! {
     /// The stopping test: the quantity that the solver's tolerance limits. P is the vector of the normal and tangential
-    /// impulses of all contacts (N·s), and ΔP its change in a sweep, or in an iteration of a method without sweeps.
-    /// `impulse-per-mass` is tested after every sweep.
+    /// impulses of all contacts (N·s), and ΔP its change in a sweep, or in an iteration of a method without sweeps. The
+    /// test `impulse-per-mass` is made after every sweep; in a long solve the other tests are made after every eighth
+    /// sweep.
     #[derive(Default)]
     pub enum StopTest {
         RelativeChange = "relative-change", "‖ΔP‖ of a sweep over ‖P‖";
@@ -146,7 +147,8 @@ impl SolverSettings {
     pub const SWEEPS: Self =
         Self { stop: StopTest::RelativeChange, ..Self::to_residual(Method::Nsgs, 1e-6, 5_000) };
 
-    /// The default settings with bounded friction (Tresca), a convex problem that can be solved at any size.
+    /// The default settings with bounded friction (Tresca). The problem is then convex, and can be solved for any
+    /// number of grains.
     pub const BOUNDED: Self = Self { friction_model: FrictionModel::Tresca, ..Self::DEFAULT };
 
     /// The scheme of a paper (A. Abramian, L. Staron, *Time Steps v.s. Cohesion in Non-Smooth Contact Dynamics

@@ -3,7 +3,7 @@
 //! Coulomb's law is not convex, so a step of a flowing pile can have several solutions, and the initial impulses decide
 //! which solution a method finds. This search starts conjugate gradients from several sets of initial impulses: the
 //! impulses of the previous step, zero, and random impulses that the law allows. Newton's method then continues from
-//! the result of the conjugate gradients. The result of Newton's method is kept if its residual is smaller.
+//! the result of the conjugate gradients. The result with the smaller residual is kept.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -38,7 +38,7 @@ pub struct SolutionSearch {
 /// A solution of the contact problem of a step, found by one or more searches.
 #[derive(Clone, Debug)]
 pub struct Solution<M: Model> {
-    /// The problem with the impulses and velocities of this solution under Coulomb's law.
+    /// The contact problem with the impulses and velocities of this solution. Its friction model is Coulomb's law.
     pub problem: StepProblem<M>,
     /// Residual of the contact laws, dimensionless ([`super::residual`]).
     pub residual: f64,
@@ -129,9 +129,9 @@ pub fn velocity_distance<M: Model>(one: &StepProblem<M>, other: &StepProblem<M>)
     distance_to_velocities(one, &velocities(other))
 }
 
-/// Returns the distance between the velocities of a problem and the velocities `others`, a copy made by [`velocities`],
-/// in m/s, measured as in [`velocity_distance`]. The contacts of the problem may have been sorted in another order
-/// since the copy was made.
+/// Returns the distance, m/s, between the present velocities of a problem and `others`, earlier velocities of the same
+/// grains that [`velocities`] returned. The distance is defined as in [`velocity_distance`]. The contacts of the
+/// problem may have been sorted in another order in the meantime.
 pub fn distance_to_velocities<M: Model>(problem: &StepProblem<M>, others: &[[f64; 3]]) -> f64 {
     let grains = problem.bodies.now.iter().zip(others).zip(&problem.bodies.masses);
     let squares = grains.map(|((one, other), mass)| {

@@ -23,7 +23,7 @@ pub struct Grain {
     /// True if gravity accelerates this disc.
     #[serde(default = "yes")]
     pub feels_gravity: bool,
-    /// Grey level of the disc in pictures in the style of the paper: 0 is black, 255 is white.
+    /// Grey level of the disc in pictures in the style of Abramian & Staron (2020): 0 is black, 255 is white.
     #[serde(default = "light_grey")]
     pub tone: u8,
     /// Name of the material of the disc. Default: the first material of the scene.
@@ -98,7 +98,7 @@ pub struct Grains {
     pub masses: Vec<f64>,
     /// For each disc, true if gravity acts on it.
     pub feels_gravity: Vec<bool>,
-    /// Grey levels for pictures in the style of the paper: 0 is black, 255 is white.
+    /// Grey levels for pictures in the style of Abramian & Staron (2020): 0 is black, 255 is white.
     pub tones: Vec<u8>,
     /// Index of the material of each disc. Empty in a world without materials.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

@@ -20,7 +20,8 @@ pub enum Gravity {
         /// Acceleration, m/s².
         acceleration: DVec2,
     },
-    /// Attraction: an acceleration of constant magnitude towards a point (paper §4). It is zero at the point itself.
+    /// Attraction: an acceleration of constant magnitude towards a point (Abramian & Staron 2020, §4). It is zero at
+    /// the point itself.
     Attraction {
         /// The centre of attraction, m.
         centre: DVec2,

@@ -30,8 +30,9 @@ use self::materials::check_materials;
 use self::motion_check::check_motions;
 use crate::error::{Error, Result};
 
-/// The world: the bodies and fields of a simulation that a step reads and moves. The fields are public, and a
-/// simulation checks them when it takes over the world. The data of a running simulation can be read but not changed.
+/// The world: the bodies, gravity and periodic borders of a simulation, which a step reads and updates. The fields are
+/// public, and a simulation checks them when it takes over the world. The data of a running simulation can be read but
+/// not changed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct World {

@@ -14,7 +14,7 @@ use crate::world::Periodic;
 /// A motion of some boundaries and fixed discs, which move together as one rigid body.
 ///
 /// The motion stores its own progress: as the bodies move, `elapsed_secs` grows and the remaining `travel` of the
-/// course shrinks.
+/// prescribed motion (`course`) shrinks.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Motion {
@@ -28,7 +28,7 @@ pub struct Motion {
     /// the bodies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub course: Option<MotionCourse>,
-    /// Force or pressure that moves the bodies, in addition to the course.
+    /// Force or pressure that moves the bodies, in addition to their prescribed motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive: Option<Drive>,
     /// Speed of the surface along itself, m/s. The shape itself stays at rest, as with a conveyor belt. A positive
@@ -191,8 +191,8 @@ impl MotionCourse {
         }
     }
 
-    /// Returns the mean velocity of the bodies during the `secs` seconds that follow the time `elapsed` (s) of the
-    /// course.
+    /// Returns the mean velocity of the bodies during the `secs` seconds that follow the time `elapsed` (s, since the
+    /// motion began).
     fn velocity_in(&self, elapsed: f64, secs: f64) -> RigidVelocity {
         let times = [elapsed, elapsed + secs];
         match self {

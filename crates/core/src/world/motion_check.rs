@@ -53,7 +53,7 @@ pub(super) fn check_motions(
 }
 
 /// Checks that the drive of a motion (a force or pressure) is valid and compatible with the prescribed course of the
-/// motion.
+/// motion. `field` is the name of the motion in error messages.
 fn check_drive(motion: &Motion, field: &str, periodic: Option<Periodic>) -> Result<()> {
     /// Largest absolute cosine of the angle between two directions that count as perpendicular. It allows for
     /// rounding.
@@ -127,7 +127,8 @@ fn check_numbers(motion: &Motion, field: &str) -> Result<()> {
     }
 }
 
-/// Checks that a table has valid times in increasing order and finite values.
+/// Checks that a table has valid times in increasing order and finite values. `values` contains, for each time, true if
+/// the value is finite. The names of the table (`field`) and of its values (`name`) are for error messages.
 pub(super) fn check_table(
     field: &str,
     times_secs: &[f64],

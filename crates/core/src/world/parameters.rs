@@ -5,7 +5,7 @@ use crate::number::is_zero;
 use crate::setting::{settings, words};
 
 words! {
-    /// The part of the normal force that bounds the friction force T (the paper allows both readings).
+    /// The part of the normal force that bounds the friction force T (Abramian & Staron 2020 can be read in both ways).
     #[derive(Default)]
     pub enum FrictionCone {
         #[default]
@@ -29,18 +29,19 @@ pub(crate) const MAX_SUBSTEPS: u32 = 100_000;
 /// Largest allowed number of steps of a run. Even in the smallest scene more steps would take months of computing
 /// time.
 const MOST_STEPS: f64 = 1e12;
-/// Time step, s, below which it counts as unusually small. If a run with such a time step has too many steps, the
-/// error message names the time step as the cause.
+/// Smallest usual time step, s. If a run with a smaller time step has too many steps, the error message names the time
+/// step as the cause.
 const SMALL_TIME_STEP_SECS: f64 = 1e-7;
 
 settings! {
     /// Parameters of the contact laws, and the time step. They may change between any two steps. The fields are
     /// public, and a simulation checks them when it takes them over.
     ///
-    /// The default is the paper's scheme at a time step of 1e-3 s, without cohesion, restitution or friction.
+    /// The default is the scheme of Abramian & Staron (2020) at a time step of 1e-3 s, without cohesion, restitution or
+    /// friction.
     pub struct Parameters, changes ParameterChanges, heading "Physics" {
-        /// The cohesion force is C₀ = Bond · m_ij · a (paper eq. 10), with the effective mass m_ij and the
-        /// acceleration a of [`Parameters::cohesion_acceleration`].
+        /// The cohesion force is C₀ = Bond · m_ij · a (Abramian & Staron 2020, eq. 10), with the effective mass m_ij
+        /// and the acceleration a of [`Parameters::cohesion_acceleration`].
         bond: f64 = 0.0, "bond" ("BOND"), "Bond number: cohesion force divided by the effective weight of a \
             contact, at least 0; pairs of materials may have their own", {
             allowed: "a finite number ≥ 0",
@@ -130,7 +131,7 @@ settings! {
             }),
         }
         /// Restitution threshold, in units of g·Δt (gravity times time step): contacts do not bounce if their closing
-        /// speed |v_n| at the beginning of the step is below it. 0 in the paper's scheme.
+        /// speed |v_n| at the beginning of the step is below it. 0 in the scheme of Abramian & Staron (2020).
         ///
         /// The restitution term ρ v_n of a contact that is wedged between others can contradict the terms of its
         /// neighbours, and then the step has no solution. Bounces slower than about 2 g·Δt are too small to be seen.
@@ -306,9 +307,9 @@ impl Parameters {
         }
     }
 
-    /// Returns the dimensionless cohesive time Bond·a·Δt/√(g·d), with the acceleration a of cohesion, the time step
-    /// Δt, gravity g and the mean diameter d. If a is g, it equals Bond·Δt/√(d/g) (paper §3.3). Without gravity, a
-    /// replaces g.
+    /// Returns the dimensionless cohesive time Bond·a·Δt/√(g·d), with the acceleration a of cohesion, the time step Δt,
+    /// gravity g and the mean diameter d. If a is g, it equals Bond·Δt/√(d/g) (Abramian & Staron 2020, §3.3). Without
+    /// gravity, a replaces g.
     pub fn cohesive_time(&self, mean_diameter: f64, gravity_magnitude: f64) -> f64 {
         let g = self.accelerating(gravity_magnitude);
         let ratio = match self.bond_acceleration {
@@ -318,8 +319,8 @@ impl Parameters {
         ratio * self.bond * self.time_step_secs / (mean_diameter / g).sqrt()
     }
 
-    /// Returns the capture speed Bond·a·Δt, m/s: the opening speed that one step of cohesion cancels (paper eq. 9; a:
-    /// acceleration of cohesion, Δt: time step).
+    /// Returns the capture speed Bond·a·Δt, m/s: the opening speed that one step of cohesion cancels (Abramian & Staron
+    /// 2020, eq. 9; a: acceleration of cohesion, Δt: time step).
     pub fn capture_speed(&self, gravity_magnitude: f64) -> f64 {
         self.bond * self.cohesion_acceleration(gravity_magnitude) * self.time_step_secs
     }

@@ -93,7 +93,7 @@ pub fn words_up_to(time_secs: f64) -> Vec<String> {
 }
 
 /// Rounds a simulated time (s) to twelve decimals, so that it is the number that a user would write. This removes the
-/// rounding error of a sum over many time steps.
+/// rounding error of a sum over many steps.
 pub fn asked_time_secs(time_secs: f64) -> f64 {
     format!("{time_secs:.12}").parse().unwrap_or(time_secs)
 }

@@ -95,7 +95,8 @@ pub struct SceneSource {
 }
 
 impl SceneSource {
-    /// Reads the value of the field `name` from serialised data. Returns false if no field has this name.
+    /// Reads the value of the option `name` from serialised data (`map`) into the field of this option. Returns false
+    /// if no option has this name.
     pub(super) fn read<'de, A: MapAccess<'de>>(
         &mut self,
         name: &str,
@@ -187,8 +188,8 @@ impl Config {
         *self == Self::default()
     }
 
-    /// Returns the names of the settings that the configuration gives but the stepper does not use. Remedies are not
-    /// listed, because giving a remedy that the stepper lacks is an error.
+    /// Returns the names of the settings that the configuration gives but the stepper does not use. Remedies (optional
+    /// corrections of a stepper) are not listed, because giving a remedy that the stepper lacks is an error.
     pub fn unread_by(&self, stepper: Stepper) -> Vec<String> {
         let (source, remedies) = (SceneSource::default(), RemedyChanges::default());
         let given = Self { source, stepper: None, remedies, ..self.clone() };

@@ -47,7 +47,7 @@ impl Table {
         histogram_table(&moment.observables, &histograms(moment))
     }
 
-    /// Makes the table of the quantities that are measured in every time step: one row per step.
+    /// Makes the table of the quantities that are measured in every step: one row per step.
     pub fn of_steps(rows: &[Observables]) -> Self {
         Self::new("steps", STEP_COLUMNS, rows, &[])
     }
@@ -308,11 +308,11 @@ pub(super) fn frames(rows: &[FrameRow]) -> Table {
     Table::new("frames", FRAME_COLUMNS, rows, &[])
 }
 
-/// A quantity that is measured in every time step, with its column in the table of steps.
+/// A quantity that is measured in every step, with its column in the table of steps.
 pub struct Observed(&'static ColumnSpec<Observables>);
 
 impl Observed {
-    /// Returns all quantities that are measured in every time step.
+    /// Returns all quantities that are measured in every step.
     pub fn all() -> impl Iterator<Item = Self> {
         STEP_COLUMNS.iter().map(Self)
     }

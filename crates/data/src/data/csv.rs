@@ -82,7 +82,7 @@ pub(super) struct TextTable {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct KeptRows {
     pub rows: u64,
-    /// Number of the time step of the last row; `None` without rows.
+    /// Number of the step of the last row; `None` without rows.
     pub step: Option<u64>,
 }
 
@@ -126,8 +126,8 @@ impl TextTable {
         self.begun()?.sync()
     }
 
-    /// Removes the rows of all time steps after `step` (all rows if `step` is `None`), and an incomplete row at the
-    /// end. Returns the number of the rows that remain.
+    /// Removes the rows of all steps after `step` (all rows if `step` is `None`), and an incomplete row at the end.
+    /// Returns the number of the rows that remain.
     pub(super) fn roll_back(&mut self, step: Option<u64>) -> Result<KeptRows> {
         self.file = None;
         let (kept, whole) = self.rows_there(step, u64::MAX)?;
@@ -139,8 +139,9 @@ impl TextTable {
         Ok(kept)
     }
 
-    /// Counts the rows of the file up to the time step `step`, but no more than `most` rows. Also returns the length of
-    /// the head and these rows, bytes. If the file does not exist, the number of rows and the length are 0.
+    /// Counts the rows of the file up to step number `step`, but no more than `most` rows. Also returns the length,
+    /// bytes, of the file up to the end of the counted rows, including the text above the rows. If the file does not
+    /// exist, the number of rows and the length are 0.
     pub(super) fn rows_there(&self, step: Option<u64>, most: u64) -> Result<(KeptRows, u64)> {
         let mut file = match File::open(&self.path) {
             Ok(file) => BufReader::new(file),

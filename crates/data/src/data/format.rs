@@ -102,7 +102,7 @@ pub(super) fn check_count(path: &Path, things: &str, found: u64, marked: u64) ->
     Err(Error::file(path, reason))
 }
 
-/// Writer of a recording in one file format. Only one thread uses it, which is not the thread of the solver.
+/// Writer of a recording in one file format. Writers run on a thread of their own, not on the thread of the solver.
 ///
 /// If the program is killed, all data written before remain readable. A writer starts in a folder without files of its
 /// format. If the folder has such files, [`Format::roll_back`] must be called before anything is written.
@@ -110,7 +110,7 @@ pub(super) trait Format: Send {
     /// Writes the next frame. The used memory must not grow with the number of frames.
     fn add(&mut self, frame: &Frame) -> Result<()>;
 
-    /// Writes the measurements of some time steps. These steps follow the steps written before.
+    /// Writes the measurements of some steps. These steps follow the steps written before.
     fn add_steps(&mut self, _steps: &[Observables]) -> Result<()> {
         Ok(())
     }

@@ -82,7 +82,7 @@ pub(super) struct Lammps {
 /// A dump file to which frames are added.
 struct GrowingDump {
     path: PathBuf,
-    /// The file; `None` before the first frame.
+    /// Open file of the dump; `None` before the first frame is added.
     file: Option<GrowingFile>,
 }
 
@@ -146,7 +146,7 @@ impl GrowingDump {
     }
 }
 
-/// Returns the length, in bytes, of all frames up to the time step `step` in a dump that Slump wrote; 0 if `step` is
+/// Returns the length, in bytes, of all frames up to step number `step` in a dump that Slump wrote; 0 if `step` is
 /// `None`. Returns `None` if there is no file.
 fn length_until(path: &Path, step: Option<u64>) -> Result<Option<u64>> {
     let file = match File::open(path) {
@@ -184,7 +184,7 @@ fn length_until(path: &Path, step: Option<u64>) -> Result<Option<u64>> {
     }
 }
 
-/// Counts the complete frames up to the time step `step` in a dump that Slump wrote; 0 without a file.
+/// Counts the complete frames up to step number `step` in a dump that Slump wrote; 0 without a file.
 fn whole_frames(path: &Path, step: Option<u64>) -> Result<u64> {
     let mut lines = match File::open(path) {
         Ok(file) => BufReader::new(file),
@@ -297,9 +297,9 @@ fn along_z(label: &str, name: &str) -> Option<&'static str> {
     }
 }
 
-/// Returns, for each grain, the numbers of periods along x and y by which it has moved away from its initial periodic
-/// image. Returns `None` without periodic borders, and for shearing borders, at which the displacement is not a whole
-/// number of periods.
+/// Returns, for each grain, the numbers of periods along x and y between its unwrapped position, which continues across
+/// periodic borders, and its position in the periodic cell. Returns `None` without periodic borders, and for shearing
+/// borders, at which this difference is not a whole number of periods.
 fn images(moment: &Moment) -> Option<Vec<[i64; 2]>> {
     let cell = moment.surroundings.periodic.filter(|cell| cell.shear_rate == 0.0)?;
     let periods = cell.periods();
@@ -341,7 +341,7 @@ fn push(text: &mut String, name: &str, values: &Values, row: usize) {
     };
 }
 
-/// Returns the number that stands for the first word in the column `name`, whose words are written as numbers.
+/// Returns the number that is written for the first word in the list of words of the column `name`.
 fn first_code(name: &str) -> u32 {
     if name == "type" { FIRST_TYPE } else { 0 }
 }
@@ -402,9 +402,9 @@ fn head(moment: &Moment, label: &str, count: usize) -> String {
     )
 }
 
-/// Returns the box around all grains that are still in the scene and all fixed discs by its lower left and upper right
-/// corner, m (along a periodic axis, the borders of the periodic cell). Also returns the largest radius of these discs,
-/// m.
+/// Returns the lower left and the upper right corner, m, of the box around all fixed discs and all grains that are
+/// still in the scene. Along a periodic axis the box ends at the borders of the periodic cell. Also returns the largest
+/// radius of these discs, m.
 fn bounds(moment: &Moment) -> ([DVec2; 2], f64) {
     let grains = moment.grains.iter().filter(|grain| !grain.lost);
     let grains = grains.map(|grain| (grain.position, grain.radius));

@@ -98,7 +98,7 @@ impl Recording {
         Self::with(folder, writer, 0, None)
     }
 
-    /// Continues the recording in a folder, for a run that resumes from the time step `step`. `mark` has the numbers of
+    /// Continues the recording in a folder, for a run that resumes from step number `step`. `mark` has the numbers of
     /// frames and rows that the recording had at that step. Later rows and frames are removed. If the folder contains
     /// no recording, a new recording is started.
     ///
@@ -195,7 +195,7 @@ impl Recording {
         self.sums.follow(simulation);
     }
 
-    /// Adds a snapshot of the run as a frame. Its time step must be later than the steps of all earlier frames.
+    /// Adds a snapshot of the run as a frame. The number of its step must be larger than those of all earlier frames.
     ///
     /// # Errors
     /// If an earlier write failed.
@@ -315,7 +315,7 @@ impl FormatsWriter {
         Ok(Self { formats, index, waiting: Vec::new(), mark: RecordingMark::default() })
     }
 
-    /// Checks that the files have the frames and rows that `mark` counts up to the time step `step`. Returns the number
+    /// Checks that the files have the frames and rows that `mark` counts up to step number `step`. Returns the number
     /// of frames up to that step, and the step of the last frame.
     fn check(&self, step: u64, mark: &RecordingMark) -> Result<KeptRows> {
         let (kept, _) = self.index.rows_there(Some(step), mark.frames)?;
@@ -330,7 +330,7 @@ impl FormatsWriter {
         Ok(kept)
     }
 
-    /// Removes all data that were recorded after the time step `step`. If data counted in `mark`, the size of the
+    /// Removes all data that were recorded after step number `step`. If data counted in `mark`, the size of the
     /// recording at that step, are missing, removes nothing and fails.
     fn roll_back(&mut self, step: u64, mark: &RecordingMark) -> Result<KeptRows> {
         let kept = self.check(step, mark)?;
@@ -437,8 +437,8 @@ impl FrameSchedule {
         self.is_due_at(step, latest_secs, |secs| simulation.step_at(secs))
     }
 
-    /// True if a frame is to be recorded after the step `step`. This step is the nearest step for all times up to
-    /// `latest_secs` (s). `step_at` returns the step that is nearest to a time.
+    /// True if a frame is to be recorded after step number `step`. `step_at` returns the number of the step that is
+    /// nearest to a time. For all times up to `latest_secs` (s) this is at most `step`.
     fn is_due_at(&mut self, step: u64, latest_secs: f64, step_at: impl Fn(f64) -> u64) -> bool {
         let mut due = false;
         while self.next_secs().is_some_and(|secs| step_at(secs) <= step) {

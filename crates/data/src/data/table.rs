@@ -225,7 +225,7 @@ impl Table {
         }
     }
 
-    /// Returns the number of the time step of each row.
+    /// Returns the number of the step of each row.
     pub(super) fn steps(&self) -> &[u64] {
         match self.column(STEP).map(|column| &column.values) {
             Some(Values::Counts(steps)) => steps,
@@ -233,7 +233,7 @@ impl Table {
         }
     }
 
-    /// Removes the rows of all time steps after `step`, or all rows if `step` is `None`.
+    /// Removes the rows of all steps after `step`, or all rows if `step` is `None`.
     pub(super) fn keep_until(&mut self, step: Option<u64>) {
         let rows = self.steps().partition_point(|&there| Some(there) <= step);
         self.truncate(rows);

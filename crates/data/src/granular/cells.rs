@@ -258,7 +258,7 @@ fn with_images(site: &Site, periodic: Option<Periodic>) -> impl Iterator<Item = 
 enum Stands {
     /// The grain is in front of the side. The half-plane cuts the grain's cell along the line of the side.
     Before(HalfPlane),
-    /// The grain is beyond an end of the side. The vector leads from its centre to the nearer end, m.
+    /// The grain is beyond an end of the side. The vector leads from the centre of the grain to the nearer end, m.
     Beside(DVec2),
 }
 
@@ -320,8 +320,8 @@ struct CellPolygon {
 }
 
 impl CellPolygon {
-    /// Sets the cell to a square that contains all points within `reach` (m) of the centre, and then reduces the cell
-    /// by all cuts.
+    /// Sets the cell to a square that contains all points within `reach` (m) of the centre of the cell's disc, and then
+    /// reduces the cell by all half-planes `cuts`.
     fn fill(&mut self, reach: f64, cuts: &mut [HalfPlane]) {
         self.corners.clear();
         let signs = [DVec2::NEG_ONE, DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
@@ -348,18 +348,21 @@ impl CellPolygon {
         }
     }
 
-    /// True if the cell is not empty and all its corners are nearer to the centre than `reach`, m.
+    /// True if the cell is not empty and the distance of all its corners from the centre of the cell's disc is below
+    /// `reach`, m.
     fn is_closed(&self, reach: f64) -> bool {
         !self.corners.is_empty() && self.farthest_squared() < (1.0 - CLOSED_WITHIN) * reach * reach
     }
 
-    /// Returns the squared distance of the farthest corner of the cell from the centre, m²; 0 if the cell is empty.
+    /// Returns the squared distance of the farthest corner of the cell from the centre of the cell's disc, m²; 0 if the
+    /// cell is empty.
     fn farthest_squared(&self) -> f64 {
         self.corners.iter().map(|corner| corner.length_squared()).fold(0.0, f64::max)
     }
 
-    /// Computes the area of the cell within `radius` (m) of the centre, m². Each side of the cell spans a triangle with
-    /// the centre. The circle reduces this triangle to a smaller triangle with a circular sector at either end.
+    /// Computes the area, m², of that part of the cell that is within `radius` (m) of the centre of the cell's disc.
+    /// Each side of the cell spans a triangle with the centre. The circle reduces this triangle to a smaller triangle
+    /// with a circular sector at either end.
     fn area_within(&self, radius: f64) -> f64 {
         let nexts = self.corners.iter().cycle().skip(1);
         let sides = self.corners.iter().zip(nexts);

@@ -88,7 +88,7 @@ impl<'a> Network<'a> {
         self.grains().count()
     }
 
-    /// Returns the fraction of the contacts in the network that satisfy a condition; NaN without contacts.
+    /// Returns the fraction of the contacts in the network for which `is_so` returns true; NaN without contacts.
     pub(super) fn share(&self, is_so: impl Fn(&NetworkContact) -> bool) -> f64 {
         let count = self.links.iter().filter(|&link| is_so(link)).count();
         count as f64 / self.links.len() as f64

@@ -26,7 +26,7 @@ pub(super) const DISAGREEMENT: f64 = 1e-9;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyForm {
-    /// Number of axes along which bodies move: 1 (all bodies are on the x axis) or 2.
+    /// Number of coordinate axes along which the bodies move: 1 (all bodies are on the x axis) or 2.
     pub axes: u8,
     /// True if the bodies can rotate.
     pub rotation: bool,
@@ -50,9 +50,9 @@ pub struct BodyForm {
     /// Term that restitution adds to the normal velocity q of each contact, m/s. For a contact with a gap within the
     /// touch tolerance the term is gap/Δt instead (Δt: time step), so that the gap may close.
     pub restitution_velocity: Vec<f64>,
-    /// Speed at which the surface of the touched wall or fixed disc moves along the tangent (the normal turned by +90°)
-    /// at each contact, m/s; 0 for a contact between two bodies of the lists. The list is empty if no wall or fixed
-    /// disc moves.
+    /// Tangential velocity of the surface of the touched wall or fixed disc at each contact, m/s. It is positive in the
+    /// direction of the normal turned by +90°, and 0 if the contact does not involve a wall or fixed disc. The list is
+    /// empty if no wall or fixed disc moves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub surface_speed: Vec<f64>,
 }

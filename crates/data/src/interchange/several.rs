@@ -13,8 +13,8 @@ use crate::solver::{Method, Model, SolutionSearch, SolverSettings, velocity_dist
 pub struct FoundSolution {
     /// Residual of the contact laws, dimensionless: the same measure for all solvers, 0 if all laws are obeyed.
     pub residual: f64,
-    /// True if the residual is within the tolerance of the search. If it is false, this result is not a solution, and
-    /// may be close to a solution that other initial guesses reached.
+    /// True if the residual is within the tolerance of the search. Otherwise this entry is not a solution; it may be an
+    /// inaccurate form of a solution that the search reached from other initial guesses.
     pub is_solved: bool,
     /// Numbers of the initial guesses that led to this solution. Guess 0 consists of the impulses in the file, guess 1
     /// of zero impulses, and all further guesses of random impulses.
@@ -22,8 +22,8 @@ pub struct FoundSolution {
     /// Distance of the velocities of this solution from the velocities of each earlier solution in the list, m/s: root
     /// mean square, weighted with mass.
     pub distances: Vec<f64>,
-    /// Index of the body whose translational velocity differs most from that in the first solution of the list, and the
-    /// magnitude of this difference, m/s.
+    /// Body whose translational velocity differs most between this solution and the first solution of the list: its
+    /// index, and the magnitude of the velocity difference, m/s.
     pub farthest: (usize, f64),
     /// Velocity (v_x, v_y, ω) of each body at the end of the step, m/s and rad/s.
     pub velocities: Vec<[f64; 3]>,

@@ -106,8 +106,8 @@ struct TimedSolution {
     velocities: Option<Vec<[f64; 3]>>,
 }
 
-/// Solves `repeats` copies of a problem. Returns the shortest time (s), the result of that solve, and the problem after
-/// that solve.
+/// Solves `repeats` copies of a problem with the function `solve`. Returns the computing time (s) and the result of the
+/// fastest solve, and the copy that it has solved.
 fn least_time<P: Clone, T>(
     repeats: u32,
     problem: &P,

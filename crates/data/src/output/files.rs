@@ -94,7 +94,8 @@ impl PendingFile {
         Ok(())
     }
 
-    /// Copies the data to a hidden draft in the destination's folder and then renames the draft in a single operation.
+    /// Copies the data to a draft (a hidden, incomplete file) in the folder of the destination, and then renames the
+    /// draft to the name of the destination in a single operation.
     #[cfg(not(target_arch = "wasm32"))]
     fn put(&mut self, safe: bool) -> std::io::Result<()> {
         let Destination { path, permissions, .. } = &self.destination;

@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 use super::locks::is_at;
 use crate::error::{Error, Result};
 
-/// Size of a memory page on most machines, bytes. On all other machines the page size is a multiple of this number.
+/// Size of a memory page on most machines, bytes. On all other machines the page size is a multiple of this number. The
+/// system writes a file in blocks of this size, so a killed program can leave a write incomplete only at the end of
+/// such a block.
 const PAGE: u64 = 4096;
 
 /// A file that grows by whole rows, so that it stays a readable table if the run is killed or the disk is full.
@@ -89,12 +91,12 @@ impl GrowingFile {
     /// operation. Head and rows include their line ends. The rows are first written below a draft line that begins with
     /// `draft`. Readers must skip this line and the rows below it. Finally the head replaces the draft line.
     ///
-    /// If the program is killed, a write can only be interrupted at the end of a page of the file. A head that spans
-    /// two pages is therefore written from its end, the second page first. The rows remain a draft until the first page
-    /// is written, which happens completely or not at all. If the first page ends within the text `draft`, letters of
-    /// the head may follow the beginning of that text. If the first page ends within the characters with which both
-    /// `draft` and the head begin, the second page decides. A reader must therefore recognise a draft by the first
-    /// letter that no head has at that position.
+    /// If the program is killed, a write can only be interrupted at the end of a page, which is a block of [`PAGE`]
+    /// bytes of the file. A head that spans two pages is therefore written from its end, the second page first. The
+    /// rows remain a draft until the first page is written, which happens completely or not at all. If the first page
+    /// ends within the text `draft`, letters of the head may follow the beginning of that text. If the first page ends
+    /// within the characters with which both `draft` and the head begin, the second page decides. A reader must
+    /// therefore recognise a draft by the first letter that no head has at that position.
     ///
     /// # Errors
     /// The error names the file and gives the system's message. The file then contains neither the rows nor the head.
@@ -113,16 +115,16 @@ impl GrowingFile {
         Ok(())
     }
 
-    /// Writes bytes behind the complete rows, over the bytes that are already there. If they span several pages of the
-    /// file, the last page is written first.
+    /// Writes bytes to the file after its complete rows, and replaces bytes that are already there. If the bytes span
+    /// several pages (blocks of [`PAGE`] bytes of the file), the last page is written first.
     fn put_from_its_end(&mut self, bytes: &[u8]) -> std::io::Result<()> {
         self.pages_from_the_last(bytes.len())
             .into_iter()
             .try_for_each(|part| self.put(part.start, &bytes[part]))
     }
 
-    /// Splits the `length` bytes that follow the complete rows into ranges that lie in one page of the file each.
-    /// Returns the last range first.
+    /// Splits the `length` bytes that follow the complete rows at the page ends of the file (a page is a block of
+    /// [`PAGE`] bytes). Returns the resulting ranges, counted from the end of the complete rows, the last range first.
     fn pages_from_the_last(&self, length: usize) -> Vec<std::ops::Range<usize>> {
         let room = (PAGE - self.whole % PAGE) as usize;
         let starts = std::iter::once(0).chain((room..length).step_by(PAGE as usize));
@@ -139,8 +141,9 @@ impl GrowingFile {
     }
 
     /// Returns the number of bytes of `rows` to write in one operation. If the program is killed, a write can only be
-    /// interrupted at the end of a page of the file. Rows within one page are therefore written together. A row that
-    /// spans two pages is written alone, which leaves about 0.1 µs in which the row can be cut.
+    /// interrupted at the end of a page (a block of [`PAGE`] bytes of the file). Rows within one page are therefore
+    /// written together. A row that spans two pages is written alone: it is incomplete only if the program is killed in
+    /// the 0.1 µs between the two pages.
     fn uncut(&self, rows: &[u8]) -> usize {
         let room = (PAGE - self.whole % PAGE) as usize;
         let first = || rows.iter().position(|&byte| byte == b'\n').map(|last| last + 1);
@@ -162,8 +165,8 @@ impl GrowingFile {
     }
 }
 
-/// Returns the text of a draft: a line that begins with `draft` and is as long as the head, and then the rows. The line
-/// is filled by `repeat`, because the padding of `format!` is limited to 65,535 characters.
+/// Returns the text of a draft: a line that begins with `draft`, filled with spaces to the length of the head, and then
+/// the rows. The spaces come from `repeat`, because the padding of `format!` is limited to 65,535 characters.
 fn below_draft(draft: &str, head: &str, rows: &str) -> String {
     let room = head.len().saturating_sub(draft.len() + 1);
     format!("{draft}{}\n{rows}", " ".repeat(room))

@@ -24,7 +24,8 @@ pub fn print_text(text: impl Display) {
     remember(write!(std::io::stdout(), "{text}"));
 }
 
-/// Records whether a write to stdout by other code has failed, for [`lost_stdout`].
+/// Records the outcome of a write to stdout that was not made by this module. [`lost_stdout`] then reports a failure of
+/// this write.
 pub fn note_printed(outcome: std::io::Result<()>) {
     remember(outcome);
 }
@@ -127,7 +128,7 @@ pub fn warn_of_steps(steps: u64) {
     }
 }
 
-/// Number of the first signal to end (such as INT) that the program received; 0 if there was none.
+/// Number of the first signal, such as INT, that asked the program to end; 0 if no such signal has arrived.
 static CAUGHT: AtomicI32 = AtomicI32::new(0);
 
 /// A signal that asks the program to end.

@@ -8,9 +8,10 @@ use super::rows::{CauseRow, Design, QuantityBudget, Trust};
 use super::words::paragraph;
 use crate::statistics::Mean;
 
-/// Tolerance of the test whether a quantity converges as the time step Δt goes to 0, as a fraction of the requested
-/// half-width of the confidence intervals. The effects of halving Δt should decrease by a constant factor. A deviation
-/// from this decrease counts as zero if its confidence interval is within this tolerance of 0.
+/// Tolerance of a test, as a fraction of the requested half-width of the confidence intervals. The test asks whether a
+/// quantity converges as the time step Δt goes to 0: the changes of the quantity in successive halvings of Δt should
+/// decrease by a constant factor. A deviation from this factor counts as zero if its confidence interval reaches to
+/// within this tolerance of 0.
 const SLACK: f64 = 0.25;
 pub(super) fn budget_of(
     runs: &Runs,

@@ -12,11 +12,11 @@ use crate::world::FrictionCone;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Share {
-    /// The number of grains, and their packing in the initial state.
+    /// Causes in the grains: their number, and their packing in the initial state.
     Grains,
-    /// The laws that contacts obey, such as the contact law and the friction model.
+    /// Causes in the laws that contacts obey, such as the contact law and the friction model.
     Law,
-    /// The numerical method: the time step, unsolved steps, and the initial guesses of the solver.
+    /// Causes in the numerical method: the time step, unsolved steps, and the initial guesses of the solver.
     Method,
 }
 

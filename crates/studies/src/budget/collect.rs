@@ -97,9 +97,9 @@ impl Runs {
         1.0 - OUTSIDE / ((self.all.len() + 1) * self.quantities) as f64
     }
 
-    /// Returns the mean of a number over initial states, with its confidence interval. For each initial state, `of`
-    /// computes this number from the quantity's values in the given `series` (the runs with certain changes of the
-    /// scene). Initial states for which a series has no value are left out.
+    /// Returns the mean of a number over the initial states, with its confidence interval. `series` lists series of
+    /// runs (a series: all runs with the same change of the scene). For each initial state, `of` computes the number
+    /// from the values of the quantity in these series. Initial states for which a series has no value are left out.
     pub(super) fn over_starts(
         &self,
         series: &[usize],
@@ -121,8 +121,8 @@ impl Runs {
         values.values[quantity].filter(|_| values.failure.is_none())
     }
 
-    /// Returns, with a confidence interval, the mean of a quantity in the unchanged scene (series 0), or the mean
-    /// effect of the change of another series on the quantity.
+    /// Returns the mean of a quantity in the unchanged scene if `series` is 0, otherwise the mean effect on the
+    /// quantity of the change with the number `series`. The result contains a confidence interval.
     pub(super) fn interval(&self, series: usize, quantity: usize) -> Mean {
         if series == 0 {
             self.over_starts(&[0], quantity, |values| values[0])
@@ -174,9 +174,9 @@ impl Runs {
         self.all.iter().flatten().filter(|ran| !ran.is_free).map(|ran| ran.secs).sum()
     }
 
-    /// Returns the width of a confidence interval of a series, divided by the requested width: the largest ratio over
-    /// all quantities. Quantities without values or without scatter do not count; if no quantity counts, the ratio is
-    /// 0.
+    /// Returns the largest ratio, over all quantities, of the width of the confidence interval of a series (the runs
+    /// with the same change of the scene) to the requested width. Quantities without values or without scatter do not
+    /// count; if no quantity counts, the ratio is 0.
     pub(super) fn excess(&self, series: usize) -> f64 {
         let of = |quantity: usize| {
             if [0, series].iter().any(|&one| self.failure(one, quantity).is_some()) {
@@ -234,12 +234,14 @@ pub(super) fn collect(
     }
 }
 
-/// Returns the first runs of a series, one from each of the first [`FIRST`] initial states.
+/// Returns the first runs of a series (the runs with the same change of the scene), one from each of the first
+/// [`FIRST`] initial states.
 fn first(series: usize) -> impl Iterator<Item = SeriesRun> {
     (0..FIRST).map(move |start| SeriesRun { series, start })
 }
 
-/// Returns the half-width of confidence intervals that is requested by default for a quantity, rounded to one digit.
+/// Returns the default of the requested half-width of the confidence intervals of a quantity, in the unit of the
+/// quantity and rounded to one digit.
 fn width(runs: &Runs, quantity: usize) -> f64 {
     let values: Vec<f64> = (0..FIRST).filter_map(|start| runs.value(0, start, quantity)).collect();
     let mean = mean(&values);
@@ -248,8 +250,9 @@ fn width(runs: &Runs, quantity: usize) -> f64 {
     format!("{rough:.0e}").parse().unwrap_or(rough)
 }
 
-/// Returns the next runs of those series that do not have [`FIRST`] runs yet, as far as they fit into the remaining
-/// computing time (s), the series with the shortest time per run first. A series that has no run yet gets a single run,
+/// Returns the next runs to compute for those series (all runs with the same change of the scene) that have fewer than
+/// [`FIRST`] runs, the series with the shortest time per run first. Only runs that fit into the remaining computing
+/// time `left_secs` (s) are returned; `secs_of` estimates the time of runs. A series without runs gets a single run,
 /// because the time of a run under an expensive contact law is only known to a factor of ten before one run has been
 /// timed.
 fn begun(
@@ -272,9 +275,10 @@ fn begun(
     Ok(jobs)
 }
 
-/// Returns further runs for the series with the widest confidence interval, as far as they fit into the remaining
-/// computing time (s); if they do not fit, for the series with the next narrower interval. Returns the reason for the
-/// end of the computation if all intervals are as narrow as requested, or if no further runs fit.
+/// Returns further runs for the series (the runs with the same change of the scene) that has the widest confidence
+/// interval. If these runs do not fit into the remaining computing time `left_secs` (s), returns runs for the series
+/// with the next narrower interval; `secs_of` estimates the time of runs. Returns the reason for the end of the
+/// computation if all intervals are as narrow as requested, or if no further runs fit.
 fn widened(
     runs: &Runs,
     left_secs: f64,

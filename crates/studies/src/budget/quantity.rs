@@ -79,8 +79,8 @@ fn names() -> impl Iterator<Item = &'static str> {
     of_steps.chain(measures_of_moment().filter(is_new))
 }
 
-/// Returns the names of those quantities that can be computed from the grains and contact forces at a single simulated
-/// time.
+/// Returns the names of those quantities of an error budget that can be computed from the grains and contact forces at
+/// a single simulated time.
 pub(crate) fn measures_of_moment() -> impl Iterator<Item = &'static str> {
     let measures = PileMeasures::COLUMNS.iter().map(|column| column.name);
     measures.chain(HeapShape::COLUMNS.iter().map(|column| column.name))

@@ -74,8 +74,8 @@ impl QuantityBudget {
         rounded(number, half.max(SMOOTH * self.within))
     }
 
-    /// Returns the largest size of an effect within its confidence interval. The argument is the mean effect and both
-    /// ends of the interval.
+    /// Returns the largest magnitude that an effect can have within its confidence interval. The argument contains the
+    /// mean effect and both ends of the interval.
     fn most([_, low, high]: [f64; 3]) -> f64 {
         low.abs().max(high.abs())
     }

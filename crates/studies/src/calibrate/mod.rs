@@ -26,9 +26,11 @@ use crate::statistics::mean;
 
 /// Name of the journal that stores the runs of a calibration.
 const JOURNAL: &str = "calibrate";
-/// Default number of runs of a calibration, per coefficient of a cubic polynomial in the varied parameters.
+/// Default number of runs of a calibration, divided by the number of coefficients of a cubic polynomial in the varied
+/// parameters.
 const RUNS_PER_COEFFICIENT: usize = 10;
-/// Largest allowed numbers of varied parameters and of runs. Larger numbers are probably a mistake.
+/// Largest allowed number of varied parameters, and largest allowed number of runs. Larger numbers are probably a
+/// mistake.
 const MOST: [usize; 2] = [4, 100_000];
 /// Number of initial states from which the calibrated scene is run with and without a change of the time step or the
 /// solver, to measure the effect of the change.

@@ -83,21 +83,23 @@ impl Region {
         best.map_or(&[], |(point, _)| point)
     }
 
-    /// Returns the least and the largest value of a parameter in the confidence region; NaN if the region is empty.
+    /// Returns the least and the largest value of the varied parameter with the index `parameter` in the confidence
+    /// region; NaN if the region is empty.
     pub(super) fn range(&self, parameter: usize) -> [f64; 2] {
         let values = || self.inside().map(|point| point[parameter]);
         [f64::min, f64::max].map(|best| values().fold(f64::NAN, best))
     }
 
-    /// Returns the value of a result that the fitted polynomial predicts for the parameter values `point`, and the
-    /// standard error of this value.
+    /// Returns the value of the result with the index `result` that the fitted polynomial predicts for the parameter
+    /// values `point`, and the standard error of this value.
     pub(super) fn value(&self, point: &[f64], result: usize) -> [f64; 2] {
         let place = place_of(&self.space, point);
         let variance = self.surrogate.covariance(&place, result + 1)[result][result];
         [self.surrogate.values(&place)[result], variance.sqrt()]
     }
 
-    /// Returns the standard deviation of the predicted values of a result over all points of the confidence region.
+    /// Returns the standard deviation of the predicted values of the result with the index `result` over all points of
+    /// the confidence region.
     pub(super) fn spread(&self, result: usize) -> f64 {
         let value = |point| self.surrogate.values(&place_of(&self.space, point))[result];
         let values: Vec<f64> = self.inside().map(value).collect();
@@ -105,8 +107,8 @@ impl Region {
     }
 }
 
-/// Scales the values of the varied parameters so that the range of each parameter becomes −1 to 1. The fitted
-/// polynomials are functions of these scaled parameters.
+/// Scales the parameter values `point` so that the range of each parameter, given in `space`, becomes −1 to 1. The
+/// fitted polynomials are functions of these scaled parameters.
 fn place_of(space: &[[f64; 2]], point: &[f64]) -> Vec<f64> {
     let place = |([from, to], x): (&[f64; 2], &f64)| 2.0 * (x - from) / (to - from) - 1.0;
     space.iter().zip(point).map(place).collect()

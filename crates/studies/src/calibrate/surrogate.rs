@@ -90,8 +90,8 @@ impl Surrogate {
         sums
     }
 
-    /// Returns the root mean square of the errors that arise if a result of each run is predicted by the fit to all
-    /// other runs.
+    /// Returns the root mean square error of the predictions of the result with the index `result`. The result of each
+    /// run is predicted by the fit to all other runs.
     pub(super) fn scatter(&self, result: usize) -> f64 {
         let squares = self.residuals.iter().map(|residuals| residuals[result].powi(2));
         (squares.sum::<f64>() / self.residuals.len() as f64).sqrt()

@@ -14,21 +14,28 @@ use crate::error::{Error, Result};
 use crate::output::Texts;
 use crate::png::png_of_rgb;
 
-/// Font sizes, pixels: title of a chart, labels of axes, caption of the sheet, and text within a chart.
+/// Font size of the title of a chart, pixels.
 const TITLE: u32 = 27;
+/// Font size of the labels of axes, pixels.
 const WORDS: u32 = 24;
+/// Font size of the caption of a sheet, pixels.
 const CAPTION: u32 = 20;
+/// Font size of text within a chart, pixels.
 const WITHIN: u32 = 18;
-/// Least width of the space for labels to the left of the vertical axis, and width of a character, from which the space
-/// for longer labels is computed, pixels.
+/// Least width of the space to the left of a vertical axis, in which its labels are, pixels.
 const BESIDE: u32 = 104;
+/// Width of a character, pixels, from which the space for long labels of a vertical axis and for the names in the
+/// legend is computed.
 const CHARACTER: u32 = 12;
-/// Sizes of the legend, pixels: space above its first entry, height of a line of text (also in the caption), space
-/// between entries, and width of an entry's symbol. The last size is the width of a character of the caption.
+/// Space above the first entry of the legend, pixels.
 const ABOVE: u32 = 70;
+/// Height of a line of text in the caption and in the legend, pixels.
 const CAPTION_LINE: u32 = 28;
+/// Space between two entries of the legend, pixels.
 const BETWEEN: u32 = 8;
+/// Width of the legend without the names of its entries, pixels.
 const KEY: u32 = 70;
+/// Width of a character of the caption, pixels, from which the length of its lines is computed.
 const CAPTION_CHARACTER: u32 = 10;
 /// Half the height of a horizontal bar, as a fraction of the height of its row.
 const BAR: f64 = 0.32;
@@ -281,8 +288,8 @@ fn draw_curve<'a, DB: DrawingBackend + 'a>(
     Ok(())
 }
 
-/// Returns the width of the line of a curve's style, pixels (0 if the style has no line), and the radius, pixels, and
-/// plotters style of its dots, if it has dots.
+/// Returns how a curve is drawn in this style: the width of its line, pixels (0 without a line), and the radius,
+/// pixels, and plotters style of its dots (`None` without dots).
 fn strokes(look: Look, colour: RGBColor) -> (u32, Option<(u32, ShapeStyle)>) {
     match look {
         Look::Line(width) | Look::Dashes(width) => (width, None),
@@ -298,8 +305,8 @@ fn rgb((red, green, blue): Rgb) -> RGBColor {
     RGBColor(red, green, blue)
 }
 
-/// Largest distance between a coordinate and a tick mark at which the coordinate gets the label of the tick mark, as a
-/// fraction of the length of the axis.
+/// Tolerance for the labels of an axis, as a fraction of its length: a coordinate gets the label of a tick mark if
+/// their distance is at most this tolerance.
 const NEAR: f64 = 1e-6;
 
 /// An axis as the crate plotters needs it: the range of the coordinates along the axis (logarithms on a logarithmic

@@ -25,8 +25,8 @@ pub const PALETTE: [Rgb; 7] = [
     (213, 94, 0),
 ];
 
-/// Horizontal shift between curves with the same x values, which makes their confidence intervals visible side by side,
-/// as a fraction of the width of the chart.
+/// Horizontal shift between two curves with the same x values, as a fraction of the width of the chart. The shift makes
+/// the confidence intervals of both curves visible side by side.
 const ASIDE: f64 = 0.006;
 
 /// One axis of a chart.

@@ -63,14 +63,15 @@ impl From<bool> for Verdict {
 /// A claim (a statement that is tested on runs), its measurement, and the verdict.
 #[derive(Clone, Debug)]
 pub(super) struct Claim {
-    /// The tested statement: a statement of the paper, or an additional statement.
+    /// The tested statement: a statement of Abramian & Staron (2020), or an additional statement.
     pub said: String,
     /// Measured value in words, with its confidence interval or p-value.
     pub measured: String,
     pub verdict: Verdict,
     /// How often the test would find the claim true by chance, in words; may be empty.
     pub by_chance: String,
-    /// Choices that the paper leaves open and on which the verdict depends, such as the restitution; may be empty.
+    /// Choices that Abramian & Staron (2020) leave open and on which the verdict depends, such as the restitution; may
+    /// be empty.
     pub hangs_on: String,
 }
 
@@ -89,9 +90,10 @@ impl Claim {
         Self { by_chance: by_chance.into(), ..self }
     }
 
-    /// Measures how often the test `holds` finds the claim true after the time steps within each of `groups` have been
-    /// shuffled, and adds this rate in words. `border` is the largest effect of the time step with which the claim is
-    /// still false. It is added to the shuffled results.
+    /// Measures how often the test `holds` finds the claim true by chance, and adds this rate in words. For this
+    /// measurement, the time steps are shuffled among the runs of each group in `groups`, many times. `border` returns,
+    /// as a function of the number in which the runs of a group differ (such as log₁₀ Δt), the largest effect on the
+    /// result with which the claim is still false; this effect is added to the shuffled results.
     pub(super) fn shuffled(
         self,
         groups: &[Alike],
@@ -117,8 +119,8 @@ const SHUFFLES: usize = 1000;
 pub(super) type Alike = Vec<(f64, f64)>;
 
 /// Returns the fraction of shuffles after which the test `holds` finds the claim true. Each shuffle exchanges the
-/// results within every group at random, and then adds `border`, the largest effect with which the claim is still
-/// false.
+/// results within every group of `groups` at random, and then adds `border` to them. `border` is the largest effect
+/// with which the claim is still false, as a function of the number in which the runs of a group differ.
 fn share_by_chance(
     groups: &[Alike],
     border: impl Fn(f64) -> f64,

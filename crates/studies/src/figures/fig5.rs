@@ -1,6 +1,8 @@
-//! Draws Fig. 5 of the paper: slump (a) and mean overlap (b) of piles against the time step Δt, as means over initial
-//! states. Thin lines show the single initial state of Fig. 4. The paper's statements are tested on differences between
-//! runs from the same initial state. The report also says how often each test finds its statement true by chance.
+//! Draws Fig. 5 of Abramian & Staron (2020): slump (a) and mean overlap (b) of piles against the time step Δt, as means
+//! over initial states. Thin lines show the single initial state of Fig. 4. The statements of their article are tested
+//! on differences between runs from the same initial state. The report also says how often each test finds its
+//! statement
+//! true by chance.
 
 use super::claims::{Alike, Claim, SIGNIFICANT, Verdict};
 use super::studies::{ensemble, groups, log_step};
@@ -16,15 +18,16 @@ const CHOICES: &str = "the base, a row of fixed discs (the paper names none); th
                        restitution without a threshold; the states. `slump budget` tells what each of them adds";
 const CONES: [(&str, &str); 2] = [("shifted", "pile"), ("compressive", "pile-compressive")];
 /// Largest change of the slump per decade of Δt at which the slump of a pile counts as independent of Δt. It is a tenth
-/// of the change that the paper reports for cohesive piles.
+/// of the change that Abramian & Staron (2020) report for cohesive piles.
 const FLAT_PER_DECADE: f64 = 0.02;
-/// Mean overlap above which, according to the paper, grains begin to lose contacts, in mean diameters.
+/// Mean overlap, in mean diameters, above which grains begin to lose contacts according to Abramian & Staron (2020).
 const LARGE_OVERLAP: f64 = 0.01;
-/// Largest mean overlap on the axis of the paper's Fig. 5b, in mean diameters.
+/// Largest mean overlap on the axis of Fig. 5b of Abramian & Staron (2020), in mean diameters.
 const END_OF_AXIS: f64 = 0.06;
 
-/// A statement of Fig. 5a about one Bond number: the Bond number, the statement in words, its test, and the slope of
-/// the slump per decade of Δt at which the statement changes from false to true.
+/// A statement of Abramian & Staron (2020) about their Fig. 5a at one Bond number: the Bond number, the statement in
+/// words, its test, and the slope of the slump per decade of the time step Δt at which the statement changes from false
+/// to true.
 type SlumpClaim = (f64, &'static str, SlumpTest, f64);
 /// A test of a statement about the slump. Its input is a list for each initial state: log₁₀ Δt and slump of each run,
 /// by increasing Δt. It returns the measurement in words and the verdict.
@@ -71,9 +74,9 @@ pub(super) fn slump(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig5a", sheet, claims, table: None })
 }
 
-/// Draws Fig. 5b: the mean overlap against Δt on logarithmic axes, on which a power law is a straight line, and on the
-/// paper's axes. Also tests the paper's statements about overlap, for example that the slump rises with Δt at large
-/// overlaps and that grains then have fewer contacts.
+/// Draws Fig. 5b of Abramian & Staron (2020): the mean overlap against the time step Δt, once on logarithmic axes, on
+/// which a power law is a straight line, and once on the axes of the article. Also tests the statements of the article
+/// about overlap, for example that the slump rises with Δt at large overlaps and that grains then have fewer contacts.
 pub(super) fn overlap(studies: &StudyRunner) -> Result<Figure> {
     let all = studies.rows("pile")?;
     let rows = ensemble(&all);
@@ -223,7 +226,8 @@ fn turn(slumps: &[Alike], overlaps: &[Alike]) -> Mean {
     mean(&slumps.iter().zip(overlaps).filter_map(of_group).collect::<Vec<_>>())
 }
 
-/// Tests the paper's explanation that the slump begins to rise with Δt when the mean overlap is large.
+/// Tests the explanation of Abramian & Staron (2020) that the slump begins to rise with the time step Δt when the mean
+/// overlap is large.
 fn reverses(cohesive: &Measurements<'_>) -> Claim {
     let slumps = groups(cohesive, log_step, |run| run.reading("slump"));
     let overlaps = groups(cohesive, log_step, |run| run.reading("mean_overlap"));
@@ -246,8 +250,8 @@ fn reverses(cohesive: &Measurements<'_>) -> Claim {
     )
 }
 
-/// Tests the paper's explanation that strongly cohesive piles have fewer contacts at larger Δt, and that piles with
-/// fewer contacts slump more.
+/// Tests the explanation of Abramian & Staron (2020) that strongly cohesive piles have fewer contacts at larger time
+/// steps Δt, and that piles with fewer contacts slump more.
 fn loses(cohesive: &Measurements<'_>) -> Claim {
     let strongest = cohesive.values("bond").last().copied().unwrap_or(f64::NAN);
     let strong = &cohesive.with("bond", strongest);

@@ -1,5 +1,5 @@
-//! Draws Fig. 6 of the paper: slump against the cohesive time Bond·Δt/√(d/g), with mean diameter d and gravity g. Tests
-//! whether the slump falls with the cohesive time below 1 and rises above 1.
+//! Draws Fig. 6 of Abramian & Staron (2020): slump against the cohesive time Bond·Δt/√(d/g), with mean diameter d and
+//! gravity g. Tests whether the slump falls with the cohesive time below 1 and rises above 1.
 
 use rand::{RngExt, SeedableRng};
 
@@ -17,8 +17,9 @@ const RESAMPLINGS: usize = 400;
 /// narrower, so it excludes a turning point of 1 more often.
 const FEWER_RESAMPLINGS: usize = 20;
 
-/// Mean diameter d of the piles, m, and gravity g, m/s².
+/// Mean diameter d of the grains of the piles, m.
 const DIAMETER: f64 = 5e-3;
+/// Gravity g in the scenes of the piles, m/s².
 const GRAVITY: f64 = 9.8;
 
 /// Returns log₁₀ of the cohesive time Bond·Δt/√(d/g) of a run, with mean diameter d and gravity g.
@@ -65,7 +66,8 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig6", sheet, claims, table: None })
 }
 
-/// Merges those groups of runs that have the same initial state. `count` is the number of initial states.
+/// Merges the groups of runs that have the same initial state. These groups follow each other in `groups`, and `count`
+/// is the number of initial states.
 fn joined(groups: &[Alike], count: usize) -> Vec<Alike> {
     groups.chunks((groups.len() / count.max(1)).max(1)).map(<[_]>::concat).collect()
 }

@@ -1,6 +1,7 @@
-//! Draws the outcomes of the paper's cradle, three discs i, j and k on a line. Disc k hits disc i, and this shock may
-//! open the bond between i and j. The figures show at which time steps Δt the bond opens, the fraction of open bonds
-//! over many start distances of k, and a map of the outcome over Δt and the stopping tolerance of the solver.
+//! Draws the outcomes of the cradle of Abramian & Staron (2020): three discs i, j and k on a line. Disc k hits disc i,
+//! and this shock may open the bond between i and j. The figures show at which time steps Δt the bond opens, the
+//! fraction of open bonds over many start distances of k, and a map of the outcome over Δt and the stopping tolerance
+//! of the solver.
 
 use super::claims::{Claim, Verdict};
 use super::{Figure, StudyRunner};
@@ -10,11 +11,11 @@ use crate::harness::{MeasuredCase, Measurements, ReportTable};
 use crate::scene::cradle;
 use crate::statistics;
 
-/// Gap between the discs i and j at the end of a run, in diameters, above which their bond counts as open. The value is
-/// well above rounding errors, and well below any gap of an open bond.
+/// Gap between the bonded discs i and j of the cradle at the end of a run, in diameters, above which their bond counts
+/// as open. The value is well above rounding errors, and well below any gap of an open bond.
 pub(super) const OPEN_GAP: f64 = 1e-6;
-/// Outcomes of the paper's cradle, in which disc k hits the bonded discs i and j: time step, s, and true if the bond
-/// opens or false if it stays closed.
+/// Outcomes of the cradle that Abramian & Staron (2020) report (disc k hits the bonded discs i and j): time step, s,
+/// and true if the bond opens or false if it stays closed.
 const PAPER: [(f64, bool); 14] = [
     (1e-4, true),
     (2e-4, true),
@@ -31,22 +32,23 @@ const PAPER: [(f64, bool); 14] = [
     (6e-3, true),
     (1e-2, true),
 ];
-/// Time step, s, below which the outcome of the cradle (the bond of the discs i and j opens or stays closed) does not
-/// depend on the start distance of disc k. This distance decides at which time within a step disc k hits disc i.
+/// Time step, s, below which the outcome of the cradle (disc k hits two bonded discs, whose bond opens or stays closed)
+/// does not depend on the start distance of disc k. At larger time steps the outcome depends on the time within a step
+/// at which the discs meet, and therefore on this distance.
 pub(super) const PHASE_SECS: f64 = 3.5e-3;
 
 fn is_open(run: &MeasuredCase) -> bool {
     run.reading("first_gap") > OPEN_GAP
 }
 
-/// Returns the number of runs of the cradle in which the bond of the discs i and j is open at the end, and the number
-/// of all runs.
+/// Returns the number of runs of the cradle in which the bond of the two struck discs is open at the end, and the
+/// number of all runs.
 fn open_of(rows: &Measurements<'_>) -> [usize; 2] {
     [rows.0.iter().filter(|run| is_open(run)).count(), rows.0.len()]
 }
 
-/// Returns the number of time steps at which the runs reproduce the paper's outcome (bond open or closed). There is one
-/// run per time step.
+/// Returns the number of time steps at which the runs of the cradle have the outcome that Abramian & Staron (2020)
+/// report (bond open or closed). There is one run per time step.
 fn agreed(rows: &Measurements<'_>) -> usize {
     let agrees = |&&(step, open): &&(f64, bool)| {
         rows.0.iter().any(|run| run.at("dt") == step && is_open(run) == open)
@@ -54,8 +56,8 @@ fn agreed(rows: &Measurements<'_>) -> usize {
     PAPER.iter().filter(agrees).count()
 }
 
-/// Draws how sensitive the outcomes of Fig. 8 are to the settings: the pattern of open and closed bonds over Δt, with
-/// one setting changed at a time.
+/// Draws how sensitive the outcomes of the cradle (Fig. 8 of Abramian & Staron (2020)) are to the settings: the pattern
+/// of open and closed bonds over the time step Δt, with one setting changed at a time.
 pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("cradle-choices")?;
     let all = studies.choices("cradle-choices")?;
@@ -94,8 +96,8 @@ pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "cradle-choices", sheet, claims, table: Some(table) })
 }
 
-/// Tests whether most start distances of disc k give the paper's pattern of open and closed bonds over Δt, at the
-/// largest stopping tolerance of the study.
+/// Tests whether most start distances of disc k of the cradle give the pattern of open and closed bonds over the time
+/// step Δt that Abramian & Staron (2020) report, at the largest stopping tolerance of the study.
 fn pattern_is_usual(rows: &Measurements<'_>) -> Claim {
     let loosest = rows.values("tolerance").pop().unwrap_or(f64::NAN);
     let rows = rows.with("tolerance", loosest);
@@ -132,8 +134,8 @@ fn pattern_comes_out(rows: &Measurements<'_>) -> Claim {
     .hanging_on("that search, the stop of 2.2·10⁻³ m/s, ρ = 0.2 (the paper states none), the cold start")
 }
 
-/// Tests the paper's statement that the shock opens the bond at small time steps, at the smallest stopping tolerance of
-/// the study.
+/// Tests the statement of Abramian & Staron (2020) that the shock of disc k opens the bond of the cradle's other two
+/// discs at small time steps. The test uses the runs with the smallest stopping tolerance of the study.
 fn shock_opens(rows: &Measurements<'_>) -> Claim {
     let tolerance = rows.values("tolerance")[0];
     let tight = rows.with("tolerance", tolerance);

@@ -1,5 +1,5 @@
-//! Draws Fig. 8 of the paper: the position of disc j over time in the cradle, three discs i, j and k on a line, of
-//! which k hits the bonded discs i and j. Tests the paper's statements about these runs.
+//! Draws Fig. 8 of Abramian & Staron (2020): the position of disc j over time in the cradle, three discs i, j and k on
+//! a line, of which k hits the bonded discs i and j. Tests the statements of the article about these runs.
 
 use std::ops::RangeInclusive;
 
@@ -9,28 +9,30 @@ use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Sheet, points};
 use crate::error::{Error, Result};
 use crate::scene::cradle;
 
-/// Time steps that the figure shows, s. In the paper, the bond of the discs i and j opens at the first time step and
-/// stays closed at the second. At the other four, the outcome depends on the start distance of disc k.
+/// Time steps that the figure shows, s. According to Abramian & Staron (2020), the bond of the cradle's struck discs
+/// opens at the first time step and stays closed at the second. At the other four, the outcome depends on the start
+/// distance of the disc that hits them.
 const SHOWN_SECS: [f64; 6] = [5e-4, 1e-3, 4e-3, 5e-3, 6e-3, 1e-2];
-/// Upper ends of the axes of the paper's Fig. 8: time, s, and position of disc j, diameters.
+/// Upper ends of the axes in Fig. 8 of Abramian & Staron (2020): time, s, and position of the struck disc j, diameters.
 const ENDS: (f64, f64) = (2.0, 5.0);
-/// Time steps at which, according to the paper, disc j of the cradle flies off with one velocity, the same for all
-/// these time steps, s.
+/// Range of time steps, s, at which disc j of the cradle flies off with the same velocity, according to Abramian &
+/// Staron (2020).
 const FREE_SECS: RangeInclusive<f64> = 1e-4..=6e-4;
-/// Time steps at which, according to the paper, disc k of the cradle stays with the discs i and j after it has hit
-/// them, s.
+/// Range of time steps, s, at which disc k of the cradle stays with the two discs that it has hit, according to
+/// Abramian & Staron (2020).
 const CLUSTER_SECS: RangeInclusive<f64> = 7e-4..=3e-3;
-/// Time step at which, according to the paper, the bond of the cradle's discs i and j opens and disc i then catches up
-/// with disc j, s.
+/// Time step, s, at which the bond of the cradle's discs i and j opens and disc i then catches up with disc j,
+/// according to Abramian & Staron (2020).
 const CAUGHT_SECS: f64 = 5e-3;
-/// Largest ratio of the largest to the smallest velocity at which velocities of disc j count as equal.
+/// Largest ratio of two final velocities of disc j of the cradle, from runs with different time steps, at which the
+/// velocities count as equal.
 const ONE_VELOCITY: f64 = 1.1;
 /// Text for the report: choices on which the verdicts about the three discs of the cradle depend.
 const CHOICES: &str = "the start of k (searched for), ρ = 0.2 (the paper states none), the stop and the cold start: \
                        cradle-choices";
 
-/// A row of a run's time series: the time since disc k first touched disc i, s, and the positions of the discs i, j and
-/// k, in diameters.
+/// A row of the time series of a run of the cradle: the time since disc k first touched disc i, s, and the positions of
+/// the discs i, j and k, in diameters.
 type SeriesRow = (f64, [f64; 3]);
 
 struct DiscSeries {
@@ -38,7 +40,7 @@ struct DiscSeries {
     rows: Vec<SeriesRow>,
 }
 
-/// Returns the gap between the discs i and j, in diameters.
+/// Returns the gap between the bonded discs i and j of the cradle, in diameters.
 fn gap((_, [i, j, _]): &SeriesRow) -> f64 {
     j - i - 1.0
 }
@@ -52,13 +54,14 @@ impl DiscSeries {
         self.rows.last().is_some_and(|row| gap(row) > OPEN_GAP)
     }
 
-    /// True if disc j has turned back at the end of the run, so that it is no longer at its farthest position.
+    /// True if disc j of the cradle has turned back at the end of the run: it is no longer at its farthest position.
     fn turns_back(&self) -> bool {
         let farthest = self.after_shock().map(|(_, [_, j, _])| *j).fold(1.0, f64::max);
         self.rows.last().is_some_and(|(_, [_, j, _])| *j < farthest - OPEN_GAP)
     }
 
-    /// Returns the mean velocity of disc j over the last quarter of a second of the run, diameters per second.
+    /// Returns the mean velocity of disc j of the cradle over the last quarter of a second of the run, diameters per
+    /// second.
     fn final_velocity(&self) -> f64 {
         let Some((end, [_, last, _])) = self.rows.last() else { return 0.0 };
         let before = self.after_shock().find(|(secs, _)| *secs >= end - 0.25);

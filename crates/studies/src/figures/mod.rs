@@ -1,5 +1,5 @@
-//! Reproduces every figure of the paper from simulation alone, adds figures that the paper's conclusion suggests, and
-//! tests the paper's statements. Each figure is a row of [`FIGURES`].
+//! Reproduces every figure of Abramian & Staron (2020) from simulation alone, adds figures that the conclusion of this
+//! article suggests, and tests the statements of the article. Each figure is a row of [`FIGURES`].
 
 mod claims;
 mod fig5;

@@ -16,7 +16,8 @@ use crate::statistics::{Mean, mean, p_value};
 const MOST: f64 = 0.55;
 const CONTOURS: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 10.0];
 const WHITE: Rgb = (255, 255, 255);
-/// Cohesive times Bond·Δt/√(d/g), with mean diameter d and gravity g, from 1/`NEAR` to `NEAR` count as near 1.
+/// Limit of the cohesive times Bond·Δt/√(d/g) that count as near 1, with mean diameter d and gravity g: these are the
+/// times from 1/`NEAR` to `NEAR`.
 const NEAR: f64 = 3.0;
 const SHADES: u32 = 64;
 

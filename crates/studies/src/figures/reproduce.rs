@@ -1,4 +1,4 @@
-//! Writes the figures, the tables and the report that compare simulations with the paper.
+//! Writes the figures, the tables and the report that compare simulations with Abramian & Staron (2020).
 
 use std::fmt::Write as _;
 use std::path::Path;

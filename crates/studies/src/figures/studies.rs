@@ -186,8 +186,8 @@ impl StudyRunner {
         self.folder.join(self.effort.name()).join(name)
     }
 
-    /// Returns a line for the caption of a figure, which says that a study of the figure was a quick pass; `None` if
-    /// all studies were full.
+    /// Returns a line for the caption of a figure, which says that a study of the figure was a quick pass, with fewer
+    /// runs; `None` if all studies were full passes.
     pub(super) fn note(&self, studies: &[&str]) -> Option<String> {
         let mut finished = studies.iter().filter_map(|name| self.finished.get(name));
         finished.any(|one| one.study.is_quick_pass).then(|| {

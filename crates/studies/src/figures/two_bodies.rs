@@ -1,8 +1,8 @@
-//! Draws figures of two bodies in contact. Fig. 2 of the paper shows two contact laws as graphs of the normal force N
-//! against the formal velocity v̄: Signorini's law, and the same law shifted by the cohesion force. The lines N = K v̄
-//! + A are the equation of motion for three values of A. The solution of a step is at the intersection of line and
-//! graph, and dots show simulated steps. A second figure shows the opening speed after one step against Δt (paper
-//! §2.2), with theory as lines and simulation as points.
+//! Draws figures of two bodies in contact. Fig. 2 of Abramian & Staron (2020) shows two contact laws as graphs of the
+//! normal force N against the formal velocity v̄: Signorini's law, and the same law shifted by the cohesion force. The
+//! lines N = K v̄ + A are the equation of motion for three values of A. The solution of a step is at the intersection
+//! of line and graph, and dots show simulated steps. A second figure shows the opening speed after one step against Δt
+//! (§2.2 of the article), with theory as lines and simulation as points.
 
 use glam::DVec2;
 
@@ -16,8 +16,9 @@ use crate::world::{Grain, Parameters};
 /// units of the cohesion force C₀, and the name of each case.
 const CASES: [(f64, &str); 3] = [(1.2, "A > 0"), (-0.5, "−C₀ < A < 0"), (-2.2, "A < −C₀")];
 const TIME_STEP_SECS: f64 = 1e-3;
-/// Values at the ends of the axes, which reach from minus to plus these values: the formal velocity in units of
-/// Δt·C₀/m_ij, and the normal force in units of C₀, with the cohesion force C₀ and the effective mass m_ij.
+/// Upper ends of the two axes; the lower ends are the negative of these values. The first axis is the formal velocity
+/// in units of Δt·C₀/m_ij, the second the normal force in units of C₀, with the time step Δt, the cohesion force C₀ and
+/// the effective mass m_ij.
 const REACH: (f64, f64) = (2.0, 3.0);
 
 pub(super) fn fig2(_: &StudyRunner) -> Result<Figure> {
@@ -124,10 +125,10 @@ fn one_step(speed: f64, time_step_secs: f64, bond: f64) -> Result<(f64, f64, f64
     Ok((mass, force, grains.velocities[0].x - grains.velocities[1].x))
 }
 
-/// Returns the theoretical opening speed v^n of a contact after a step, according to the three cases of the paper's
-/// §2.2, without other forces. Let v^{n−1} be the opening speed before the step, ρ the restitution, C₀ the cohesion
-/// force and m_ij the effective mass. The result is −ρ v^{n−1} if the contact closes or bounces, and v^{n−1} −
-/// ΔtC₀/m_ij if the contact opens. ΔtC₀/m_ij is `capture_speed`.
+/// Returns the theoretical opening speed v^n of a contact after a step, according to the three cases of §2.2 of
+/// Abramian & Staron (2020), without other forces. Let v^{n−1} be the opening speed before the step, ρ the restitution,
+/// C₀ the cohesion force and m_ij the effective mass. The result is −ρ v^{n−1} if the contact closes or bounces, and
+/// v^{n−1} − ΔtC₀/m_ij if the contact opens. ΔtC₀/m_ij is `capture_speed`.
 fn theory(speed: f64, capture_speed: f64) -> f64 {
     if speed * (1.0 + RESTITUTION) > capture_speed {
         speed - capture_speed

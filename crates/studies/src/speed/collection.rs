@@ -53,7 +53,7 @@ pub(super) struct CollectionPlan {
     pub in_a_box: bool,
     pub advance: SolverSettings,
     /// Approach speed below which contacts do not bounce, in units of g·Δt, the speed that gravity adds in one step; 0
-    /// in the paper's scheme.
+    /// in the scheme of Abramian & Staron (2020).
     pub restitution_threshold: f64,
     /// Coefficient of friction; `None` for the coefficient of the scene.
     pub friction: Option<f64>,

@@ -16,8 +16,8 @@ const FRICTIONS: [f64; 3] = [0.2, 0.5, 0.9];
 /// Smallest distance between the velocities of two solutions of a step that the chart shows, √(g d), with gravity g and
 /// mean diameter d.
 const LEAST_DISTANCE: f64 = 1e-6;
-/// Factor by which the number of grains is multiplied, for each further Bond number, to shift the points of a chart
-/// horizontally, so that they do not hide each other.
+/// Factor that shifts the points of a chart horizontally, so that they do not hide each other: for each further Bond
+/// number, the number of grains on the x axis is multiplied by this factor.
 const ASIDE: f64 = 1.12;
 
 /// A step of a pile, and the result of the search for its solutions.

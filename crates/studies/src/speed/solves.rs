@@ -16,10 +16,11 @@ use crate::solver::{
     solve, velocities, velocity_error, worst,
 };
 
-/// Least number of times that a solve of a step is timed, unless it takes long. The shortest time counts.
+/// Least number of times that a solve of a step is timed, unless it takes longer than [`LONG_SOLVE_SECS`]. The shortest
+/// time counts.
 pub(super) const LEAST_REPEATS: usize = 3;
-/// Total computing time, s, after which the timing of a short solve is no longer repeated. It is repeated at most
-/// [`MOST_REPEATS`] times.
+/// Total computing time of all repetitions of a solve, s, after which its timing is not repeated again. A short solve
+/// is timed at most [`MOST_REPEATS`] times.
 const ENOUGH_SECS: f64 = 2e-3;
 /// Largest number of times that a short solve of a step is timed.
 const MOST_REPEATS: usize = 12;
@@ -32,7 +33,7 @@ const MOST_SWEEPS: u32 = 1 << 20;
 const GROWTH: u32 = 2;
 
 /// The known solutions of a step under Coulomb friction. The error of a solver is the distance of its velocities from
-/// the nearest of them.
+/// those of the nearest known solution.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct References {
     /// Velocities of all grains in each known solution, m/s: the components along the axes of the scene, and, if grains

@@ -18,8 +18,8 @@ use crate::solver::{FrictionModel, Method, Ordering, SolutionSearch};
 /// Restitution threshold (the approach speed below which contacts do not bounce) with which nearly every step has a
 /// solution, in units of g·Δt, the speed that gravity adds in one step.
 const THRESHOLD: f64 = 2.0;
-/// Errors of the velocities for which the report says how long a method takes to reach them, √(g d), with gravity g and
-/// mean diameter d.
+/// Errors of the velocities, √(g d), with gravity g and mean diameter d. The report says how long each solver method
+/// takes to reach each of these errors.
 const REPORTED: [f64; 3] = [1e-2, 1e-3, 1e-4];
 const BASE: (Method, Ordering) = (Method::Nsgs, Ordering::Interleaved);
 const SIZES: [usize; 4] = [138, 500, 2_000, 10_000];
@@ -92,8 +92,8 @@ pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
     Ok(sections)
 }
 
-/// Adds two variants that solve bounded friction (Tresca) instead of Coulomb friction: by sweeps and by the
-/// interior-point method.
+/// Adds two solver variants to a list. Both solve bounded friction (Tresca) instead of Coulomb friction, one by sweeps
+/// and one by the interior-point method.
 fn with_bounds(mut variants: Vec<Change>) -> Vec<Change> {
     let models = variants::models().into_iter();
     variants.extend(models.filter(|one| one.solver().friction_model == FrictionModel::Tresca));
@@ -148,7 +148,7 @@ impl TimedCollection {
         self.steps.iter().map(|step| step.solves[variant].timing(error)).collect()
     }
 
-    /// Returns the median over the steps of `number`, which is computed from the known solutions of each step.
+    /// Returns the median over all steps of the value that `number` computes from the known solutions of a step.
     fn of_references(&self, number: fn(&References) -> f64) -> f64 {
         median(self.steps.iter().map(|step| number(&step.references)).collect())
     }

@@ -35,26 +35,30 @@ use crate::scene::stability::{
 use crate::sim::Stepper;
 use crate::solver::METHODS;
 
-/// Simulated time of every run of a stability map, s.
+/// Simulated time of every run of a stability map, s. A stability map is a chart of two parameters that shows where a
+/// solver keeps a scene at rest.
 const DURATION_SECS: f64 = 0.1;
-/// Sinking distance, or overlap, above which a run of a stability map is marked as sinking, in diameters d.
+/// Limit of the sinking distance and of the overlap, in diameters d. A run above this limit is marked as sinking on the
+/// stability map.
 const COUNTS: f64 = 0.01;
 /// Amplitude A, at the top of a tall column, of the mode (velocity pattern) that Gauss–Seidel sweeps reduce most
 /// slowly, dimensionless. The velocity with which a column sinks is proportional to A.
 const TOP_OF_COLUMN: f64 = 4.0 / PI;
-/// Displacement of a grain during a run above which the grain counts as torn off or thrown away, in diameters d.
+/// Displacement of a grain during a run, in diameters d, above which the grain counts as torn off or thrown away on a
+/// stability map.
 const LOST: f64 = 1.0;
 /// Root mean square speed of the grains at the end of a run above which the scene counts as shaking, in √(g d), with
 /// gravity g and diameter d. The first value is for rigid grains, the second for grains on springs.
 const SHAKES: [f64; 2] = [0.05, 4e-3];
-/// Number of discs of a column, in those maps that do not vary this number.
+/// Number of discs of a column in those stability maps that do not vary this number.
 const DISCS: usize = 20;
-/// Size of a chart, pixels.
+/// Width and height of the chart of a stability map, pixels.
 const CHART: (u32, u32) = (500, 500);
-/// Number of charts side by side on a sheet.
+/// Number of stability maps side by side on a sheet.
 const ABREAST: usize = 5;
 
-/// A varied parameter of a stability map, which is on one of the two axes.
+/// A parameter that is varied along one of the two axes of a stability map, a chart that shows where a solver keeps a
+/// scene at rest.
 struct Parameter {
     label: &'static str,
     from: f64,
@@ -92,7 +96,8 @@ impl Parameter {
 /// drawn, empty for all maps; and the y value as a function of x.
 type Border = (&'static str, &'static str, fn(f64) -> Result<f64>);
 
-/// Description of a stability map: a scene, two varied parameters, and theoretical boundaries.
+/// Description of a stability map (a chart that shows where a solver keeps a scene at rest): the scene, the two varied
+/// parameters, and the theoretical boundaries.
 struct Map {
     name: &'static str,
     title: &'static str,

@@ -32,9 +32,11 @@ pub struct Challenge {
     pub name: &'static str,
     /// Name and unit of the driving parameter: the parameter of the scene that is changed until a solver method fails.
     driver: &'static str,
-    /// Values of the driving parameter in a quick pass, from the easiest to the most difficult.
+    /// Values of the driving parameter in a quick pass (a pass with fewer runs), from the easiest to the most
+    /// difficult.
     pub quick: &'static [f64],
-    /// Additional, more difficult values of the driving parameter in a full pass.
+    /// Values of the driving parameter that only the full pass tests, in addition to those of the quick pass. They are
+    /// more difficult.
     further: &'static [f64],
     /// Two limits of the error, in its unit: up to the first limit a method gets the verdict "holds", up to the second
     /// "degrades", and above the second "fails".
@@ -121,12 +123,20 @@ impl Challenge {
     }
 }
 
-/// Names and values of driving parameters that several stability tests use.
+/// Name and unit of the driving parameter (the parameter that makes the test more difficult) of those stability tests
+/// in which it is the time step.
 const TIME_STEP: &str = "time step (s)";
+/// Name of the driving parameter (the parameter that makes the test more difficult) of those stability tests in which
+/// it is the ratio of two masses.
 const MASSES: &str = "ratio of masses";
+/// Time steps of a quick pass (a pass with fewer runs), s, in stability tests whose driving parameter is the time step.
 const STEPS: &[f64] = &[2e-4, 1e-3, 5e-3, 2e-2];
+/// Time steps of a quick pass (a pass with fewer runs), s, in the stability tests of heaps, arches and logs.
 const LONG_STEPS: &[f64] = &[1e-3, 5e-3, 2e-2];
+/// Time steps of a quick pass (a pass with fewer runs), s, in the stability tests of sliding discs.
 const SHORT_STEPS: &[f64] = &[1e-4, 1e-3, 5e-3];
+/// Mass ratios of a quick pass (a pass with fewer runs), in stability tests whose driving parameter is the ratio of two
+/// masses.
 const RATIOS: &[f64] = &[10.0, 100.0, 1e3, 1e4];
 
 const fn challenge(
@@ -365,8 +375,8 @@ fn force_on_ground(simulation: &Simulation) -> f64 {
     impulse / simulation.parameters().time_step_secs
 }
 
-/// Returns the number above which `holds` is true. It is searched between `low` and `high` by `halvings` bisections on
-/// a logarithmic scale.
+/// Returns the number above which `holds` returns true and below which it returns false. The number is searched between
+/// `low` and `high` by `halvings` bisections on a logarithmic scale.
 fn threshold(
     [mut low, mut high]: [f64; 2],
     halvings: u32,

@@ -79,6 +79,7 @@ pub(super) fn blow(trial: &Trial) -> Result<f64> {
 /// Number of runs in the test of a disc that flies against a thin wall. The runs differ in the phase: the time within a
 /// step at which the disc reaches the wall.
 const PHASES: u32 = 10;
+/// Simulated time of the test of Newton's cradle, s, after which the speed of the last ball is measured.
 const AFTER_SECS: f64 = 0.1;
 
 /// Returns the larger of two errors of a bouncing disc. The first is the error of the height of the first bounce,
@@ -197,12 +198,14 @@ pub(super) fn shuffle(trial: &Trial) -> Result<f64> {
 
 // Sudden changes: a grain is removed, the time step changes, or all sliders move at random.
 
-/// Number of steps before, and number of steps after, the sudden change in a test (a removed grain, or another time
-/// step).
+/// Number of steps before the sudden change in a test (a removed grain, or another time step).
 const BEFORE: u64 = 50;
+/// Number of steps after the sudden change in a test (a removed grain, or another time step).
 const AFTER: u64 = 30;
 /// Time step in the test of a sudden change of the time step, before the change, s.
 const SMALL_STEP_SECS: f64 = 2e-4;
+/// Number of rows of discs in the heap of the tests with a sudden change of the time step or with randomly moved
+/// sliders.
 const ROWS: usize = 4;
 /// Half the side length of the box around the heap, in the test with randomly moved sliders, in mean diameters d.
 const BOX: f64 = 12.0;

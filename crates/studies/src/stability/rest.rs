@@ -87,15 +87,19 @@ const STANDING_SECS: f64 = 0.2;
 const SMALL_ROWS: usize = 4;
 /// Friction coefficient below which a pile of three equal logs slides apart: tan 15° = 2 − √3.
 const FRICTION_OF_LOGS: f64 = 0.267_949_192_431_122_7;
-/// Displacement of the grain that has moved farthest, at and above which a pile counts as sliding at the end of a test,
-/// in mean diameters d.
+/// Displacement of the grain that has moved farthest, in mean diameters d. With at least this displacement at the end
+/// of a test, a pile counts as sliding.
 const SLID: f64 = 0.02;
+/// Duration of the runs that test whether a pile slides, s.
 const SLIDING_SECS: f64 = 0.2;
-/// Factors that define the range in which the friction coefficient or slope angle at which a pile slides is searched,
-/// and number of bisections. The range goes from the right value divided by the factor to the right value times the
-/// factor. After the bisections, friction is known to 1 % and angles to 0.5 %.
+/// Factor that defines the range in which the friction coefficient at which a pile slides is searched: from the right
+/// value divided by the factor to the right value times the factor.
 const FRICTION_RANGE: f64 = 4.0;
+/// Factor that defines the range in which the slope angle at which a pile slides is searched: from the right value
+/// divided by the factor to the right value times the factor.
 const ANGLE_RANGE: f64 = 2.0;
+/// Number of bisections in the search for the friction coefficient or the slope angle at which a pile slides. They
+/// determine friction to 1 % and angles to 0.5 %.
 const PILE_HALVINGS: u32 = 8;
 
 /// Runs a scene for the simulated time `secs` (s), and returns the longest displacement of any grain, in mean diameters
@@ -218,10 +222,11 @@ const CHAIN: usize = 8;
 /// Duration of the test whether a hanging chain breaks, s. If the load is 1 % above the strength, the chain opens in a
 /// third of this duration.
 const CHAIN_SECS: f64 = 0.04;
-/// Time in which the chain hangs at rest before the test, s. During this time, its Bond number is [`SURE`] times the
-/// Bond number at which it breaks, so that the chain holds. With a much larger Bond number, bonds with springs would
-/// recoil when the Bond number is reduced for the test.
+/// Time in which the chain hangs at rest before it is tested, s. During this time the chain has [`SURE`] times its
+/// breaking Bond number, so that it does not break.
 const HANG_SECS: f64 = 0.04;
+/// Bond number of the chain while it hangs at rest before it is tested, divided by the Bond number at which it breaks.
+/// With a much larger value, bonds with springs would recoil when the Bond number is reduced for the test.
 const SURE: f64 = 1.5;
 /// Number of bisections with which the Bond number is searched at which a chain breaks. They determine it to a factor
 /// of 4^(1/2^8), that is, 0.5 %.
@@ -229,10 +234,12 @@ const CHAIN_HALVINGS: u32 = 9;
 /// Duration of the tests of a cohesive bridge and a cohesive cantilever, s. If the bridge or the cantilever is torn
 /// off, it falls by 30 diameters in this duration.
 const WATCH_SECS: f64 = 0.25;
+/// Length of the cohesive cantilever in its stability test: number of grains in each of its two rows.
 pub(super) const CANTILEVER: i32 = 4;
+/// Length of the cohesive bridge in its stability test: number of grains in the lower of its two rows.
 const BRIDGE: i32 = 10;
-/// Time step in the test of the paper's cradle (a disc hits two bonded discs), s. At this time step the bond opens in
-/// the paper, because the paper's solver has not converged.
+/// Time step in the test of the cradle of Abramian & Staron (2020), in which a disc hits two bonded discs, s. At this
+/// time step the bond opens in their article, because their solver has not converged.
 const SHOCK_STEP_SECS: f64 = 5e-4;
 
 /// Returns the relative error of the Bond number below which a hanging chain breaks.
@@ -261,8 +268,8 @@ pub(super) fn bridge(trial: &Trial) -> Result<f64> {
     way_in(trial, WATCH_SECS, with_time_step(trial, scenes::bridge(BRIDGE)))
 }
 
-/// Runs the paper's cradle, in which disc k hits two bonded discs i and j. Returns the gap between i and j at the end,
-/// in diameters. If the steps are solved accurately, the bond holds, and the gap is 0.
+/// Runs the cradle of Abramian & Staron (2020), in which disc k hits two bonded discs i and j. Returns the gap between
+/// i and j at the end, in diameters. If the steps are solved accurately, the bond holds, and the gap is 0.
 pub(super) fn shock(trial: &Trial) -> Result<f64> {
     let mut scene = cradle();
     scene.parameters.time_step_secs = SHOCK_STEP_SECS;

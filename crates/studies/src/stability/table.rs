@@ -213,9 +213,11 @@ fn number(value: f64) -> String {
 /// Number of columns (solver variants) side by side in the picture of the table. More columns would be too narrow for
 /// their text.
 const COLUMNS: usize = 10;
-/// Width of the picture of the table, height of a row, and height of the space for text below the table, pixels.
+/// Width of the picture of the table, pixels.
 const WIDTH: u32 = 1200;
+/// Height of a row in the picture of the table, pixels.
 const ROW: u32 = 32;
+/// Height of the space for text below the table in its picture, pixels.
 const BELOW: u32 = 150;
 
 /// Colours of the verdicts "holds", "degrades", "fails" and "refuses". They also differ in lightness.

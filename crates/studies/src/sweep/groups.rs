@@ -1,5 +1,6 @@
-//! Writes `report.json` of a sweep: mean slumps over initial states, and the effect of each varied setting on the slump
-//! at the same initial states, together with the program, the machine, the date and the command.
+//! Writes `report.json` of a sweep: the mean slumps over initial states, and the effect of each varied setting on the
+//! slump as a mean difference between runs from the same initial state, together with the program, the machine, the
+//! date and the command.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;

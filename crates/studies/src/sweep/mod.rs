@@ -46,9 +46,10 @@ const STUDY_FILE: &str = "study.json";
 const DATA: &str = "data";
 const STATES: &str = "states";
 const TABLE: &str = "runs.csv";
-/// Waiting time between two attempts to take over a folder that another process uses, and number of attempts. A process
-/// that only reads the folder is finished before the last attempt.
+/// Waiting time between two attempts to take over a folder that another process uses.
 const MOMENT: Duration = Duration::from_millis(100);
+/// Number of attempts to take over a folder that another process uses. A process that only reads the folder is finished
+/// before the last attempt.
 const MOMENTS: u32 = 20;
 
 /// Options of a sweep, which computes the runs of a study.

@@ -43,7 +43,7 @@ struct StudyFile {
     quick: Quick,
 }
 
-/// Values that replace values of the study file's tables `base` and `vary` in a quick pass.
+/// Values that replace values of the study file's tables `base` and `vary` in a quick pass, which has fewer runs.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Quick {
@@ -147,7 +147,7 @@ impl Study {
 
 /// Replaces values in the table `to` of a study file by `values`, the values of a quick pass. A setting that varies in
 /// the study may be constant in the quick pass, and the other way round, so the setting is removed from the table
-/// `other`.
+/// `other`. `from` is the name of the table with the values, for error messages.
 fn replace(from: &str, to: &mut Table, other: &mut Table, values: Table) -> Result<()> {
     for (key, value) in values {
         if other.remove(&key).is_none() && !to.contains_key(&key) {

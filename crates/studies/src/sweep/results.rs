@@ -38,7 +38,8 @@ pub struct RunResult {
     /// Statistics of all steps of the run, such as the number of sweeps and the mean overlap.
     #[serde(flatten)]
     pub tally: Tally,
-    /// Slump Δy_G at the end: the drop of the mean height, divided by the first mean height (paper eq. 11).
+    /// Slump Δy_G at the end: the drop of the mean height, divided by the first mean height (Abramian & Staron 2020,
+    /// eq. 11).
     #[serde(with = "number")]
     pub slump: f64,
     /// Gap between the first two grains at the end of the run, in mean diameters; 0 for a single grain.

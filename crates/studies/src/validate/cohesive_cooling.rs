@@ -66,13 +66,15 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 /// stepper `range` takes a fortieth of the initial temperature T₀ (an energy), and the capture speed (the opening speed
 /// that one step of cohesion stops) is at most a fifth of the thermal speed √(2T₀/m), with the mass m of a disc.
 const COHESION: f64 = 5.0;
-/// The two time steps of the experiment, s.
+/// The shorter of the two time steps of the experiment, s.
 const SHORT: f64 = 2e-3;
+/// The longer of the two time steps of the experiment, s.
 const LONG: f64 = 4e-3;
-/// Durations of the runs, dimensionless. With the stepper `range`, the unit is the time in which breaking bonds would
-/// take all energy. With the stepper `moreau`, the unit is 2/(R (1 − ρ²)), with the collision rate R per disc and the
-/// restitution ρ.
+/// Duration of the runs with the stepper `range`, in units of the time in which breaking bonds would take all energy of
+/// the gas.
 const OF_BONDS: f64 = 0.5;
+/// Duration of the runs with the stepper `moreau`, in units of 2/(R (1 − ρ²)), with the collision rate R per disc and
+/// the restitution ρ.
 const OF_RESTITUTION: f64 = 3.0;
 /// Number of simulated times at which the temperature is measured in a run.
 const MOMENTS: u32 = 120;

@@ -31,16 +31,19 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 };
 
 pub(super) const INERTIAL: f64 = 0.08;
-/// Values of the dimensionless cohesion η = C₀/(P d) that represent weak and strong cohesion. C₀ is the cohesion force,
-/// P the pressure on the layer and d the diameter of a grain.
+/// Dimensionless cohesion η = C₀/(P d) that represents weak cohesion. C₀ is the cohesion force, P the pressure on the
+/// layer and d the diameter of a grain.
 pub(super) const WEAK: f64 = 1.0;
+/// Dimensionless cohesion η = C₀/(P d) that represents strong cohesion, with cohesion force C₀, pressure P on the layer
+/// and grain diameter d.
 const STRONG: f64 = 30.0;
 
-/// Values of the dimensionless cohesion η = C₀/(P d) and of the dimensionless bond energy E = W/(m γ̇² d²) in those
-/// layers for which the work W to break a bond is prescribed. C₀ is the cohesion force, P the pressure, γ̇ the shear
-/// rate, and m and d are mass and diameter of a grain. Time steps of 1 ms resolve the breaking of the weakest of these
-/// bonds.
+/// Dimensionless cohesion η = C₀/(P d) of those layers for which the work to break a bond is prescribed. C₀ is the
+/// cohesion force, P the pressure and d the diameter of a grain.
 const FORCES: [f64; 2] = [3.0, 10.0];
+/// Dimensionless bond energies E = W/(m γ̇² d²) of those layers for which the work W to break a bond is prescribed. γ̇
+/// is the shear rate, and m and d are mass and diameter of a grain. Time steps of 1 ms resolve the breaking of the
+/// weakest of these bonds.
 const ENERGIES: [f64; 4] = [1.0, 3.0, 10.0, 30.0];
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {

@@ -54,7 +54,8 @@ impl ExperimentCase {
     }
 }
 
-/// Returns one case (a run to compute) for each of `values` and each seed from 1 to `seeds`.
+/// Returns one case (a run to compute) for each value in `values` and each seed from 1 to `seeds`. The function `case`
+/// makes the case of a value and a seed.
 pub(super) fn seeded<T: Copy>(
     values: &[T],
     seeds: u32,

@@ -43,15 +43,17 @@ const FRICTION: f64 = 0.5;
 const WIDTH: f64 = 8.0;
 /// Number of grains that fill a square, whose side is the distance W between the walls, at a solid fraction of 0.82.
 const GRAINS_OF_SQUARE: f64 = 1.04 * WIDTH * WIDTH;
-/// Distance by which the bottom of the silo is lowered, in diameters, and the fraction of this distance after which the
-/// load on the bottom is measured.
+/// Distance by which the bottom of the silo is lowered, in diameters.
 const LOWERED: f64 = 0.5;
+/// Fraction of the distance by which the bottom of the silo is lowered, after which the load on the bottom is measured.
 const WEIGHED_FROM: f64 = 0.2;
 /// Speed with which the bottom of the silo is lowered, in √(g d), with gravity g and diameter d.
 const SPEED: f64 = 0.02;
-/// Two filling heights of the silo whose loads on the bottom are compared, in units of the distance W between the
-/// walls.
+/// Larger of the two filling heights of the silo whose loads on the bottom are compared, in units of the distance W
+/// between the walls.
 const HIGH: f64 = 5.0;
+/// Smaller of the two filling heights of the silo whose loads on the bottom are compared, in units of the distance W
+/// between the walls.
 const HALF_AS_HIGH: f64 = 2.5;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {

@@ -34,8 +34,8 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 const LARGE_FRICTION: f64 = 10.0;
 /// Contact force above which a contact counts as bearing a force, as a fraction of the mean contact force.
 const BEARS_FROM: f64 = 1e-6;
-/// Distance from the walls and the surface of the packing within which grains are left out of the solid fraction, in
-/// diameters. Below the surface, twice this distance is left out.
+/// Width of the margin along the walls in which grains are left out of the solid fraction, in diameters. The margin
+/// below the surface of the packing is twice as wide.
 const MARGIN: f64 = 2.5;
 /// Height of the horizontal layers over which contact forces are averaged, in diameters.
 const LAYER: f64 = 3.0;

@@ -27,13 +27,14 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// Numbers that represent the two scenes, the drum and the tilted plane, among the parameters of a run.
+/// Number that represents the scene with a rotating drum among the parameters of a run.
 const DRUM: f64 = 0.0;
+/// Number that represents the scene with a tilted plane among the parameters of a run.
 const INCLINE: f64 = 1.0;
 /// Simulated time from which on the slope in the drum is measured, s. The drum has then turned by three radians.
 const STEADY_SECS: f64 = 1.5;
-/// Displacement of its centre of mass along the tilted plane at which a layer of grains counts as flowing, in
-/// diameters.
+/// Displacement along the tilted plane, in diameters. A layer of grains counts as flowing if its centre of mass has
+/// moved by this distance.
 const FLOWN: f64 = 0.5;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {

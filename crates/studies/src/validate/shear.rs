@@ -54,7 +54,7 @@ pub(super) const PRESSURE: f64 = 1.0;
 /// Approximate solid fraction of the layers, from which their height is computed.
 const DENSE: f64 = 0.79;
 /// Time at the start of a run in which the plate compresses the loose grains, s. The shear of the layer is counted from
-/// its end.
+/// the end of this time.
 const PRESSING_SECS: f64 = 0.5;
 /// Least shear of a layer before the measurement, and shear during the measurement. Shear is the displacement of the
 /// plate divided by the height of the layer.
@@ -65,8 +65,8 @@ const TIMES_TO_STEADY: f64 = 3.0;
 /// Friction T/N of a layer (tangential force divided by normal force) with which the decay of transients is computed.
 const SLOWEST: f64 = 0.4;
 const MOMENTS: u32 = 250;
-/// The solid fraction is computed at every fifth time at which forces and shear rate are measured, because its
-/// computation takes longer.
+/// Number of measurements of forces and shear rate per measurement of the solid fraction, which takes longer to
+/// compute.
 const MOMENTS_OF_CELLS: u32 = 5;
 /// Distance from a plate within which grains are left out of the measurements, in diameters.
 const MARGIN: f64 = 2.5;
@@ -216,7 +216,8 @@ fn inertial_secs() -> f64 {
     (DIAMETER / (GRAVITY * PRESSURE)).sqrt()
 }
 
-/// Returns the forces of the lower and of the upper plate on the grains, N.
+/// Returns the forces of the lower and of the upper plate on the grains, N. The plates consist of fixed discs; the
+/// discs of the upper plate have the indices from `of_plate` on.
 fn on_plates(moment: &Moment, of_plate: u32) -> [DVec2; 2] {
     let on = |is_upper: bool| -> DVec2 {
         let of_it = moment.contacts.iter().filter(|contact| {

@@ -33,9 +33,9 @@ const FRICTION: f64 = 0.5;
 const OUT: [f64; 2] = [0.08, 0.4];
 /// Simulated time at which the plate that closes the orifice is removed, s.
 const RELEASE_SECS: f64 = 0.02;
-/// Width of the orifice in the test with stronger gravity, in diameters, and the factor by which gravity is increased
-/// in this test.
+/// Width of the silo's orifice in the test with stronger gravity, in diameters.
 const OF_GRAVITY: f64 = 8.0;
+/// Factor by which gravity is increased in the test with stronger gravity.
 const TIMES_GRAVITY: f64 = 4.0;
 /// Value of the constant k in the law Q ∝ (W − k d)^{3/2} that is assumed when the exponent 3/2 is measured. Q is the
 /// discharge rate, W the width of the orifice and d the diameter.

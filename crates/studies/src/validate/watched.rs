@@ -140,8 +140,9 @@ pub(super) fn centre_of_mass(simulation: &Simulation) -> DVec2 {
     pairs.map(|(mass, place)| *mass * *place).sum::<DVec2>() / mass
 }
 
-/// Returns the solid fraction in a region: the total area of those grains whose centres are in the region, divided by
-/// the total area of their cells (the cell of a grain is the region nearer to it than to any other grain).
+/// Returns the solid fraction in a region: the total area of the grains in the region, divided by the total area of
+/// their cells. The cell of a grain is the region nearer to it than to any other grain. Grains count if `is_inside` is
+/// true for their centres and their cells are closed, which means that they are not at a free surface or a hole.
 pub(super) fn solid_fraction(moment: &Moment, is_inside: impl Fn(DVec2) -> bool) -> f64 {
     let (mut discs, mut cells) = (0.0, 0.0);
     for (grain, measures) in moment.grains.iter().zip(&measure(moment).grains) {

@@ -39,8 +39,8 @@ const TIME_STEP_SECS: f64 = 2e-4;
 /// Largest number of sweeps of the solver per step. Many steps, each of which starts from the contact forces of the
 /// previous step, bring the pile to rest faster than many sweeps in each step.
 const SWEEPS: u32 = 20;
-/// Tolerance of the solver: the solve of a step stops when a sweep changes the contact impulses by less than this,
-/// relative to their size.
+/// Tolerance of the solver: the solve of a step stops when a sweep changes the contact impulses by less than this
+/// fraction of their size.
 const TOLERANCE: f64 = 1e-7;
 /// Damping by the thick medium: the fraction by which it reduces all velocities per step, multiplied by the number of
 /// layers of grains in the pile. The value is twice the frequency of the slowest oscillation. With half of this value
@@ -59,8 +59,8 @@ const REST_ENERGY: f64 = 1e-7;
 /// Speed, in √(g·d) (g: gravity, d: mean diameter), above which a grain counts as falling. A pile counts as at rest if
 /// at most one of [`GRAINS_A_MOVING_ONE`] grains is faster.
 const REST_SPEED: f64 = 1e-2;
-/// A pile counts as at rest if at most one of this many grains still moves. In a large pile, grains somewhere always
-/// tip over, so waiting for the last grain would take longer the larger the pile is.
+/// Number of grains of a pile for each grain that may still move when the pile counts as at rest. In a large pile,
+/// grains somewhere always tip over, so waiting for the last grain would take longer the larger the pile is.
 const GRAINS_A_MOVING_ONE: usize = 10_000;
 const STEPS_PER_LOOK: u32 = 10;
 /// Number of steps after which the generation of a pile that is not at rest fails: a constant, and an addition per

@@ -1,9 +1,9 @@
 //! Rain: the method of generating a pile by which the initial state that is shipped with Slump was made.
 //!
-//! The discs start at rest on a loose lattice above the base, with random displacements, and fall through a medium.
-//! The medium limits their speed to the terminal speed √(g·d)/2. So they land with overlaps of at most the terminal
-//! speed times the time step, whatever the height of the box is. When the pile has formed, the medium is removed. Then
-//! the pile settles without cohesion under the contact laws of the paper's runs.
+//! The discs start at rest on a loose lattice above the base, with random displacements, and fall through a medium. The
+//! medium limits their speed to the terminal speed √(g·d)/2. So they land with overlaps of at most the terminal speed
+//! times the time step, whatever the height of the box is. When the pile has formed, the medium is removed. Then the
+//! pile settles without cohesion under the contact laws of the runs of Abramian & Staron (2020).
 
 use glam::DVec2;
 use rand::{RngExt, SeedableRng};
@@ -20,8 +20,8 @@ use crate::world::Grain;
 
 /// Time step while the pile settles, s. The overlaps of the grains in the initial state are proportional to it.
 const TIME_STEP_SECS: f64 = 1e-4;
-/// Speed in √(g·d) (g: gravity, d: mean diameter). A pile is at rest if all its grains have been slower than this
-/// speed for [`REST_SECS`].
+/// Largest speed of a grain in a pile at rest, in √(g·d) (g: gravity, d: mean diameter). A pile is at rest if all its
+/// grains have been slower than this speed for [`REST_SECS`].
 const REST_SPEED: f64 = 2e-4;
 const STEPS_PER_LOOK: u32 = 100;
 

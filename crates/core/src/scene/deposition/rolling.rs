@@ -161,7 +161,7 @@ pub struct Rest {
 }
 
 /// Angle, rad, that allows for rounding: a rolling disc can still meet an obstacle whose contact angle is behind the
-/// present angle of the disc by less than this.
+/// present angle of the disc by less than this value.
 const ROUNDING: f64 = 1e-9;
 
 /// Returns the position of rest of a disc that is dropped at the coordinate `x` (m) from above all other discs.
@@ -185,8 +185,8 @@ pub fn dropped(deposit: &Deposit, x: f64, radius: f64) -> Rest {
     }
 }
 
-/// A disc that starts to fall at `from` (m), off the disc with the index `left`, after it has rolled to `side` (+1:
-/// right, −1: left).
+/// A disc that starts to fall at `from` (m), after it has left the disc with the index `left` and has rolled to `side`
+/// (+1: right, −1: left).
 struct FallingDisc {
     from: DVec2,
     left: Option<usize>,
@@ -215,7 +215,8 @@ enum Obstacle {
     Nothing,
 }
 
-/// Rolls a disc to one side, from disc to disc, until it meets a second support or falls off.
+/// Rolls a disc to one side, from disc to disc, until it meets a second support or falls off. Returns its position of
+/// rest, or the beginning of its fall.
 fn rolled(deposit: &Deposit, mut roll: RollingDisc) -> RollEnd {
     loop {
         let RollingDisc { radius, on, side, .. } = roll;

@@ -14,12 +14,13 @@ use crate::world::{
 
 /// Number of grains of a column whose half-width R₀ and height H₀ are one diameter d each.
 const GRAINS_OF_SQUARE: f64 = 2.09;
-/// Distance by which each gate is pulled away from the column, m. With `GATE_SECS` (the time of this motion, s) the
-/// speed of the gate is 15 m/s.
+/// Distance by which each gate is pulled away from the column, m.
 const GATE_WAY: f64 = 3.0;
+/// Time in which each gate is pulled away from the column, s. The gates then move at 15 m/s, faster than grains can
+/// follow.
 const GATE_SECS: f64 = 0.2;
-/// Half-width of the rough floor, divided by the largest half-width that collapsed columns of the same aspect ratio
-/// are known to reach. Farther outside the floor is smooth.
+/// Half-width of the rough floor, divided by the largest half-width that collapsed columns of the same aspect ratio are
+/// known to reach. Farther out, the floor is smooth.
 const REACH: f64 = 1.3;
 
 /// Returns the half-width R₀, in diameters, of a column with this number of grains and the aspect ratio H₀/R₀ (H₀:
@@ -64,12 +65,14 @@ pub fn collapse_of(mut scene: Scene, half: f64, release_secs: f64) -> Scene {
 
 /// Width of the silo, in diameters.
 pub const SILO_WIDTH: f64 = 26.0;
+/// Height of the side walls of the silo, in diameters.
 const SILO_HEIGHT: f64 = 60.0;
 /// Distance from the bottom of the silo down to the floor that catches the grains, in diameters.
 const FLOOR_DEPTH: f64 = 30.0;
-/// Distance by which the plate that closes the orifice of the silo falls, m. With `PLATE_SECS` (the time of this
-/// motion, s) it falls faster than grains.
+/// Distance by which the plate that closes the orifice of the silo falls, m.
 const PLATE_WAY: f64 = 1.0;
+/// Time in which the plate that closes the orifice of the silo falls, s. It is so short that the plate falls faster
+/// than grains.
 const PLATE_SECS: f64 = 0.1;
 
 /// Returns the scene of a silo with a flat bottom and an orifice in its middle. A plate closes the orifice at first.
@@ -102,8 +105,9 @@ pub fn silo_of(mut scene: Scene, orifice: f64, release_secs: f64) -> Scene {
     scene
 }
 
-/// Width of the box that is tilted, in diameters. `INCLINE_HEIGHT` is the height of its walls.
+/// Width of the box that is tilted in the scene `incline`, in diameters.
 const INCLINE_WIDTH: f64 = 40.0;
+/// Height of the walls of the box that is tilted in the scene `incline`, in diameters.
 const INCLINE_HEIGHT: f64 = 30.0;
 /// Simulated time during which the box is level, so that the grains come to rest, before it is tilted, s.
 pub const LEVEL_SECS: f64 = 0.4;
@@ -167,8 +171,9 @@ pub fn drum() -> Scene {
     scene
 }
 
-/// Half-width of the shaken box, in diameters. `BOX_HEIGHT` is its height.
+/// Half-width of the shaken box, in diameters.
 const HALF_WIDTH: f64 = 8.0;
+/// Height of the walls of the shaken box, in diameters.
 const BOX_HEIGHT: f64 = 30.0;
 /// Radius of the one large grain in the shaken box, in diameters of the other grains.
 const LARGE: f64 = 1.5;

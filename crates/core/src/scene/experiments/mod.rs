@@ -19,10 +19,11 @@ use super::tones::tone_in_layers;
 use crate::world::{Boundary, Grain, Motion, MotionCourse};
 
 /// The golden ratio minus 1. The fractional parts of its first n multiples are spread evenly over the interval from 0
-/// to 1 for every n.
+/// to 1 for every n. They determine the diameters of the grains.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Distance between neighbouring grains of an initial lattice, in diameters.
+/// Distance between the centres of neighbouring grains of an initial lattice, in diameters. It is slightly more than
+/// the largest diameter, 1.2 mean diameters.
 const SPACING: f64 = 1.22;
 
 /// Returns a scene whose grains start at the given positions. Their diameters are spread evenly over [0.8 d, 1.2 d],

@@ -24,8 +24,8 @@ const ROW_SPACING: f64 = 1.22;
 /// Distance at the start from the centres of a plate's discs to the centres of the nearest row of grains, in
 /// diameters.
 const PLATE_ROOM: f64 = 1.2;
-/// Pressure P on the upper plate, in m g/d (mass of a grain, gravity, diameter). The time √(m/P), in which this
-/// pressure accelerates a grain, is then 0.01 s.
+/// Pressure P on the upper plate, in m g/d (mass of a grain, gravity, diameter). With this pressure the inertial time
+/// √(m/P) of a grain of mass m is 0.01 s.
 const SHEAR_PRESSURE: f64 = 10.0;
 /// Speed of the upper plate along the lower plate, m/s. The compressed grains are about 9 diameters high, so the
 /// inertial number I = γ̇ √(m/P) is 0.07 (γ̇: shear rate, m: mass of a grain, P: pressure).
@@ -84,16 +84,17 @@ pub fn shear_of(cell: ShearCell, pressure: f64, speed: f64) -> Scene {
     scene
 }
 
-/// Number of columns of grains at the start in the scene `shear-periodic`. `ROWS` is the number of rows. It is even,
-/// because every other row is shifted by half a spacing.
+/// Number of columns of grains at the start in the scene `shear-periodic`.
 const COLUMNS: u32 = 16;
+/// Number of rows of grains at the start in the scene `shear-periodic`. This number is even, because every other row is
+/// shifted by half a spacing and the rows repeat across the periodic borders.
 const ROWS: u32 = 14;
 /// Distance between the centres of neighbouring grains at the start, in diameters. It is slightly more than the
 /// largest diameter. The grains cover a fraction of 0.74 of the cell.
 const PERIODIC_SPACING: f64 = 1.11;
 /// Largest deviation of a diameter from the mean diameter, relative to the mean diameter.
 const SPREAD: f64 = 0.1;
-/// Shear rate γ̇ of the scene `shear-periodic`, 1/s: change of the velocity along x per height.
+/// Shear rate γ̇ of the scene `shear-periodic`, 1/s: change of the velocity along x (m/s) per metre of height.
 const SHEAR_RATE: f64 = 10.0;
 
 /// Returns the scene of shear without walls: grains in a cell with periodic borders, of which the upper slides along
@@ -133,33 +134,36 @@ pub fn shear_periodic() -> Scene {
     scene
 }
 
+/// Number of grains in the biaxial test.
 const GRAINS: usize = 300;
 /// Width of the initial lattice of grains in the biaxial test, in diameters.
 const WIDTH: f64 = 19.0;
 /// Distance from the outer centres of the initial lattice of grains to the walls, in diameters.
 const ROOM: f64 = 0.75;
-/// Pressure of the side walls on the grains, in m g/d (mass of a grain, gravity, diameter), at the height that the
-/// grains have in the middle of the test.
+/// Pressure of the side walls on the grains in the biaxial test, in m g/d (mass of a grain, gravity, diameter). A
+/// constant force presses each side wall, so the pressure has this value only while the grains are [`HEIGHT`] high.
 const CONFINING_PRESSURE: f64 = 10.0;
-/// Height of the grains in the middle of the test, in diameters.
+/// Height of the layer of grains in the middle of the biaxial test, in diameters.
 const HEIGHT: f64 = 18.0;
-/// Distance by which the lid moves down in the first part of the test, in diameters, while the side walls compress the
-/// grains. `CLOSING_SECS` is the duration of this part, s.
+/// Distance by which the lid moves down in the first part of the biaxial test, in diameters, while the side walls
+/// compress the grains.
 const CLOSING: f64 = 5.5;
+/// Duration of the first part of the biaxial test, in which the side walls compress the grains, s.
 const CLOSING_SECS: f64 = 0.35;
-/// Distance by which the lid moves down in the second part of the test, in diameters. With `COMPRESSION_SECS` (the
-/// duration of this part, s) the inertial number γ̇ √(m/P) is 1.4e-3 (γ̇: strain rate, m: mass of a grain, P:
-/// pressure).
+/// Distance by which the lid moves down in the second part of the biaxial test, in diameters.
 const COMPRESSION: f64 = 5.0;
+/// Duration of the second part of the biaxial test, s. With this duration the inertial number γ̇ √(m/P) is 1.4e-3 (γ̇:
+/// strain rate, m: mass of a grain, P: pressure).
 const COMPRESSION_SECS: f64 = 2.0;
 
 /// Returns the scene of a biaxial test: grains in a box. A constant force presses each side wall inward, and the lid
 /// moves down at a given speed. Gravity does not act on the grains.
 ///
 /// First the lid moves down fast onto loose grains while the side walls compress them. Then it moves slowly. The
-/// strength of the grains is the ratio σ_yy/σ_xx of their stresses, which is in the table `measures` of a recording.
-/// Flowing grains reach (1 + sin φ_f)/(1 − sin φ_f), with their friction angle φ_f (Mohr, Coulomb). The force on a
-/// side wall is constant, so its pressure varies with the height of the box, by about ten per cent.
+/// strength of the grains is the ratio σ_yy/σ_xx of their vertical to their horizontal stress, which is in the table
+/// `measures` of a recording. Flowing grains reach (1 + sin φ_f)/(1 − sin φ_f), with their friction angle φ_f (Mohr,
+/// Coulomb). The force on a side wall is constant, so its pressure varies with the height of the box, by about ten per
+/// cent.
 pub fn biaxial() -> Scene {
     let mut scene = of_loose_grains("biaxial", lattice(GRAINS, WIDTH, ROOM));
     scene.grains.iter_mut().for_each(|grain| grain.feels_gravity = false);

@@ -8,11 +8,12 @@ use super::{DIAMETER, GRAVITY, TOUCH, disc, dry, floor, view};
 use crate::scene::Scene;
 use crate::world::Boundary;
 
-/// Number of discs per column.
+/// Number of discs in each of the three columns of the scene [`press`].
 const HIGH: u8 = 6;
-/// Distance between neighbouring columns at the end of the motion, in diameters.
+/// Distance between neighbouring columns when the walls of the scene [`press`] have stopped, in diameters.
 const NARROWEST: f64 = 0.6;
-/// Speed of each wall, m/s. With it the highest disc rises with a speed of at most ½√(g d) (g: gravity, d: diameter).
+/// Speed of each wall of the scene [`press`], m/s. At this speed the highest disc rises with a speed of at most ½√(g d)
+/// (g: gravity, d: diameter).
 const SPEED: f64 = 0.007;
 
 /// Returns the exact equilibrium positions of the discs, in diameters, when neighbouring columns are `spacing`
@@ -66,9 +67,10 @@ pub fn pressing_secs() -> f64 {
     DIAMETER * (0.75f64.sqrt() - NARROWEST) / SPEED
 }
 
-/// Number of discs along each side of the box.
+/// Number of discs along each side of the box in the scene [`squeeze`].
 const SIDE: i32 = 5;
-/// Largest component of the initial velocity of each disc, in √(g d) (g: gravity, d: diameter).
+/// Largest component of the initial velocity of each disc in the scene [`squeeze`], in √(g d) (g: gravity, d:
+/// diameter).
 const SQUEEZED_SPEED: f64 = 0.3;
 
 /// Returns the scene of a lattice of 5 × 5 discs in a box that is too small: each side of the box is shorter than the

@@ -32,10 +32,10 @@ pub fn column_on_line(count: usize) -> Scene {
     scene
 }
 
-/// Returns the scene of a heavy disc on a light disc, which needs many sweeps. Let R be the ratio of their masses and
-/// W the Delassus operator of the two contacts, which maps impulses to changes of velocities. Gauss–Seidel reduces the
-/// error of the impulses by the factor W₀₁²/(W₀₀W₁₁) = R/(R + 1) per sweep, so the number of sweeps is proportional to
-/// R.
+/// Returns the scene of a heavy disc on a light disc, which needs many sweeps. Let R = `ratio` be the ratio of their
+/// masses and W the Delassus operator of the two contacts, which maps impulses to changes of velocities. Gauss–Seidel
+/// reduces the error of the impulses by the factor W₀₁²/(W₀₀W₁₁) = R/(R + 1) per sweep, so the number of sweeps is
+/// proportional to R.
 pub fn mass_ratio(ratio: f64) -> Scene {
     let radius = 0.5 * ratio.sqrt();
     let heavy =
@@ -83,7 +83,7 @@ pub fn lift_off(ratio: f64) -> Scene {
     scene
 }
 
-/// Returns the scene of a large disc on two small discs, as in a pile of logs.
+/// Returns the scene of a large disc on two small discs, as in a pile of logs. `ratio` is the ratio of the radii, R/r.
 ///
 /// The two small discs of radius r touch each other, and the large disc has the radius R. The upper contacts are
 /// inclined by θ to the vertical, with sin θ = r/(R + r). Two forces act on a small disc, from the floor and from the

@@ -156,10 +156,10 @@ const SPARE: f64 = 3.0;
 /// An inner disc touches six other discs. So there are three contacts per disc, but only one and a half would be
 /// needed for the degrees of freedom of a disc. The displacements turn every normal by a small angle.
 ///
-/// The lattice is in equilibrium. In the regular lattice the horizontal contacts may be without force. Then the load
-/// on a disc rests on two contacts below the disc, or on one contact and a wall. All of these contacts push, with
-/// forces inside their friction cones. They have four impulses per disc for three equations of equilibrium. So a
-/// small rotation of the normals needs only a small change of the impulses, and no motion.
+/// The lattice is in equilibrium. In the regular lattice the horizontal contacts may be without force. Then the load on
+/// a disc rests on two contacts below the disc, or on one contact and a wall. All of these contacts push, with forces
+/// inside their friction cones. These contacts have four impulse components per disc, for the three equations of
+/// equilibrium of a disc. So a small rotation of the normals needs only a small change of the impulses, and no motion.
 ///
 /// The overlap of neighbouring discs is three times the displacement, so that no contact opens.
 pub fn lattice(columns: usize, rows: usize, perturbation: f64) -> Scene {

@@ -43,12 +43,12 @@ pub fn balls(count: usize) -> Scene {
 
 /// Mass of the heavy falling disc divided by the mass of the sliding disc in the scene `blow`.
 const RATIO: f64 = 9.0;
-/// Initial speed of both discs along the floor, in √(g d) (g: gravity, d: diameter). `FALLING` is the speed at which
-/// the heavy disc falls, in the same unit.
+/// Initial speed of both discs along the floor, in √(g d) (g: gravity, d: diameter), in the scene `blow`.
 const SLIDING: f64 = 6.0;
+/// Initial speed at which the heavy disc falls, in √(g d) (g: gravity, d: diameter), in the scene `blow`.
 const FALLING: f64 = 2.0;
-/// Initial gap between the falling disc and the lower disc, in diameters. It is so large that at every time step only
-/// the lower disc touches another body in the first steps.
+/// Initial gap between the falling disc and the lower disc, in diameters. It is so large that in the first steps,
+/// whatever the time step is, only the lower disc touches another body.
 const HEIGHT: f64 = 0.05;
 
 /// Returns the scene of a blow: a disc slides along the floor, and a heavy disc, which moves along above it, hits it
@@ -61,13 +61,15 @@ const HEIGHT: f64 = 0.05;
 ///
 /// > M v_x = M v₀ − μ|p_y|,
 ///
-/// whatever happens between the two discs. The two discs stay together, because this needs only a fraction of 0.9 μ of
-/// the blow as friction between them, which is less than μ (the lower disc has the mass M/10).
+/// whatever happens between the two discs. The two discs stay together, because the friction impulse between them need
+/// only be 0.9 μ times the normal impulse of the blow, which is less than μ times this impulse (the lower disc has the
+/// mass M/10).
 ///
-/// The friction model `tresca` bounds friction in a step by the normal impulse of the previous step. At the step of
-/// the blow this bound is still zero, and only at the next step it is that of the blow. So the discs have the right
-/// speed one step late, and both discs move too far by Δt μ|p_y|/M (time step Δt). A second solve of the same step
-/// uses the impulse of the blow, because here the normal impulse of the floor does not depend on friction.
+/// The friction model `tresca` bounds friction in a step by the normal impulse of the previous step. In the step of the
+/// blow this bound is still zero. Only in the next step is the bound μ times the normal impulse of the blow. So the
+/// discs have the right speed one step late, and both discs move too far by Δt μ|p_y|/M (time step Δt). A second solve
+/// of the same step uses the impulse of the blow, because here the normal impulse of the floor does not depend on
+/// friction.
 pub fn blow() -> Scene {
     let mut scene = mass_ratio(RATIO);
     scene.name = "blow".into();
@@ -95,7 +97,7 @@ const SLIDING_SPEED: f64 = 3.0;
 ///
 /// > Δt (n v₀ − a n(n + 1)/2) = v₀²/(2μg) − v₀Δt/2 + Δt r(a − r)/(2a),  r = v₀ − n a.
 ///
-/// So at any step length the distance differs from the exact value v₀²/(2μg) by at most v₀Δt/2.
+/// So for any time step the distance differs from the exact value v₀²/(2μg) by at most v₀Δt/2.
 ///
 /// **The friction model `associated`** requires v_n ≥ μ|v_t| (normal and tangential velocity at the contact). It
 /// chooses the allowed velocity that is nearest to the velocity without contact, (v₀, −g Δt):

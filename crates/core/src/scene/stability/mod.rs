@@ -44,7 +44,8 @@ fn on_floor(name: &str, grains: Vec<Grain>) -> Scene {
     Scene { boundaries: vec![floor()], ..dry(name, grains) }
 }
 
-/// Returns a view of the scene. The corners are given in diameters.
+/// Returns the rectangle that pictures of a scene show. The arguments are its lower left and its upper right corner, in
+/// diameters.
 pub(super) fn view(min: DVec2, max: DVec2) -> Option<View> {
     Some(View { min: DIAMETER * min, max: DIAMETER * max })
 }

@@ -28,8 +28,8 @@ struct PushedContact {
     mass: f64,
 }
 
-/// Moves overlapping grains apart after a step of length `time_step_secs`, s. The contacts of `state` are still those
-/// of the beginning of the step.
+/// Moves overlapping grains apart after a step with the time step `time_step_secs` (s). The contacts of `state` are
+/// still those of the beginning of the step.
 ///
 /// The displacements δ of the grains after a step make the gap of each contact grow by a fraction of its excess
 /// overlap, and let no contact be pushed into overlap by its neighbours. Let `want` be the required increase of the

@@ -1,10 +1,10 @@
 //! Remedy `sequential-impacts`: lets shocks travel through touching grains one after the other, within one step.
 //!
-//! **Problem.** The term ρ v_n^{n−1} of the paper's law (restitution ρ, normal velocity v_n^{n−1} before the step)
-//! treats all shocks of a step at once, and depends only on a contact's velocity before the step. If a ball hits a row
-//! of balls at rest, all of these balls fly off together, at any ρ: contacts within the row do not close before the
-//! step, so the law does not let them open after it. In reality the shock travels through the row, and only the last
-//! ball flies off.
+//! **Problem.** The term ρ v_n^{n−1} of the contact law of Abramian & Staron (2020) (restitution ρ, normal velocity
+//! v_n^{n−1} before the step) treats all shocks of a step at once, and depends only on a contact's velocity before the
+//! step. If a ball hits a row of balls at rest, all of these balls fly off together, at any ρ: contacts within the row
+//! do not close before the step, so the law does not let them open after it. In reality the shock travels through the
+//! row, and only the last ball flies off.
 //!
 //! **Remedy.** First the shocks are computed, without friction, and without gravity because it has no effect in zero
 //! time. A pass takes only the contacts k that close, with their normal velocities u_k⁻ before and u_k⁺ after the pass,
@@ -33,13 +33,13 @@
 //! depends on the whole normal impulse, including shocks. A single contact has û = −ρ u^{n−1}, so the law of a single
 //! contact does not change.
 //!
-//! **Friction.** With friction, bounces may create energy, here as in the paper's scheme (T. R. Kane, 1984). If the
-//! contacts of a step have done positive work, in addition to the work of moving walls, all û_k of the step are halved
-//! and the step is solved again. With û_k = 0 this work is, without gravity, P_t·u_t − ½P·WP ≤ 0 (P_t and u_t are the
-//! tangential impulses and velocities), so the process ends.
+//! **Friction.** With friction, bounces may create energy, here as in the scheme of Abramian & Staron (T. R. Kane,
+//! 1984). If the contacts of a step have done positive work, in addition to the work of moving walls, all û_k of the
+//! step are halved and the step is solved again. With û_k = 0 this work is, without gravity, P_t·u_t − ½P·WP ≤ 0 (P_t
+//! and u_t are the tangential impulses and velocities), so the process ends.
 //!
-//! **Not with cohesion.** In the paper's law touching grains are bonded, and bonds take part in a shock. So all
-//! contacts would belong to the first pass, and the remedy would change nothing.
+//! **Not with cohesion.** In the contact law of Abramian & Staron touching grains are bonded, and bonds take part in a
+//! shock. So all contacts would belong to the first pass, and the remedy would change nothing.
 
 use crate::contact::ContactList;
 use crate::number::Parts;

@@ -51,7 +51,8 @@ pub struct Settings {
     /// Settings of the solver, which computes the contact impulses of each step.
     #[serde(default)]
     pub solver: SolverSettings,
-    /// Remedies: optional corrections for known failures of a stepper. The paper's scheme has none.
+    /// Remedies: optional corrections for known failures of a stepper. The scheme of Abramian & Staron (2020) has no
+    /// remedies.
     #[serde(default, skip_serializing_if = "Remedies::is_none")]
     pub remedies: Remedies,
 }

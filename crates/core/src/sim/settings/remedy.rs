@@ -1,12 +1,13 @@
-//! Registry of the remedies: optional corrections for known failures of a stepper, such as overlap. The paper's scheme
-//! uses no remedy. Each remedy has an entry in [`REMEDIES`] and a setting in [`Remedies`]; its code is in
-//! `sim::remedies`.
+//! Registry of the remedies: optional corrections for known failures of a stepper, such as overlap. The scheme of
+//! Abramian & Staron (2020) uses no remedy. Each remedy has an entry in [`REMEDIES`] and a setting in [`Remedies`]; its
+//! code is in `sim::remedies`.
 
 use crate::setting::{Group, Value, settings};
 use crate::sim::settings::stepper::Stepper;
 
 /// Value of the remedy `max-travel` in the preset `robust`, in mean diameters. The remedy divides a step into pieces in
-/// which no grain moves farther than this. The value is half of the distance that could carry a grain through a wall.
+/// which no grain moves farther than this distance. The value is half of the distance that could carry a grain through
+/// a wall.
 const ROBUST_TRAVEL: f64 = 0.25;
 
 /// Registry entry of a remedy: its name, the steppers that support it and its value in the preset `robust`.

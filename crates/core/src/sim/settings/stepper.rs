@@ -162,8 +162,8 @@ const AVBD: StepperInfo = StepperInfo {
     ..StepperInfo::WHOLE
 };
 
-/// Description of the stepper `dem`. `warm-start` is not among its settings, because its springs always keep their
-/// stretch from one step to the next.
+/// Description of the stepper `dem`. `warm-start` is not among its settings, because the springs of `dem` always keep
+/// their stretch from one step to the next.
 const DEM: StepperInfo = StepperInfo {
     solves: "nothing exactly: contacts are damped springs",
     source: "P. A. Cundall, O. D. L. Strack (1979); S. Luding, Cohesive, frictional powders (2008)",

@@ -197,7 +197,8 @@ impl BlockDescent {
     }
 
     /// Sets the velocity of each body to the velocity that minimises the body's own energy while the velocities of all
-    /// other bodies stay the same. The closure `bias` returns the velocity term b (m/s) for a gap (m).
+    /// other bodies stay the same. `free` are the velocities without contacts, and the closure `bias` returns the
+    /// velocity term b (m/s) for a gap (m).
     fn minimise<M: Model>(
         &self,
         problem: &mut StepProblem<M>,
@@ -241,7 +242,8 @@ impl BlockDescent {
         }
     }
 
-    /// Sets the multipliers to the penalty forces, and makes violated contacts stiffer.
+    /// Sets the multipliers to the penalty forces, and makes violated contacts stiffer. The closure `bias` returns the
+    /// velocity term b (m/s) for a gap (m).
     fn multiply<M: Model>(
         &mut self,
         problem: &StepProblem<M>,
@@ -262,6 +264,7 @@ impl BlockDescent {
     }
 
     /// Returns the impulses of a contact, divided by the effective mass (m/s), at the present velocities of its bodies.
+    /// `bias` is the velocity term b of its gap, m/s.
     #[inline(always)]
     fn push<M: Model>(
         &self,

@@ -1,5 +1,5 @@
-//! Stepper `moreau`: one step of Contact Dynamics (detect, solve, integrate; paper §2.1, scheme of Moreau), with
-//! remedies.
+//! Stepper `moreau`: one step of Contact Dynamics (detect, solve, integrate: Moreau's scheme, as in Abramian & Staron
+//! 2020, §2.1), with remedies.
 
 use crate::contact::range::TOUCH_IN_DIAMETERS;
 use crate::sim::remedies;

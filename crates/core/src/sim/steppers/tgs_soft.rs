@@ -200,8 +200,9 @@ impl Softness {
         contact.impulse
     }
 
-    /// Updates the impulses of one contact in a sweep. Its relative velocities are given in m/s. Returns the changes of
-    /// the impulses divided by the effective mass, m/s.
+    /// Updates the impulses of one contact in a sweep, as a soft contact (a spring) or as a rigid contact. The
+    /// arguments are the contact and its relative normal and tangential velocities, m/s. Returns the changes of the
+    /// impulses divided by the effective mass, m/s.
     #[inline(always)]
     fn solve<M: Model, const SOFT: bool>(
         &self,

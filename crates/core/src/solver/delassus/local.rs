@@ -21,9 +21,11 @@
 /// coefficient and cohesion impulse. They are computed once before the sweeps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LocalBlock {
-    /// Entry W_nn of the contact's own block of W, 1/kg; `mixed` is W_nt, and `tangential` is W_tt.
+    /// Entry W_nn of the contact's own block of W, 1/kg.
     pub normal: f64,
+    /// Entry W_nt of the contact's own block of W, 1/kg.
     pub mixed: f64,
+    /// Entry W_tt of the contact's own block of W, 1/kg.
     pub tangential: f64,
     /// Entries nn, nt and tt of W_kk⁻¹, the inverse of the contact's own block of W, kg.
     inverse: [f64; 3],
@@ -112,7 +114,7 @@ mod tests {
     use crate::number::Parts;
 
     /// Returns the error of the impulses that `solve` computes for a contact: the largest violation of the contact's
-    /// law, as a velocity relative to the velocities at zero impulses.
+    /// law, as a velocity divided by the velocities at zero impulses.
     fn fault(block: &LocalBlock, compressive: bool, free: [f64; 2]) -> f64 {
         let [p, t] = block.solve(free, compressive);
         let u = [

@@ -188,8 +188,8 @@ impl Assembled {
     }
 }
 
-/// Checks that W has at most [`MOST_ENTRIES`] entries. The argument lists the contacts of each body. W has a block of
-/// four entries for each contact with itself, and two for each pair of contacts that share a body.
+/// Checks that W has at most [`MOST_ENTRIES`] entries. The argument lists the contacts of each body. W has one block of
+/// four entries per contact, and two blocks for each pair of contacts that share a body.
 fn check_entries(contacts_of_body: &[Vec<usize>]) -> Result<()> {
     let of_body = |contacts: &Vec<usize>| 4 * (contacts.len() as u64).pow(2);
     let entries: u64 = contacts_of_body.iter().map(of_body).sum();

@@ -32,12 +32,12 @@ use crate::error::{self, Error, Result};
 use crate::number::Parts;
 use crate::world::FrictionCone;
 
-/// Factor of the allowed error of the impulses (N·s): if a sweep changes the impulses by at most this factor times the
-/// allowed error, the residual is computed. The residual costs as much as a sweep, and the change in a sweep is about
-/// the error before that sweep. A smaller factor risks an unnecessary sweep, a larger factor an unnecessary computation
-/// of the residual.
+/// Change of the impulses in a sweep, divided by the allowed error of the impulses, at or below which the residual is
+/// computed after the sweep. The residual costs as much as a sweep, and the change in a sweep is about the error before
+/// that sweep. A smaller number risks an unnecessary sweep, a larger number an unnecessary computation of the residual.
 const NEAR: f64 = 2.0;
-/// Interval, in sweeps, at which the residual is computed even if the impulses still change much.
+/// Interval, in sweeps, at which the residual is computed while the impulses still change by more than [`NEAR`] times
+/// their allowed error in a sweep.
 const TEST_INTERVAL: u32 = 16;
 
 /// A 2×2 block of W outside the diagonal, 1/kg: the change of a contact's velocity per impulse of another contact,
@@ -191,8 +191,8 @@ impl DelassusProblem {
         &self.neighbours[start..end]
     }
 
-    /// Returns the velocity that a contact would have if its own shifted impulses were p = P_t = 0 and the impulses of
-    /// the other contacts were unchanged, m/s.
+    /// Returns the velocity (u_n, u_t), m/s, of contact number `contact` due to q' and the present impulses of the
+    /// other contacts, without the effect of its own impulses (p, P_t).
     #[inline(always)]
     fn velocity_of_others(&self, contact: usize) -> [f64; 2] {
         let mut velocity = self.rows[contact].free;
@@ -337,9 +337,9 @@ impl ContactSystem for DelassusProblem {
         row.local.friction * (normal - shift).positive_part()
     }
 
-    /// Computes the weight d of each contact in the bound A ⪯ E/d, where E is the diagonal of A. A row of E^−½ A E^−½
-    /// has absolute entries whose sum dominates its diagonal (Gershgorin), so 1/d is the larger of a contact's two row
-    /// sums.
+    /// Computes the weight d of each contact in the bound A ⪯ E/d, where E is the diagonal of A. By Gershgorin's
+    /// theorem the sums of the absolute entries in the rows of E^−½ A E^−½ bound this matrix, so 1/d is the larger sum
+    /// of the contact's two rows.
     fn splitting(&self, weights: &mut Vec<f64>) {
         weights.clear();
         let diagonal = |contact: usize| {
@@ -375,7 +375,7 @@ impl ContactSystem for DelassusProblem {
         Self::residual(self)
     }
 
-    /// Compares the residual with the tolerance: without bodies the stopping test is always the residual.
+    /// Returns true if the residual is at most the tolerance: without bodies the stopping test is always the residual.
     fn is_settled(&self, _before: &[[f64; 2]], settings: &SolverSettings) -> bool {
         debug_assert_eq!(settings.stop, StopTest::Residual);
         self.residual() <= settings.tolerance

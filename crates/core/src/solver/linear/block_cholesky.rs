@@ -37,8 +37,8 @@ pub(crate) struct SymmetricBlockMatrix<const D: usize> {
     /// Diagonal blocks in elimination order. After the factorisation the block at position k is L_k, with the inverses
     /// of the diagonal entries of L_k on the diagonal.
     diagonal: Vec<Padded<D>>,
-    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b whose bodies are neighbours.
-    /// They are numbered as in [`Elimination::later`].
+    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b whose bodies are neighbours. A
+    /// block has the same index as the entry for b, in the list of position a, in the vector [`Elimination::later`].
     upper: Vec<Padded<D>>,
     /// Work memory: the blocks of a supernode's rows outside the supernode, column by column.
     panel: Vec<Padded<D>>,

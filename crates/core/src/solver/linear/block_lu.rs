@@ -31,11 +31,11 @@ pub(crate) fn inertias<M: Model, const D: usize>(mass: f64) -> [f64; D] {
 pub(crate) struct BlockMatrix<const D: usize> {
     /// Diagonal blocks in elimination order. [`BlockMatrix::factorise`] inverts them.
     diagonal: Vec<Block<D>>,
-    /// Blocks below the diagonal, in row b and column a, one per pair of positions a < b whose bodies are neighbours.
-    /// They are numbered as in [`Elimination::later`].
+    /// Blocks below the diagonal, in row b and column a, one per pair of positions a < b whose bodies are neighbours. A
+    /// block has the same index as the entry for b, in the list of position a, in the vector [`Elimination::later`].
     lower: Vec<Block<D>>,
-    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b whose bodies are neighbours.
-    /// They are numbered as in [`Elimination::later`].
+    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b whose bodies are neighbours. A
+    /// block has the same index as the entry for b, in the list of position a, in the vector [`Elimination::later`].
     upper: Vec<Block<D>>,
 }
 

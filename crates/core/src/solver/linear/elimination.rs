@@ -197,8 +197,8 @@ impl Elimination {
     }
 }
 
-/// Marks a body that has no position in the elimination order yet, or a position without a further child in the
-/// elimination tree.
+/// Number that marks a body without a position in the elimination order so far, or a missing child in the elimination
+/// tree.
 const NONE: u32 = u32::MAX;
 
 /// Work memory for computing a postorder, reused for the next elimination order.
@@ -271,8 +271,9 @@ pub(crate) struct ContactGraph {
     /// For each contact between two moving bodies (grains or driven walls), the number of its block, an index in
     /// [`Elimination::later`].
     pub pair_blocks: Vec<u32>,
-    /// Number of bodies, and (next field) pairs of bodies in contact, for which `elimination` was computed.
+    /// Number of bodies for which `elimination` was computed.
     bodies: usize,
+    /// Pairs of bodies in contact for which `elimination` was computed.
     pairs: Vec<(u32, u32)>,
 }
 

@@ -30,8 +30,8 @@ const FIRST_COMPLIANCE: f64 = 0.03;
 /// Number of iterations between two decisions whether the compliance ε is changed, which requires a new factorisation.
 /// A factorisation costs as much as about ten iterations.
 const BALANCE_INTERVAL: u32 = 24;
-/// Ratio of the larger to the smaller of the two residuals, of the velocities and of the impulses, from which the
-/// compliance ε is changed.
+/// Minimum ratio of the larger to the smaller residual (of the velocities and of the impulses) at which the compliance
+/// ε is changed.
 const OUT_OF_BALANCE: f64 = 4.0;
 /// Maximum factor by which the compliance ε is increased or decreased in one change.
 const LARGEST_CHANGE: f64 = 10.0;
@@ -51,7 +51,7 @@ pub(crate) struct AdmmMemory {
 }
 
 impl Clone for AdmmMemory {
-    /// Creates empty memory, because the contents are not needed after a solve.
+    /// Returns empty memory instead of a copy, because the contents are not needed after a solve.
     fn clone(&self) -> Self {
         Self::default()
     }

@@ -108,8 +108,9 @@ fn flows<M: Model>(problem: &StepProblem<M>) -> bool {
     sliding.count() as f64 > SLIDING_SHARE * pairs.len() as f64
 }
 
-/// Returns the limits for a solve by Newton's method that `auto` has chosen: patience (which depends on the number of
-/// contacts) and sweeps afterwards. `coheres` is true if the problem has cohesion.
+/// Returns the limits for a solve by Newton's method that `auto` has chosen: its patience, which depends on the number
+/// of contacts, and the maximum number of sweeps of conjugate gradients if it fails. `coheres` is true if the problem
+/// has cohesion.
 fn effort(contacts: usize, coheres: bool) -> NewtonEffort {
     let least = LEAST_PATIENCE[usize::from(coheres)];
     let patience = (PATIENCE_OF_CONTACTS / contacts.max(1)).clamp(least, MOST_PATIENCE);

@@ -37,7 +37,7 @@ pub(crate) struct WorkVectors {
 }
 
 impl Clone for WorkVectors {
-    /// Creates empty vectors, because the contents are not needed after a solve.
+    /// Returns empty vectors instead of a copy, because the contents are not needed after a solve.
     fn clone(&self) -> Self {
         Self::default()
     }

@@ -87,10 +87,11 @@ impl NewtonEffort {
     pub(super) const FULL: Self = Self { patience: 100, sweeps_after: u32::MAX };
 }
 
-/// Number of previous residuals with which the residual of a step is compared. The result of a step is kept if its
-/// residual is below [`ENOUGH`] times the largest of them, so that the residual may rise for a few steps before it
-/// falls. With 1, useful steps are rejected; with 15, many useless steps are accepted.
+/// Number of previous residuals that limit the residual of the next Newton step: the result of the step is kept if its
+/// residual is below [`ENOUGH`] times the largest of them. So the residual may rise for a few steps before it falls.
+/// With 1 previous residual, useful steps are rejected; with 15, many useless steps are accepted.
 const HISTORY: usize = 6;
+/// Maximum residual of a Newton step whose result is kept, divided by the largest of the last [`HISTORY`] residuals.
 const ENOUGH: f64 = 0.99;
 
 /// Work memory of Newton's method for each number of degrees of freedom of a body (1 to 3). Memory that is not used
@@ -200,7 +201,7 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         self.go_on_without(report)
     }
 
-    /// Performs up to `sweeps` Gauss–Seidel sweeps. Returns true if the stopping test is met.
+    /// Performs up to `sweeps` Gauss–Seidel sweeps and adds them to `report`. Returns true if the stopping test is met.
     fn settles_in(&mut self, sweeps: u32, report: &mut SolveReport) -> bool {
         settles_in(self.problem, self.settings, sweeps, report)
     }
@@ -367,10 +368,10 @@ struct ResidualHistory {
     history: [f64; HISTORY],
     accepted: usize,
     best: f64,
-    /// Smallest residual so far at the time when it last fell below half of the previous milestone. Only such a fall
-    /// counts as progress; a slow decrease does not.
+    /// Smallest residual at the last progress of the solve. A solve makes progress when its smallest residual falls
+    /// below half of this value; a slower decrease does not count as progress.
     milestone: f64,
-    /// Number of factorisations since the milestone was last lowered.
+    /// Number of factorisations since the last progress, when `milestone` was lowered.
     since_milestone: u32,
 }
 

@@ -68,17 +68,20 @@ pub(super) struct RollingTerms<'a> {
 
 /// Contribution of a contact to the linear equations of one of its bodies in a Newton step.
 pub(super) struct Terms<const D: usize> {
-    /// Gradients of the contact's normal velocity v_n and (`tangent`) tangential velocity v_t by the body's velocity.
+    /// Gradient of the contact's normal velocity v_n by the body's velocity.
     normal: [f64; D],
+    /// Gradient of the contact's tangential velocity v_t by the body's velocity.
     tangent: [f64; D],
     /// Gradient of the contact's rolling velocity v_r by the body's velocity; 0 without rolling friction.
     rolling: [f64; D],
-    /// Direction of the impulse that responds to v_n: n, or n ± μt if the contact slips, plus ±μ_r times the gradient
-    /// of v_r if the rolling moment is at its bound.
+    /// Direction of the contact impulse that responds to v_n: the normal n, or n ± μt with the tangent t if the contact
+    /// slips, plus ±μ_r times the gradient of v_r if the rolling moment is at its bound.
     answer: [f64; D],
-    /// Stiffnesses of the contact's response to v_n, and (next two fields) to v_t and to the rolling velocity v_r, kg.
+    /// Stiffness of the contact's response to v_n, kg.
     normal_stiffness: f64,
+    /// Stiffness of the contact's response to v_t, kg.
     tangential_stiffness: f64,
+    /// Stiffness of the contact's response to the rolling velocity v_r, kg.
     rolling_stiffness: f64,
     /// Right-hand side of the body's equations: the change of the contact's impulse on the body at the present
     /// velocities, kg·m/s.
@@ -162,8 +165,8 @@ impl<const D: usize> Terms<D> {
         }
     }
 
-    /// Adds to `block` the stiffness of the contact that couples the equations of this body to the velocity of the body
-    /// of `other`.
+    /// Adds to `block` the stiffness by which the contact couples the equations of this body to the velocity of its
+    /// other body. `other` is the contribution of the contact to the equations of that other body.
     #[inline(always)]
     pub(super) fn add<M: Model>(&self, block: &mut [[f64; D]; D], other: &Self) {
         for (row, entries) in block.iter_mut().enumerate() {

@@ -59,8 +59,8 @@ impl SolveReport {
 /// every [`TEST_INTERVAL`]th is tested, because a sweep that also measures its change costs more. With a smaller
 /// number, steps with good initial impulses would take more sweeps than they need.
 const SWEEPS_TESTED_EACH: u32 = 16;
-/// Number of sweeps between two stopping tests of a long solve. A solve makes fewer unnecessary sweeps than this
-/// number.
+/// Number of sweeps between two stopping tests of a long solve. A solve continues for fewer than this number of sweeps
+/// after its stopping test could be met.
 const TEST_INTERVAL: u32 = 8;
 
 /// Returns true if the stopping test is made after sweep (or iteration) number `sweeps`, counted from 1.
@@ -123,7 +123,7 @@ pub(super) fn is_settled<P>(
 /// Number of sweeps after which the residual is compared for the first time. After fewer sweeps the comparison does not
 /// distinguish problems with and without a solution.
 const FIRST_LOOK: u32 = 512;
-/// Ratio of the residual to the residual after half as many sweeps, at or above which the residual counts as no longer
+/// Minimum ratio of the residual to the residual after half as many sweeps, from which the residual counts as no longer
 /// decreasing (flat).
 const FLAT: f64 = 0.95;
 /// Number of consecutive comparisons with a flat residual that end a solve, if its stopping test limits the residual or

@@ -21,9 +21,9 @@ use crate::solver::settings::FrictionModel;
 /// if each step starts from zero impulses) and rises with the Bond number; at μ = 3 and Bond number 20 the impulses
 /// grow to 3e4 grain weights in 0.3 s.
 const WEDGING_FRICTION: f64 = 2.0;
-/// Ratio of a contact's normal impulse to the sum of the magnitudes of the momentum changes of all bodies due to
-/// contacts, above which the contact counts as wedged. Levers and arches of grains make an impulse only a few times as
-/// large as that sum.
+/// Maximum ratio of a contact's normal impulse to the summed magnitudes of the momentum changes that contacts cause in
+/// all bodies. A contact above this ratio counts as wedged. Levers and arches of grains make an impulse only a few
+/// times as large as that sum.
 const WEDGED: f64 = 3.0;
 
 /// Returns true if friction may have wedged bodies between each other, so that the initial impulses of a solve are much

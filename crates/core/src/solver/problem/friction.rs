@@ -79,9 +79,9 @@ macro_rules! with_projection {
 }
 pub(crate) use with_projection;
 
-/// Projection of Coulomb's law. With `ALL_RUBS` the tip of the friction cone is at 0 ([`ContactLaw::all_rubs`]) and all
-/// contacts have the same law. A sweep is one chain of dependent operations. If the compiler knows that the tip of the
-/// cone is at 0, it removes two operations of the chain, which saves 11 % of the time of a run.
+/// Projection of Coulomb's law. `ALL_RUBS` is true if the tip of the friction cone is at 0 ([`ContactLaw::all_rubs`])
+/// and all contacts have the same law. A sweep is one chain of dependent operations. If the compiler knows that the tip
+/// of the cone is at 0, it removes two operations of the chain, which saves 11 % of the time of a run.
 pub(crate) enum CoulombFriction<const ALL_RUBS: bool> {}
 
 impl<const ALL_RUBS: bool> FrictionProjection for CoulombFriction<ALL_RUBS> {
@@ -162,8 +162,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Makes Coulomb's law the friction model again, and deletes the friction bounds or opening speeds of the model
-    /// before.
+    /// Makes Coulomb's law the friction model again, and deletes the friction bounds or opening speeds of the previous
+    /// friction model.
     pub(crate) fn forget_bounds(&mut self) {
         self.friction.model = FrictionModel::Coulomb;
         self.friction.now.clear();
@@ -212,8 +212,8 @@ mod tests {
         ContactLaw::new(friction, 0.0, FrictionCone::Shifted)
     }
 
-    /// Returns half the squared distance of two impulses (σ, λ) and (a, b) in the metric of the projection,
-    /// ½(σ − a)² + ½c(λ − b)² with c = m_n/m_t.
+    /// Returns half the squared distance between the impulses `point` = (σ, λ) and `trial` = (a, b) in the metric of
+    /// the projection, ½(σ − a)² + ½c(λ − b)² with c = m_n/m_t.
     fn distance<M: Model>(point: [f64; 2], trial: [f64; 2]) -> f64 {
         let across = M::TANGENTIAL_COMPLIANCE * (point[1] - trial[1]).powi(2);
         0.5 * ((point[0] - trial[0]).powi(2) + across)

@@ -38,13 +38,13 @@ pub struct Measures {
 }
 
 impl Measures {
-    /// Sets the model residual of a step that was solved under Coulomb's law to its residual, for runs in which other
-    /// steps were solved under another friction model and have a model residual of their own.
+    /// Sets `model_residual` to `residual`, unless the step was solved under another friction model than Coulomb's law
+    /// and has a model residual already. In a run that uses both kinds of solve, all steps then have a model residual.
     pub(crate) fn measure_as_a_model(&mut self) {
         self.model_residual = self.model_residual.or(Some(self.residual));
     }
 
-    /// Adds the contact counts and works of further contacts of the same problem.
+    /// Adds the contact counts and works in `rows`, the measures of further contacts of the same problem.
     fn add_rows(&mut self, rows: Self) {
         self.compressive_contacts += rows.compressive_contacts;
         self.tensile_contacts += rows.tensile_contacts;
@@ -53,8 +53,8 @@ impl Measures {
         self.border_work += rows.border_work;
     }
 
-    /// Adds the measures of the next piece of a step that is divided into shorter time steps. Works are added, the
-    /// larger errors are kept, and the contact counts become the counts of the next piece.
+    /// Adds `piece`, the measures of the next of the shorter steps into which a step is divided. Works are added, of
+    /// two errors the larger is kept, and the contact counts are replaced by the counts of `piece`.
     pub fn add(&mut self, piece: Self) {
         let Self { residual, model_residual, velocity_error, .. } = piece;
         let Self { compressive_contacts, tensile_contacts, .. } = piece;

@@ -1,5 +1,5 @@
-//! The contact problem of one time step (find impulses that satisfy the laws of all contacts): its data, its set-up,
-//! and the measures of its solution.
+//! The contact problem of one step (find impulses that satisfy the laws of all contacts): its data, its set-up, and the
+//! measures of its solution.
 //!
 //! [`StepProblem::prepare`] sets up a problem in this order: bodies, rows (the data of one contact each) in the order
 //! of the sweep, moving surfaces, the velocities due to the initial impulses, and last the friction bounds or opening
@@ -46,7 +46,7 @@ use crate::number::Parts;
 use crate::threads;
 use crate::world::{FrictionCone, World};
 
-/// The contact problem of one time step, including its present impulses. The memory is reused for the next step.
+/// The contact problem of one step, including its present impulses. The memory is reused for the next step.
 ///
 /// Code outside this crate can read a problem. Only methods change its impulses: the methods of this crate, or a method
 /// of your own through [`BodySystem`](crate::solver::BodySystem), which keeps bodies and rows consistent.
@@ -74,8 +74,8 @@ pub struct StepProblem<M: Model> {
     pub(super) touching_mass: f64,
     /// Longest side of the bounding box of the grains with contacts, in mean diameters; 0 if positions are not known.
     pub(super) extent: f64,
-    /// Mean direction away from the fixed bodies: unit vector along the sum of the normals of the contacts with them; 0
-    /// if the sum is 0.
+    /// Unit vector along the sum of the normals of all contacts with fixed bodies: the mean direction away from these
+    /// bodies; 0 if the sum is 0.
     pub(super) way_out: DVec2,
     pub(super) order: RowOrder,
     /// √m_ij, the square root of each contact's effective mass, kg^½, for methods with scaled variables.
@@ -298,8 +298,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Records the size of the region of the grains with contacts, in mean diameters, and the mean direction away from
-    /// the fixed bodies.
+    /// Computes `extent`, the size of the region of the grains with contacts in mean diameters, and `way_out`, the mean
+    /// direction away from the fixed bodies.
     fn find_extent(&mut self, world: &World) {
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for (&place, touches) in world.grains.positions.iter().zip(&self.touches) {
@@ -313,15 +313,16 @@ impl<M: Model> StepProblem<M> {
         self.way_out = normals.sum::<DVec2>().normalize_or_zero();
     }
 
-    /// Estimates the number of grains in the longest chain of grains, each of which pushes the next: the extent of the
-    /// grains with contacts in mean diameters, or the root of the number of grains if positions are not known.
+    /// Estimates the number of grains in the longest chain of touching grains: the size `extent` of the region of the
+    /// grains with contacts in mean diameters, or the square root of the number of grains if positions are not known.
     fn grains_in_a_row(&self) -> f64 {
         let grains = self.bodies.masses.len() as f64;
         if self.extent > 0.0 { self.extent.min(grains) } else { grains.sqrt() }
     }
 
-    /// Copies the data that scale and weight velocity errors from `whole`, the problem of which this problem has a
-    /// subset of the contacts.
+    /// Copies the data that the velocity error is divided by (speed, mass, and size of the pile) from the complete
+    /// problem `whole`, of which this problem has only some of the contacts. So the velocity errors of both problems
+    /// can be compared.
     pub(crate) fn hold_errors_against(&mut self, whole: &Self) {
         self.fall_speed = whole.fall_speed;
         self.touches.clone_from(&whole.touches);
@@ -418,8 +419,8 @@ impl<M: Model> StepProblem<M> {
     }
 
     /// Calls `visit` for each row (the data of one contact) in order, with the relative velocity (v_n, v_t) of the
-    /// contact, m/s, that follows from the body velocities `bodies`. v_t is relative to the surface of a fixed body if
-    /// that surface moves.
+    /// contact, m/s, that follows from the body velocities `bodies`. If the grain touches a moving surface, v_t is
+    /// relative to that surface.
     #[inline(always)]
     pub(crate) fn for_each_velocity(
         &self,

@@ -12,20 +12,21 @@ use crate::solver::method::Ordering;
 use crate::world::World;
 
 /// Groups of rows (each the data of one contact) that can be solved at the same time. All rows are contacts of one kind
-/// (with fixed bodies, or between grains) and are sorted by tiles and colours.
+/// (with fixed bodies, or between grains). They are sorted by tiles (square regions of the plane), and within a tile by
+/// colours (groups of contacts that share no grain).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RowGroups {
-    /// End of each colour of each tile: the number of the row after the colour's last row, counted among the contacts
-    /// of one kind (with fixed bodies, or between grains). Rows of one colour share no grain.
+    /// For each colour of each tile, the number of the row after the last row of the colour. Rows are counted among the
+    /// contacts of one kind (with fixed bodies, or between grains). Rows of one colour share no grain.
     pub colour_ends: Vec<usize>,
-    /// End of each tile: the number of the colour after the tile's last colour. Rows of two different tiles share no
+    /// For each tile, the number of the colour after the last colour of the tile. Rows of two different tiles share no
     /// grain. The colours after the last tile contain the contacts between tiles.
     pub tile_ends: Vec<usize>,
 }
 
 impl RowGroups {
-    /// Returns the ranges of rows of each colour of a tile, or of the contacts between tiles if `tile` is past the last
-    /// tile.
+    /// Iterates over the colours of tile number `tile`: returns the range of the rows of each colour. If `tile` is past
+    /// the last tile, returns the colours of the contacts between tiles.
     pub(crate) fn colours_of(&self, tile: usize) -> impl Iterator<Item = Range<usize>> {
         let start_of = |ends: &[usize], at: usize| at.checked_sub(1).map_or(0, |at| ends[at]);
         let (ends, tiles) = (&self.colour_ends, &self.tile_ends);
@@ -48,8 +49,8 @@ impl RowGroups {
 /// kind (with fixed bodies, or between grains), the interleaved order is the order of detection.
 const STREAMS: usize = 8;
 
-/// Number of colours that are tracked per grain. If a grain has so many neighbours that a contact finds no free colour,
-/// the contact gets a colour of its own.
+/// Number of colours (groups of contacts that share no grain) for which each grain stores a bit. If a grain has so many
+/// neighbours that a contact finds no free colour, the contact gets a colour of its own.
 const COLOURS: u32 = u128::BITS;
 
 /// Sorts the contacts of a step into the order of the sweep. The memory is reused for the next step.
@@ -61,16 +62,17 @@ pub(crate) struct RowOrder {
     detected: Vec<u32>,
     keys: Vec<(f64, u32)>,
     tiles: Tiles,
-    /// Pairs of a group number (tile · [`COLOURS`] + colour) and the number of a contact.
+    /// For each contact that has a colour, a group number (tile · [`COLOURS`] + colour) and the number of the contact.
     coloured: Vec<(u32, u32)>,
-    /// Contacts whose grains are in different tiles.
+    /// Numbers of the contacts whose two grains are in different tiles (square regions of the plane).
     between: Vec<u32>,
-    /// Contacts for which no colour was free at both of their grains. Each of them forms a colour by itself.
+    /// Numbers of the contacts for which no colour was free at both of their grains. Each of these contacts forms a
+    /// colour by itself.
     of_their_own: Vec<u32>,
     /// First the number of contacts of each colour of each tile; then, while contacts are placed in the sorted list,
     /// the next free index of each colour.
     counts: Vec<usize>,
-    /// The colours of the contacts of each grain, as a bit set.
+    /// For each grain, a bit set of the colours that its contacts have so far.
     taken: Vec<u128>,
 }
 
@@ -230,12 +232,13 @@ impl RowOrder {
     }
 }
 
-/// Number of grains per tile of a dense pile: the velocities of 512 grains take 16 KB, a third of the first-level cache
-/// of a current processor. With fewer grains, more contacts lie between tiles. With more grains, the data of the
-/// contacts push velocities out of the cache, and a small pile has too few tiles for several threads.
+/// Number of grains per tile (square region whose contacts one thread solves) in a dense pile: the velocities of 512
+/// grains take 16 KB, a third of the first-level cache of a current processor. With fewer grains, more contacts lie
+/// between tiles. With more grains, the data of the contacts push velocities out of the cache, and a small pile has too
+/// few tiles for several threads.
 const GRAINS_IN_TILE: usize = 512;
-/// Largest number of grains that form a single tile: the data of their contacts fit in the second-level cache, and
-/// waking a second thread would cost more than it gains.
+/// Maximum number of grains of a scene that is not divided into tiles: the data of the contacts of this number of
+/// grains fit in the second-level cache, and waking a second thread would cost more than it gains.
 const GRAINS_IN_ONE: usize = 2048;
 /// Minimum number of grains per tile, on average, in a scene with large gaps between grains. It limits the number of
 /// empty tiles.
@@ -280,7 +283,7 @@ impl Tiles {
         }));
     }
 
-    /// Divides grains of unknown positions into tiles in the order of their numbers.
+    /// Divides grains whose positions are not known into tiles: grains with consecutive numbers form a tile.
     fn lay_by_number(&mut self, grains: usize) {
         if grains <= GRAINS_IN_ONE {
             return self.lay_one(grains);
@@ -296,7 +299,8 @@ impl Tiles {
         self.of_grain.resize(grains, 0);
     }
 
-    /// Returns the tile that contains all of these grains; `None` if the grains are in several tiles.
+    /// Returns the number of the tile that contains all of these grains; `None` if the grains are in different tiles.
+    /// Entries of `grains` that are `None` are ignored.
     fn of(&self, grains: [Option<usize>; 2]) -> Option<usize> {
         let mut tiles = grains.into_iter().flatten().map(|grain| self.of_grain[grain] as usize);
         let first = tiles.next()?;
@@ -317,8 +321,8 @@ mod tests {
         World::of(Grains::new(&grains, 1.0), gravity, 2.0 * grains[0].radius)
     }
 
-    /// Returns a world of discs at irregular heights: from disc to disc in the order of their numbers, the height rises
-    /// or falls.
+    /// Returns a world of discs whose heights change irregularly from each disc to the next, in the order of their
+    /// numbers.
     fn uneven() -> World {
         world(
             (0..138)

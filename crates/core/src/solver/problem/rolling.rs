@@ -42,7 +42,7 @@ pub struct Rolling {
     pub lever: f64,
     /// Compliance W = ∂v_r/∂ψ: change of the rolling velocity per reduced rolling impulse.
     pub compliance: f64,
-    /// Reduced radius R times the angular velocity of a fixed body, m/s.
+    /// Reduced radius R times the angular velocity of a body that is not a grain, m/s; 0 at a contact between grains.
     pub surface_speed: f64,
 }
 

@@ -1,5 +1,5 @@
-//! Rolling resistance of the contacts of a problem: computes its coefficients, its rolling velocity, and its moments in
-//! N·m·s for the next step.
+//! Rolling resistance of the contacts of a problem: sets its coefficients, computes rolling velocities, and stores the
+//! rolling impulses (moment times time step, N·m·s) for the next step.
 
 use super::{MovingSurfaces, NumbersOfContact, Rolling, Row, StepProblem};
 use crate::contact::{Contact, ContactList, Numbering, Other, law};
@@ -51,8 +51,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the term of the rolling velocity that is due to the rotation of a fixed body: reduced radius times angular
-    /// velocity, m/s.
+    /// Sets the term of the rolling velocity that is due to the rotation of a body that is not a grain: reduced radius
+    /// times angular velocity, m/s.
     pub(super) fn turn_surfaces(&mut self, contacts: &[Contact], surfaces: &MovingSurfaces<'_>) {
         for (rolling, &index) in self.rows.rolling.iter_mut().zip(&self.rows.contacts) {
             let surface = (surfaces.of)(&contacts[index as usize]);

@@ -7,8 +7,8 @@ use super::{Row, StepProblem};
 use crate::solver::kinematics::Model;
 use crate::threads;
 
-/// Relative (normal, tangential) velocities of one contact, m/s. The tangential velocity is relative to the surface of
-/// a fixed body if the surface moves.
+/// Relative (normal, tangential) velocities of one contact, m/s. If the grain touches a moving surface, the tangential
+/// velocity is relative to that surface.
 pub struct RowVelocities {
     /// Normal and tangential velocity at the end of the step, m/s.
     pub now: [f64; 2],
@@ -69,8 +69,8 @@ fn for_each_row_of<M: Model>(
     }
 }
 
-/// Computes the normal velocity of every contact, m/s, that follows from the body velocities `bodies`. It is relative
-/// to the wall if the wall moves. Clears `speeds` first.
+/// Writes the normal velocity of every contact, m/s, to `speeds`, which is cleared first. The velocities follow from
+/// the body velocities `bodies`, and are relative to the wall if it moves.
 pub fn relative_velocities<M: Model>(
     problem: &StepProblem<M>,
     bodies: &[M::Body<f64>],

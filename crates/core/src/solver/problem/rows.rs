@@ -42,8 +42,9 @@ pub struct Row<M: Model> {
     pub j: u32,
     /// Unit normal n of the contact, from body j (or the fixed body) to grain i.
     pub normal: M::Normal<f64>,
-    /// The term that the contact law adds to v_n, m/s: ρ v_n^{n−1}, or 0 if the bodies approach each other more slowly
-    /// than the threshold of restitution, minus the speed of a moving wall along n (`problem::walls`).
+    /// The term that the contact law adds to v_n, m/s: ρ v_n^{n−1} minus the speed of a moving wall along n
+    /// (`problem::walls`). ρ v_n^{n−1} is replaced by 0 if the bodies approach each other more slowly than the
+    /// threshold of restitution.
     pub restitution_velocity: f64,
     /// Shifted normal impulse σ of the contact, m/s: λ_n plus the capture speed.
     pub shifted_impulse: f64,
@@ -61,8 +62,8 @@ pub struct Row<M: Model> {
 pub struct FixedRow<M: Model> {
     /// The data that contacts with fixed bodies and contacts between grains have in common.
     pub row: Row<M>,
-    /// Speed of the fixed body's surface along the tangent, m/s. The tangential velocity v_t of the law is relative to
-    /// it.
+    /// Speed along the tangent, m/s, of the surface that the grain touches; 0 if the surface does not move. The
+    /// tangential velocity v_t of the law is relative to this surface.
     pub surface_speed: f64,
 }
 
@@ -209,8 +210,8 @@ impl<M: Model> ContactRows<M> {
         number.checked_sub(self.fixed.len()).map_or(1.0, |number| self.pairs[number].share)
     }
 
-    /// Returns the speed of the fixed body's surface along the tangent at the contact in row `number`, m/s; 0 for a
-    /// contact between grains.
+    /// Returns the speed along the tangent, m/s, of the surface that the grain touches at the contact in row `number`;
+    /// 0 for a contact between grains.
     #[inline(always)]
     pub(crate) fn surface_speed(&self, number: usize) -> f64 {
         self.fixed.get(number).map_or(0.0, |row| row.surface_speed)
@@ -230,8 +231,8 @@ impl<M: Model> ContactRows<M> {
         law_of_row([&self.frictions, &self.captures], number, law)
     }
 
-    /// Adds a copy of row `number` of `others`, modified by `change`. In `contacts`, the copy gets `number` instead of
-    /// the index of its contact.
+    /// Adds a copy of row `number` of `others`, modified by `change`. The list `contacts` gets the row number `number`
+    /// for this copy, instead of the index of a detected contact.
     pub(crate) fn push_copy(
         &mut self,
         others: &Self,

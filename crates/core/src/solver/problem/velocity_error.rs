@@ -90,18 +90,19 @@ pub fn velocity_error<M: Model>(problem: &StepProblem<M>) -> VelocityError {
 /// Sums over the contacts of a problem, from which its velocity error is computed.
 #[derive(Default)]
 pub(super) struct ErrorSums {
-    /// The duality gap S, J: a sum over the contacts that is 0 at the solution and estimates the squared velocity
-    /// error, times the mass of the grains.
+    /// The duality gap S, J: a sum over the contacts that is 0 at the solution. S estimates the squared velocity error
+    /// multiplied by the mass of the grains with contacts.
     gap: f64,
-    /// Σ m_ij (v^free)², J, with v^free the relative velocities at the contacts without contact impulses, defined as in
-    /// the residual.
+    /// Σ m_ij (v^free)², J, with v^free the relative velocities at the contacts without contact impulses, restitution
+    /// term included.
     undone: f64,
     /// Σ m_ij |λ|², J, with λ the impulses divided by the effective masses.
     impulses: f64,
     /// Sums of squared shortfalls, (m/s)²: Σ (z/(n·u))² of contacts with fixed bodies, and Σ z² of the other contacts.
     /// The shortfall z is the increase of normal velocity that a contact needs to satisfy its law; n·u is the cosine
-    /// between its normal and the mean normal u. `counts` has the number of contacts in each sum.
+    /// between its normal and the mean normal u.
     lacks: [f64; 2],
+    /// Number of contacts in each of the two sums `lacks`.
     counts: [f64; 2],
 }
 
@@ -184,8 +185,9 @@ impl ErrorSums {
         self.add(problem, number, row, of_contact, lacking);
     }
 
-    /// Adds a contact's contributions to the sums: to the duality gap S the term `of_contact`, (m/s)², times the
-    /// effective mass, and to the squared shortfalls `lacking`, the shortfall z of its normal velocity, m/s.
+    /// Adds a contact's contributions to the sums. The duality gap S increases by the effective mass times
+    /// `of_contact`, (m/s)². The sums of squared shortfalls increase due to `lacking`, the shortfall z of the contact's
+    /// normal velocity, m/s.
     #[inline(always)]
     fn add<M: Model>(
         &mut self,

@@ -34,10 +34,10 @@ use super::{Approach, Row, StepProblem};
 use crate::contact::{Contact, ContactList};
 use crate::solver::kinematics::Model;
 
-/// Index that marks a contact whose fixed body is not a driven wall.
+/// Index that marks a contact with a body that is neither a grain nor a driven wall.
 const NONE: u32 = u32::MAX;
 
-/// Motion of the surface of a fixed body (disc or wall that is not a grain) at a contact.
+/// Motion of the surface of a body that is not a grain (wall or disc), at a contact.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
     /// Velocity of the body at the contact in the step, m/s: for a prescribed motion, the mean over the step.
@@ -116,22 +116,26 @@ pub struct DrivenRow {
     /// Values that the fields `restitution_velocity` and `surface_speed` of the contact's row would have if the wall's
     /// speed V was 0, m/s.
     pub still: [f64; 2],
-    /// Speed of the wall's surface along the contact's normal that remains if the wall's speed V is 0, m/s.
+    /// Part of the speed of the wall's surface along the contact's normal that is not due to the wall's speed V, m/s.
     pub speed: f64,
 }
 
-/// Moving surfaces of the walls and other fixed bodies of a step's problem. The memory is reused for the next step.
+/// Moving surfaces of the walls and other bodies of a step's problem that are not grains. The memory is reused for the
+/// next step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MovingWalls {
-    /// For each contact with a fixed body, the speed of that body along the normal, m/s; empty if no fixed body moves.
+    /// For each contact with a body that is not a grain, the speed of that body along the normal, m/s; empty if no such
+    /// body moves.
     pub speeds: Vec<f64>,
-    /// For each contact with a fixed body, the motion of that body's surface, or `None` if the surface does not move.
+    /// For each contact with a body that is not a grain, the motion of that body's surface, or `None` if the surface
+    /// does not move.
     surfaces: Vec<Option<Surface>>,
     /// Walls that a force drives.
     pub driven: Vec<DrivenWall>,
     /// Data of the contacts with driven walls.
     pub driven_rows: Vec<DrivenRow>,
-    /// For each contact with a fixed body, its index in `driven_rows`, or [`NONE`]; empty if no wall is driven.
+    /// For each contact with a body that is not a grain, its index in `driven_rows`, or [`NONE`]; empty if no wall is
+    /// driven.
     driven_row_of: Vec<u32>,
 }
 
@@ -159,9 +163,9 @@ impl MovingWalls {
         self.driven_rows.get(*self.driven_row_of.get(number)? as usize)
     }
 
-    /// Records the next contact with a fixed body: its driven wall (if it has one), the wall's speed along the normal,
-    /// and the fields `restitution_velocity` and `surface_speed` of the contact's row, all in m/s, for the wall's speed
-    /// at the beginning of the step.
+    /// Records the next contact with a body that is not a grain. `by` is the driven wall of the contact, if it has one.
+    /// For the wall's speed at the beginning of the step, `wall_speed` is the speed along the normal, and `added` and
+    /// `slide` are the fields `restitution_velocity` and `surface_speed` of the contact's row, all in m/s.
     fn add_row(&mut self, by: Option<DrivenBy>, wall_speed: f64, [added, slide]: [f64; 2]) {
         if self.driven.is_empty() {
             return;
@@ -211,7 +215,7 @@ impl<M: Model> StepProblem<M> {
     }
 
     /// Replaces the unit normal of the contact in row `number`, and updates the speeds of its moving surface. Returns
-    /// the speed of the fixed body along the new normal, m/s.
+    /// the speed of the wall (or other body that is not a grain) along the new normal, m/s.
     pub(crate) fn turn_row(&mut self, number: usize, normal: DVec2) -> f64 {
         let row = self.rows.get_mut(number);
         row.normal = M::sliding(M::normal(normal.to_array()), M::slide(row.normal));
@@ -222,15 +226,15 @@ impl<M: Model> StepProblem<M> {
         speed
     }
 
-    /// Returns the speed along the normal of the fixed body that the contact in row `number` touches, m/s; 0 if that
-    /// body does not move.
+    /// Returns the speed along the normal, m/s, of the wall (or other body that is not a grain) at the contact in row
+    /// `number`; 0 if it does not move.
     #[inline(always)]
     pub fn wall_speed(&self, number: usize) -> f64 {
         self.walls.speeds.get(number).copied().unwrap_or(0.0)
     }
 
-    /// Returns the speed, at the beginning of the step and along the normal, of the fixed body that the contact in row
-    /// `number` touches, m/s. For a driven wall the result is its present speed.
+    /// Returns the speed along the normal, m/s, at the beginning of the step, of the wall (or other body that is not a
+    /// grain) at the contact in row `number`. For a driven wall the result is its present speed.
     pub(crate) fn wall_speed_before(&self, number: usize) -> f64 {
         if self.gives_way(number) {
             return self.wall_speed(number);
@@ -240,8 +244,8 @@ impl<M: Model> StepProblem<M> {
         surface.before.dot(DVec2::new(x, y))
     }
 
-    /// Returns for each contact the speed of the fixed body's surface along the tangent, m/s: 0 for contacts between
-    /// grains. The list is empty if no surface moves.
+    /// Returns for each contact the speed along the tangent, m/s, of the surface that the grain touches; 0 for contacts
+    /// between grains. The list is empty if no surface moves.
     pub fn surface_speeds(&self) -> Vec<f64> {
         if !self.has_moving_walls() {
             return Vec::new();
@@ -254,8 +258,8 @@ impl<M: Model> StepProblem<M> {
         !self.walls.speeds.is_empty()
     }
 
-    /// Returns the part of the velocity of a fixed body that changes the gap of its contact in row `number`, m/s. For a
-    /// half-space this is the component along `normal`, for other bodies the whole velocity.
+    /// Returns the part of the velocity of a body that is not a grain that changes the gap of its contact in row
+    /// `number`, m/s. For a half-space this is the component along `normal`, for other bodies the whole velocity.
     pub(crate) fn shape_velocity(&self, number: usize, normal: DVec2) -> DVec2 {
         match self.walls.surfaces.get(number) {
             Some(Some(surface)) if !surface.is_half_space => surface.velocity,
@@ -286,7 +290,8 @@ impl<M: Model> StepProblem<M> {
 
     /// Returns the work of moving surfaces and its tangential part, J, for the contacts of `part`, a problem with a
     /// subset of the contacts of this problem. `number_here` translates the row numbers of `part` to row numbers of
-    /// this problem. Unlike [`Self::surface_works`], counts a driven wall with its final speed.
+    /// this problem. In contrast to [`Self::surface_works`], the work of a driven wall is computed with the wall's
+    /// speed at the end of the step.
     pub(crate) fn surface_works_of(
         &self,
         part: &Self,
@@ -308,8 +313,8 @@ impl<M: Model> StepProblem<M> {
         [whole, along_tangents]
     }
 
-    /// Iterates over all contacts: a mutable reference to the contact's data, and the speed of its fixed body along the
-    /// normal, m/s; 0 if there is no fixed body or if that body does not move.
+    /// Iterates over all contacts: a mutable reference to the contact's data, and the speed along the normal, m/s, of
+    /// its wall (or other body that is not a grain); 0 between grains or if that body does not move.
     pub(crate) fn rows_with_walls(&mut self) -> impl Iterator<Item = (&mut Row<M>, f64)> {
         let walls = self.walls.speeds.iter().copied().chain(std::iter::repeat(0.0));
         self.rows.iter_mut().zip(walls)
@@ -327,8 +332,8 @@ impl<M: Model> StepProblem<M> {
         self.walls.driven_row(number).is_some()
     }
 
-    /// Changes the law of the contact in row `number` so that its bodies may approach each other with up to `allowed`,
-    /// m/s. `wall_speed` is the speed of the fixed body along the normal, m/s.
+    /// Changes the law of the contact in row `number` so that its bodies may approach each other with a speed of up to
+    /// `allowed`, m/s. `wall_speed` is the speed of the wall along the normal, m/s; 0 if the contact is between grains.
     pub(crate) fn let_close(&mut self, number: usize, allowed: f64, wall_speed: f64) {
         self.rows.get_mut(number).restitution_velocity = allowed - wall_speed;
         let MovingWalls { driven_rows, driven_row_of, .. } = &mut self.walls;
@@ -338,8 +343,8 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Returns two speeds along the normal, m/s, of the fixed body that the contact in row `number` touches: the speed
-    /// at the beginning of the step, and its increase in the step.
+    /// Returns two speeds along the normal, m/s, of the wall (or other body that is not a grain) at the contact in row
+    /// `number`: the speed at the beginning of the step, and its increase in the step.
     pub(crate) fn wall_speed_and_gain(&self, number: usize) -> [f64; 2] {
         let Some(known) = self.walls.driven_row(number) else {
             let before = self.wall_speed_before(number);
@@ -425,10 +430,11 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// For each contact with a fixed body, computes κ (b_n² + b_t² m_t/m_n) times the number of contacts of its driven
-    /// wall, or `None` if the body is not a driven wall. κ is the response of the wall's speed to an impulse times the
-    /// contact's effective mass; b_n and b_t are the components of the wall's direction of motion along the normal and
-    /// the tangent. Methods that update all contacts at once need this bound on the wall's compliance.
+    /// Iterates over the contacts with bodies that are not grains. Returns for each contact κ (b_n² + b_t² m_t/m_n)
+    /// times the number of contacts of its driven wall, or `None` if the body is not a driven wall. κ is the response
+    /// of the wall's speed to an impulse times the contact's effective mass; b_n and b_t are the components of the
+    /// wall's direction of motion along the normal and the tangent. Methods that update all contacts at once need this
+    /// bound on the wall's compliance.
     pub(crate) fn wall_compliances(&self) -> impl Iterator<Item = Option<f64>> {
         let MovingWalls { driven, driven_rows, .. } = &self.walls;
         let mut counts = vec![0.0; driven.len()];

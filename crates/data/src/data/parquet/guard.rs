@@ -169,8 +169,8 @@ const PAGE_HEADER: FieldShape = Fields(&[
 ]);
 
 impl FieldShape {
-    /// True if a value in a header has this type. In a structure, each field may occur only once. A field that the
-    /// decoder does not know may have any type.
+    /// True if a value in a header has this type. A structure fits if each of its fields occurs only once, and if each
+    /// field that the decoder knows has its type. Other fields may have any type.
     fn fits(&self, value: &FieldValue) -> bool {
         match (self, value) {
             (Whole, FieldValue::Whole(_))
@@ -282,8 +282,8 @@ impl Reader<'_> {
     }
 }
 
-/// Returns the number of nested levels that are still accepted inside a structure or list, if `depth` levels are
-/// accepted including the structure or list itself. Fails if `depth` is 0.
+/// Returns the number of nesting levels that remain for the contents of a structure or list, which itself takes one of
+/// `depth` levels. Fails if `depth` is 0.
 fn depth_below(depth: usize) -> Checked<usize> {
     depth.checked_sub(1).ok_or_else(|| format!("has headers nested deeper than {MOST_DEPTH}"))
 }

@@ -31,8 +31,8 @@ use crate::sim::Observables;
 const SIZE_OF_PART: usize = 256 << 10;
 /// Key of the entry in a file's metadata that describes the units and meanings of the columns, as JSON.
 const COLUMNS_KEY: &str = "columns";
-/// Limit for writing a column of numbers as a dictionary and indices: on average, its value must change less often than
-/// once in this many rows. Such a column then takes almost no space.
+/// Least mean number of rows between two changes of the value of a column of numbers, from which the column is written
+/// as a dictionary and indices. Such a column then takes almost no space.
 const FEW_CHANGES: usize = 8;
 
 /// Writer of a recording as Parquet files.
@@ -134,7 +134,7 @@ impl GrowingParts {
         Ok(())
     }
 
-    /// Checks that the files of the table have exactly `marked` rows up to the time step `step`.
+    /// Checks that the files of the table have exactly `marked` rows up to step number `step`.
     fn check(&self, step: Option<u64>, marked: u64) -> Result<()> {
         let mut rows = 0;
         // Rows are sorted by step. As soon as a part has a row up to `step`, all rows of the earlier parts count.
@@ -151,7 +151,7 @@ impl GrowingParts {
         check_count(&self.folder, "rows", rows, marked)
     }
 
-    /// Removes the rows of all time steps after `step`, or all rows if `step` is `None`.
+    /// Removes the rows of all steps after `step`, or all rows if `step` is `None`.
     fn roll_back(&mut self, step: Option<u64>) -> Result<()> {
         self.rows.truncate(0);
         (self.number, self.has_news, self.has_file) = (0, false, false);

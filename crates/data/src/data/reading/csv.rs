@@ -30,7 +30,7 @@ pub fn parse_grains(text: &str, path: &Path) -> Result<RecordedGrains> {
     CsvFile { path, wanted: None, open: || Ok(text.as_bytes()) }.read()
 }
 
-/// Reads the discs of the time step `step` from a CSV file, or of the last step in the file if `step` is `None`.
+/// Reads the discs of step number `step` from a CSV file, or of the last step in the file if `step` is `None`.
 pub(super) fn read(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
     CsvFile { path, wanted: step, open: || open(path, FORM) }.read()
 }

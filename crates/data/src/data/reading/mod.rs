@@ -34,7 +34,7 @@ const WRITTEN_ALONE: [(&[u8], &str); 3] =
 const LONGEST_BEGINNING: u64 = 8;
 
 /// Reads grains from a CSV or Parquet file, or from the folder of a recording. If the data have several frames, reads
-/// the frame of the time step `step`, or the last frame if `step` is `None`.
+/// the frame of step number `step`, or the last frame if `step` is `None`.
 ///
 /// # Errors
 /// If the file cannot be read or is of another format, has no such step, or lacks a column, or if a row is not a disc;
@@ -87,7 +87,7 @@ fn read_file(path: &Path, step: Option<u64>) -> Result<RecordedGrains> {
     csv::read(path, wanted)
 }
 
-/// Returns the time step of the last frame of the recording in a folder; `None` if it is unknown.
+/// Returns the number of the step of the last frame in the recording in a folder; `None` if it is unknown.
 fn last_step(folder: &Path) -> Result<Option<u64>> {
     let path = folder.join(FRAMES);
     let Ok(file) = open(&path, FORM) else { return Ok(None) };

@@ -8,11 +8,11 @@ use super::rows::{
 use crate::data::parquet::{Decoded, ParquetFile};
 use crate::error::{Error, Result};
 
-/// Largest number of rows in one Parquet file. A row of a table in several files is identified by the index of its file
-/// times this number plus the index of the row.
+/// Largest number of rows in one Parquet file. If a table is split into several files, the number of a row in the whole
+/// table is the index of its file times this number, plus its index in the file.
 const MOST_ROWS: u64 = 1 << 32;
 
-/// Reads the discs of the time step `step`, or of the last step if `step` is `None`, from the Parquet files of a table,
+/// Reads the discs of step number `step`, or of the last step if `step` is `None`, from the Parquet files of a table,
 /// which are in ascending order.
 pub(super) fn read_parts(
     path: &Path,

@@ -22,10 +22,10 @@ pub(super) const OF_GRAINS: [&str; 2] = ["mass", DENSITY];
 /// given.
 pub(super) const LEFT_OUT: [f64; NUMBERS.len()] =
     [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, f64::NAN, f64::NAN];
-/// Largest number of time steps that an error message lists one by one.
+/// Largest number of steps that an error message lists one by one.
 const MOST_LISTED: usize = 8;
 
-/// Grains and fixed discs of one time step, read from a file.
+/// Grains and fixed discs of one step, read from a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordedGrains {
     /// Grains, the discs that can move freely. They are sorted by their ids if they have ids.
@@ -106,7 +106,7 @@ pub(super) fn known_names() -> String {
     names.chain([DENSITY]).collect::<Vec<_>>().join(", ")
 }
 
-/// Returns the error for a file that has no data of the time step `step`. `known` lists the steps of the file in
+/// Returns the error for a file that has no data of step number `step`. `known` lists the steps of the file in
 /// ascending order.
 pub(super) fn no_such_step(path: &Path, step: u64, known: &[u64]) -> Error {
     let file = path.display();

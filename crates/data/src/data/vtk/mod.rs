@@ -85,8 +85,9 @@ const VECTORS: [(&str, [&str; 2]); 4] = [
 /// Number that is written for a flag whose property the contact law does not define.
 const NEITHER: i8 = -1;
 
-/// Length of a slot, the space for one entry in a `.pvd` file (list of frames), bytes. It divides the size of a memory
-/// page, so that no slot lies in two pages, and is enough for any time and file name.
+/// Length of a slot, the space for one entry in a `.pvd` file (list of frames), bytes. It is large enough for any time
+/// and file name. It divides 4096, so that no slot lies in two blocks of 4096 bytes, between which a kill could
+/// interrupt the writing of an entry.
 const SLOT: usize = 128;
 /// Length of the text ahead of the first slot (space for an entry) in a `.pvd` file, bytes.
 const HEAD: usize = 256;
@@ -347,8 +348,8 @@ fn add(file: &mut VtkFile, Column { name, values, .. }: &Column) {
 ///
 /// This list grows by one frame at a time, and must be complete whenever it is read or the program is killed. Entries
 /// are therefore slots of fixed length ahead of the closing tags, and free slots are blank. A new entry is written in
-/// one operation within one page of memory, which a kill cannot interrupt. If no slot is free, the file is rewritten
-/// with twice as many slots, so the cost per frame stays constant on average.
+/// one operation within one block of 4096 bytes, which a kill cannot interrupt. If no slot is free, the file is
+/// rewritten with twice as many slots, so the cost per frame stays constant on average.
 struct PvdSeries {
     path: PathBuf,
     file: File,

@@ -38,20 +38,21 @@ const THRESHOLD: f64 = 2.0;
 /// the time step.
 const FINEST_SECS: f64 = 1e-4;
 const DURATION_SECS: f64 = 1.0;
-/// Solver method of the reference simulations, and the residuals to which it solves each step. References with the
-/// second residual only serve to measure the difference between two accurate simulations of a chaotic pile (the floor),
-/// below which errors have no meaning.
+/// Solver method of the reference simulations, with which the other simulations are compared.
 const REFERENCE: Method = Method::Newton;
+/// Residuals to which the steps of the reference simulations are solved. References with the second residual only serve
+/// to measure how much two accurate simulations of a chaotic pile differ; errors below this difference have no meaning.
 const TOLERANCES: [f64; 2] = [1e-8, 1e-9];
 /// Slump below which a pile counts as stable.
 const HOLDS: f64 = 0.1;
-/// Stepper of those reference simulations from which the floor is measured (the difference between two references). The
-/// stepper defines the contact law.
+/// Stepper, which defines the contact law, of those reference simulations from which the floor is measured. The floor
+/// is the difference between two accurate simulations of a chaotic pile; errors below the floor have no meaning.
 const FLOOR_LAW: Stepper = Stepper::Moreau;
 /// Number of steps of a timed simulation between two checks whether its computing time exceeds the limit.
 const STEPS_PER_LOOK: u64 = 16;
 /// Computing time of a run, s, above which its timing is not repeated, because disturbances average out within the run.
 const LONG_ENOUGH_SECS: f64 = 2.0;
+/// Smallest error of the slump on the axis of the chart. Smaller errors are drawn at this value.
 const LEAST_ERROR: f64 = 1e-3;
 const GREY: Rgb = (130, 130, 130);
 
@@ -81,8 +82,8 @@ struct BudgetedVariant {
     change: Change,
 }
 
-/// The simulations whose speed and accuracy are measured: piles of 138 grains, as in the paper, with all time steps and
-/// solver variants.
+/// The simulations whose speed and accuracy are measured: piles of 138 grains, as in Abramian & Staron (2020), with all
+/// time steps and solver variants.
 struct SimulationPlan {
     time_steps_secs: Vec<f64>,
     /// Bond number and seed of each pile.
@@ -261,8 +262,8 @@ struct ReferenceCase {
 struct References(Vec<(ReferenceCase, TimedRun)>);
 
 impl References {
-    /// Returns all reference simulations to compute. Two references with different tolerances, whose difference is
-    /// measured (the floor), are only computed at the time steps on the chart.
+    /// Returns all reference simulations to compute. Pairs of references that only differ in the tolerance, whose
+    /// difference is measured (the floor), are only computed at the time steps on the chart.
     fn cases(plan: &SimulationPlan) -> Vec<ReferenceCase> {
         let mut cases = Vec::new();
         for &law in &plan.laws {

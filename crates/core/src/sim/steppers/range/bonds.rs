@@ -34,15 +34,15 @@ use crate::solver::{Model, RowVelocities, SolveReport, StepProblem, for_each_row
 /// them again.
 const MOST_ROUNDS: u32 = 8;
 
-/// Fraction of the strength of bonds in the search for restless bonds: a bond is restless, that is about to break, if
-/// it would break in the step with only this fraction of its strength.
+/// Fraction of the strength of bonds in the search for restless bonds: a bond counts as restless (about to break) if it
+/// would break in the step with only this fraction of its strength.
 const STRENGTH_OF_RESTLESS_BONDS: f64 = 0.5;
 
 /// Largest motion of a grain in a step that counts as rest, in debonding distances δ_c. With a larger value, the slow
 /// increase of a load is missed; with a smaller value, errors within the solver's tolerance count as motion.
 const STANDING_IN_DEBONDING_DISTANCES: f64 = 1e-3;
 
-/// Relative decrease of a bond's bound (its largest impulse) for which the step is solved again.
+/// Smallest relative decrease of a bond's bound (its largest impulse) for which the step is solved again.
 const FALL: f64 = 1e-6;
 
 /// Data that the stepper `range` keeps from one step to the next.
@@ -209,8 +209,8 @@ impl BondLimits<'_> {
         !lowered.is_empty()
     }
 
-    /// True if no grain or wall moves at the beginning of the step, and no pair separates or slides at its end, apart
-    /// from motions below [`STANDING_IN_DEBONDING_DISTANCES`].
+    /// True if no grain or wall moves at the beginning of the step, and no pair separates or slides at the end of the
+    /// step, apart from motions below [`STANDING_IN_DEBONDING_DISTANCES`].
     fn stands<M: Model>(&self, problem: &StepProblem<M>, fastest: f64) -> bool {
         let StepNumbers { time_step_secs, debonding_distance, .. } = self.numbers;
         let still = STANDING_IN_DEBONDING_DISTANCES * debonding_distance / time_step_secs;

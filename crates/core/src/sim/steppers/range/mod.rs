@@ -46,7 +46,7 @@ const SUBSTEP_IN_BOND_TIMES: f64 = 0.4;
 const MOST_TRAVEL: f64 = 0.1;
 
 /// Largest number of substeps into which a step is divided. With more substeps, a step would no longer be comparable to
-/// a step of the requested length.
+/// a step with the requested time step.
 const MOST_SUBSTEPS: f64 = 16.0;
 
 /// Returns the distances within which the present step searches for contacts. They are sufficient if no grain becomes
@@ -192,8 +192,8 @@ pub(super) fn separate<M: Model>(state: &mut State) {
 }
 
 /// Largest opening speed that the rotation of a bonded pair may cause in a step, divided by the escape speed of the
-/// bond (the smallest opening speed after a shock that breaks the bond). With a larger value, circling pairs separate
-/// too early; with a smaller value, steps are divided in vain.
+/// bond (the smallest opening speed after a shock at which the bond breaks). With a larger value, circling pairs
+/// separate too early; with a smaller value, steps are divided in vain.
 const MOST_OF_ESCAPE_SPEED: f64 = 0.5;
 
 /// True if a bonded pair circles so fast that a step of this length would treat the rotation of the contact normal as a

@@ -29,18 +29,19 @@ pub(super) const PAIRS: usize = 3;
 
 /// The set of impulses (σ, λ) that a friction model allows at a contact, as constraints with slacks.
 pub(super) trait Shape {
-    /// Index of the first of the three slacks that a contact with this set of impulses uses; `END` is the index after
-    /// the last. Slack 0 belongs to σ ≥ 0, slacks 1 and 2 to the bounds of friction.
+    /// Index of the first of the three slacks that a contact with this set of impulses uses. Slack 0 belongs to σ ≥ 0,
+    /// slacks 1 and 2 to the bounds of friction.
     const FIRST: usize;
+    /// Index after the last of the three slacks that a contact with this set of impulses uses.
     const END: usize;
     /// True if the Newton steps use the two slacks of the friction bounds as variables instead of the impulses (σ, λ).
     const CONE: bool;
     /// True if the friction bound grows with σ but the multipliers of friction act only along the tangent, as in
     /// Coulomb's law. The problem is then not convex.
     const LEANS: bool = false;
-    /// Regularisation ε, relative to the compliance of a contact of free bodies. With a smaller ε, rounding errors in
-    /// the factorisation would cancel the gain. With a larger ε, impulses that only balance each other would change too
-    /// little in a step.
+    /// Regularisation ε, relative to the compliance of a contact whose bodies touch nothing else. With a smaller ε,
+    /// rounding errors in the factorisation would cancel the gain. With a larger ε, impulses that only balance each
+    /// other would change too little in a step.
     const COMPLIANCE: f64 = 1e-11;
 }
 
@@ -101,10 +102,11 @@ pub(super) struct PathContact {
     /// Velocities (w, v) at the present impulses, m/s: w is the normal velocity plus the restitution term and the
     /// opening speed `lag`, v the tangential velocity.
     pub velocity: [f64; 2],
-    /// Regularisation ε of this contact, relative to the compliance of a contact of free bodies.
+    /// Regularisation ε of this contact, relative to the compliance of a contact whose bodies touch nothing else.
     pub compliance: f64,
-    /// Change of each variable of the Newton step (impulse component, or slack if the shape is a cone) per change of
-    /// the velocity along it, dimensionless: the inverse of the diagonal entry of S.
+    /// Inverse of the diagonal entries of S, dimensionless: for each variable of the Newton step, its change per change
+    /// of the contact's velocity. The variables are the impulses (σ, λ), or on the friction cone the slacks of the two
+    /// bounds of friction.
     pub mobility: [f64; PAIRS],
 }
 
@@ -125,8 +127,8 @@ pub(super) struct ContactNumbers {
 }
 
 impl ContactNumbers {
-    /// Returns the compliance of a contact of free bodies, dimensionless, to impulses that change one slack of the
-    /// cone: impulses in the direction (1/κ, ±1)/2.
+    /// Returns the compliance, dimensionless, of a contact whose bodies touch nothing else, to impulses that change
+    /// only one of the two slacks of the cone: impulses in the direction (1/κ, ±1)/2.
     fn along_slack(&self) -> f64 {
         0.25 * (1.0 / (self.slope * self.slope) + self.tangential_compliance)
     }
@@ -286,15 +288,15 @@ impl PathContact {
         }
     }
 
-    /// Moves the contact to the path, near the impulses that an update of the natural map would give: every product x·y
-    /// of a slack and its multiplier becomes `centre`, (m/s)². `trial` are the trial impulses (σ − w, λ − v m_t/m_n) of
-    /// this update, m/s.
+    /// Moves the contact's impulses, slacks and multipliers to the central path of the interior point method, near the
+    /// impulses that an update of the natural map would give: every product x·y of a slack and its multiplier becomes
+    /// `centre`, (m/s)². `trial` are the trial impulses (σ − w, λ − v m_t/m_n) of this update, m/s.
     ///
-    /// With τ = `centre`: σ and its multiplier u must have the difference σ − u = σ − w of the trial and the product τ,
-    /// which gives a quadratic equation. With a fixed friction bound g, the smaller slack x and the larger slack 2g − x
-    /// must result in the velocity τ/x − τ/(2g − x). The second term is neglected, which again leaves a quadratic
-    /// equation. On the cone the slacks at the point of the cone that is nearest to the trial, and their multipliers,
-    /// are moved away from 0 by the same quadratic equation.
+    /// Let τ = `centre`. The new σ and its multiplier u must have the product τ, and the difference σ − u must be the
+    /// normal trial impulse. These two conditions give a quadratic equation. With a fixed friction bound g, the smaller
+    /// slack x and the larger slack 2g − x must result in the velocity τ/x − τ/(2g − x). The second term is neglected,
+    /// which again leaves a quadratic equation. On the cone the slacks at the point of the cone that is nearest to the
+    /// trial, and their multipliers, are moved away from 0 by the same quadratic equation.
     pub(super) fn centre<S: Shape>(
         &mut self,
         numbers: ContactNumbers,

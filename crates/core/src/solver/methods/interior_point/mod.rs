@@ -8,10 +8,10 @@
 //! with V the velocities of the bodies, M their inertias, V_free their velocities without contacts, H the map from V to
 //! contact velocities, m the effective masses, s the opening speed that the friction model keeps fixed during a solve,
 //! and c the capture speed. The velocities V of the solution are unique. Each constraint of the impulses has a slack
-//! and a multiplier (`contact`), whose product is 0 at the solution. The method follows the path on which the products
-//! are equal and decrease (S. Mehrotra, 1992, for predictor and corrector; J. Gondzio, 1996, for further corrections).
-//! V is always computed from the impulses, so that rounding errors do not add up. Impulses are eliminated from each
-//! Newton step. One linear system for the change of the velocities remains,
+//! and a multiplier (`contact`), whose product is 0 at the solution. The method follows the *central path*, on which
+//! all products are equal and decrease (S. Mehrotra, 1992, for predictor and corrector; J. Gondzio, 1996, for further
+//! corrections). V is always computed from the impulses, so that rounding errors do not add up. Impulses are eliminated
+//! from each Newton step. One linear system for the change of the velocities remains,
 //!
 //! > (M + Hᵀ m S⁻¹ H) δV = Hᵀ m S⁻¹ b,
 //!
@@ -59,7 +59,7 @@ pub(crate) struct InteriorMemory {
 
 /// Solves a prepared problem under its friction model by the interior point method. If friction has wedged bodies
 /// between each other, so that the impulses of the previous step are huge, the solve starts from zero impulses instead.
-/// If the path of Coulomb's law does not lead to a solution, `go_on` continues the solve with another method.
+/// If the central path of Coulomb's law does not lead to a solution, `go_on` continues the solve with another method.
 pub(super) fn solve<M: Model>(
     problem: &mut StepProblem<M>,
     memory: &mut InteriorMemory,
@@ -109,9 +109,9 @@ fn convex<M: Model, S: Shape>(
     }
 }
 
-/// Follows the path of Coulomb's law as far as possible, and then lets `go_on` continue with another method. The path
-/// is not used in two cases: with the compressive cone, which has a corner at σ = c (shifted normal impulse = capture
-/// speed) that the path cannot pass, and if contacts have different friction coefficients.
+/// Follows the central path of Coulomb's law as far as possible, and then lets `go_on` continue with another method.
+/// The path is not used in two cases: with the compressive cone, which has a corner at σ = c (shifted normal impulse =
+/// capture speed) that the path cannot pass, and if contacts have different friction coefficients.
 fn coulomb<M: Model>(
     problem: &mut StepProblem<M>,
     memory: &mut InteriorMemory,

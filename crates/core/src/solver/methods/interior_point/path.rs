@@ -1,4 +1,4 @@
-//! Newton steps along the path of the interior point method, and the loops that follow the path.
+//! Newton steps along the central path of the interior point method, and the loops that follow the path.
 //!
 //! A step aims at a target for each product of a slack and its multiplier. It consists of a predictor, a corrector, and
 //! further corrections for products that would be far from their target. The path of a convex friction model leads to
@@ -35,35 +35,37 @@ const NEAR_AIM: [f64; 2] = [0.1, 10.0];
 /// correction that achieves less is dropped.
 const WORTH_A_SOLVE: f64 = 0.02;
 
-/// Number of consecutive factorisations without a new smallest residual, after which an attempt to follow the path of a
-/// convex model ends.
+/// Number of consecutive factorisations without a new smallest residual, after which an attempt to follow the central
+/// path of a convex model ends.
 const PATIENCE: u32 = 15;
 /// Residual of the natural map, dimensionless, at or below which proximal multipliers try to finish the solve. They are
-/// not used for the friction models with a cone (`associated`, `desaxce`), for which the path does not slow down.
+/// not used for the friction models with a cone (`associated`, `desaxce`), for which the central path does not slow
+/// down.
 const POLISH_FROM: f64 = 1e-6;
 /// Condition for another attempt with proximal multipliers after a failed attempt: the residual must be at most this
 /// fraction of the residual at the failure.
 const POLISH_AGAIN: f64 = 0.1;
-/// Ratio of the path's velocity error to the velocity error after [`SWEEPS_INSTEAD`] sweeps, below which the result of
-/// the path is kept although it misses the tolerance. With a larger ratio, huge impulses would count as a solution of a
-/// problem that has no solution.
+/// Ratio of the velocity error at the end of the central path to the velocity error after [`SWEEPS_INSTEAD`] sweeps,
+/// below which the result of the path is kept although it misses the tolerance. With a larger ratio, huge impulses
+/// would count as a solution of a problem that has no solution.
 const FAR_NEARER: f64 = 1e-2;
-/// Number of sweeps whose result is used if the path does not lead to a solution.
+/// Number of Gauss–Seidel sweeps whose result is used if the central path does not lead to a solution.
 const SWEEPS_INSTEAD: u32 = 100;
-/// Maximum number of attempts to follow the path of a convex model. Each attempt starts further from the end of the
-/// path.
+/// Maximum number of attempts to follow the central path of a convex model. Each attempt starts further from the end of
+/// the path.
 const STARTS: u32 = 4;
 
-/// Maximum number of attempts to follow the path of Coulomb's law before another method continues the solve.
+/// Maximum number of attempts to follow the central path of Coulomb's law before another method continues the solve.
 const FOLDED_STARTS: u32 = 4;
-/// Number of sweeps between two attempts to follow the path of Coulomb's law.
+/// Number of sweeps between two attempts to follow the central path of Coulomb's law.
 const SWEEPS_BETWEEN: u32 = 30;
-/// Limit of an attempt to follow the path of Coulomb's law: it ends after this number of factorisations that have not
-/// halved the residual.
+/// Limit of an attempt to follow the central path of Coulomb's law: it ends after this number of factorisations that
+/// have not halved the residual.
 const FOLDED_PATIENCE: u32 = 8;
-/// Number of consecutive steps shorter than [`SHORT_STEP`] after which an attempt to follow the path of Coulomb's law
-/// ends, too.
+/// Number of consecutive short steps after which an attempt to follow the central path of Coulomb's law ends.
 const SHORT_STEPS: u32 = 3;
+/// Step length, as a fraction of the full Newton step, below which a step along the central path of Coulomb's law
+/// counts as short.
 const SHORT_STEP: f64 = 0.05;
 /// Step length, as a fraction of the full Newton step, below which the contacts that limit the step get a larger
 /// regularisation ε.
@@ -76,7 +78,7 @@ const SOFTENING: f64 = 30.0;
 const HARDENING: f64 = 0.5;
 
 impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
-    /// Takes a step along the path. Returns the step length and the residual of the natural map after the step.
+    /// Takes a step along the central path. Returns the step length and the residual of the natural map after the step.
     pub(super) fn advance(&mut self) -> (f64, f64) {
         let share = self.newton_step();
         self.report.factorisations += 1;
@@ -88,8 +90,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         (share, left)
     }
 
-    /// Takes a Newton step along the path, with predictor and corrections. Returns its length as a fraction of the full
-    /// Newton step.
+    /// Takes a Newton step along the central path, with predictor and corrections. Returns its length as a fraction of
+    /// the full Newton step.
     pub(super) fn newton_step(&mut self) -> f64 {
         self.assemble();
         let mean = self.mean_product();
@@ -128,7 +130,7 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
     }
 
     /// Returns the mean of the products of slacks and multipliers over all contacts, (m/s)², which is 0 at the end of
-    /// the path.
+    /// the central path.
     pub(super) fn mean_product(&self) -> f64 {
         self.mean_product_after(0.0)
     }
@@ -209,8 +211,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         share
     }
 
-    /// Solves a convex problem: follows the path to its end. If rounding prevents that, starts again further from the
-    /// end of the path. If no attempt succeeds, tries proximal multipliers, then sweeps.
+    /// Solves a convex problem: follows the central path to its end. If rounding prevents that, starts again further
+    /// from the end of the path. If no attempt succeeds, tries proximal multipliers, then sweeps.
     pub(super) fn solve_convex(mut self) -> SolveReport {
         if self.settles_in(SWEEPS_FIRST) {
             return self.report;
@@ -270,8 +272,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         sweeps >= self.settings.max_sweeps || is_ended(SolveProgress { sweeps, residual: None })
     }
 
-    /// Follows the path of Coulomb's law as far as possible. If the end is not reached, the problem keeps the impulses
-    /// with the smallest residual.
+    /// Follows the central path of Coulomb's law as far as possible. If the end is not reached, the problem keeps the
+    /// impulses with the smallest residual.
     pub(super) fn follow_path(mut self) -> SolveReport {
         if self.settles_in(SWEEPS_FIRST) {
             return self.report;
@@ -344,7 +346,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
     }
 }
 
-/// Iterates over the target products of a contact, each with the index of its slack and multiplier.
+/// Iterates over the target products (slack times multiplier) of a contact, each with the index of its slack and
+/// multiplier.
 #[inline(always)]
 fn pairs<'a, S: Shape>(
     contact: &PathContact,

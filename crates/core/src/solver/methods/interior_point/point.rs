@@ -1,5 +1,5 @@
-//! The state of a solve by the interior point method: its first point on the path, the largest impulses that count as a
-//! solution, and the tests that end the solve.
+//! The state of a solve by the interior point method: its first point on the central path, the largest impulses that
+//! count as a solution, and the tests that end the solve.
 
 use std::marker::PhantomData;
 
@@ -20,17 +20,17 @@ pub(super) const SWEEPS_FIRST: u32 = 4;
 /// Error of the impulses, in multiples of the tolerance of the stopping test, at or below which a few sweeps try to
 /// finish the solve.
 const SWEEPS_FROM: f64 = 10.0;
-/// Largest impulse that counts as a solution, relative to the impulses and velocities at the start of a solve. From
-/// zero initial impulses on a pile of 100 layers, impulses grow by a factor of 10⁴.
+/// Largest normal impulse that a solution may have, divided by the largest impulse or velocity at the start of a solve.
+/// From zero initial impulses on a pile of 100 layers, impulses grow by a factor of 10⁴.
 const LARGEST_IMPULSE: f64 = 1e7;
-/// Number of sweeps that try to finish a solve when the path is near its end.
+/// Number of sweeps that try to finish a solve when the central path is near its end.
 const SWEEPS_LAST: u32 = 2;
 
-/// Product of slack and multiplier at the first start on the path, divided by the mean square of the change that an
-/// update of the natural map would make to the impulses. If it were smaller, contacts would change between open, stick
-/// and slip only slowly; if it were larger, good initial impulses (warm start) would have no advantage.
+/// Product of slack and multiplier at the first start on the central path, divided by the mean square of the change
+/// that an update of the natural map would make to the impulses. With a smaller product, contacts would change between
+/// open, stick and slip only slowly; with a larger product, good initial impulses (warm start) would have no advantage.
 const CENTRE: f64 = 1e3;
-/// Factor by which the product of slack and multiplier is larger at each further start on the path.
+/// Factor by which the product of slack and multiplier is larger at each further start on the central path.
 const FURTHER_UP: f64 = 1e3;
 /// Fraction of the root mean square change of the impulses below which a friction bound g counts as 0. The interval
 /// from −g to g would otherwise be too narrow for positive slacks at both of its ends.
@@ -44,7 +44,7 @@ pub(super) struct PathWorkspace<const D: usize> {
     /// Right-hand side of the linear system in elimination order; after the solution of the system, the change of the
     /// velocities.
     pub vector: Vec<[f64; D]>,
-    /// Impulses, slacks and multipliers of all contacts. The next three vectors also have one entry per contact.
+    /// Impulses, slacks and multipliers of all contacts.
     pub contacts: Vec<PathContact>,
     pub targets: Vec<[f64; PAIRS]>,
     pub step: Vec<PathStep>,
@@ -113,9 +113,9 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         }
     }
 
-    /// Tries to finish the solve by a few sweeps, if the error is small enough: unlike the path, sweeps set impulses
-    /// exactly to their bounds. Returns true if the stopping test is then met; otherwise returns to the present point
-    /// of the path. `left` is the residual of the natural map.
+    /// Tries to finish the solve by a few sweeps, if the error is small enough: unlike the central path, sweeps set
+    /// impulses exactly to their bounds. Returns true if the stopping test is then met; otherwise returns to the
+    /// present point of the path. `left` is the residual of the natural map.
     pub(super) fn finishes(&mut self, left: f64) -> bool {
         if !self.is_within(left, SWEEPS_FROM) || !self.is_bounded() {
             return false;
@@ -127,8 +127,8 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         finished
     }
 
-    /// Sets the impulses of the problem to the present point of the path, and its bodies to the velocities that follow
-    /// from these impulses.
+    /// Sets the impulses of the problem to the present point of the central path, and its bodies to the velocities that
+    /// follow from these impulses.
     pub(super) fn take_impulses(&mut self) {
         let contacts = &self.workspace.contacts;
         self.problem.write_impulses(contacts.iter().map(|contact| contact.impulse));
@@ -147,8 +147,9 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         self.keep(natural_map(self.problem));
     }
 
-    /// Returns true if no impulse of the path is larger than a solution may have. On a path that does not lead to a
-    /// solution impulses grow without limit; relative to them all changes become small, as if the solve converged.
+    /// Returns true if no impulse at the present point of the central path is larger than a solution may have. On a
+    /// path that does not lead to a solution, impulses grow without limit. Relative to these impulses all changes
+    /// become small, as if the solve converged.
     pub(super) fn is_bounded(&self) -> bool {
         let contacts = &self.workspace.contacts;
         contacts.iter().all(|contact| contact.impulse[0] <= self.largest_impulse)
@@ -170,9 +171,9 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         self.problem.write_impulses(self.workspace.best.iter().copied());
     }
 
-    /// Starts the path at its point nearest to the impulses that one update of the natural map gives. `starts_before`
-    /// is the number of earlier starts in this solve, each of which moves the next start further from the end of the
-    /// path.
+    /// Starts the central path at its point nearest to the impulses that one update of the natural map gives.
+    /// `starts_before` is the number of earlier starts in this solve, each of which moves the next start further from
+    /// the end of the path.
     pub(super) fn start(&mut self, starts_before: u32) {
         let Self { problem, workspace, numbers, .. } = self;
         let opening_lags = problem.friction.model != FrictionModel::Tresca && S::CONE;

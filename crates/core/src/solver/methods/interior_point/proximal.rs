@@ -29,31 +29,35 @@ use super::system::{all_inertias, for_each_change, push_all};
 use crate::solver::kinematics::Model;
 use crate::solver::problem::natural_map;
 
-/// Initial compliance ε, relative to the compliance of a contact, of a solve that starts far from a solution. `CLOSE`
-/// is for a solve that finishes the path.
+/// Initial compliance ε, relative to the compliance of a contact, of a solve by proximal multipliers that starts far
+/// from a solution.
 const FAR: f64 = 0.1;
+/// Initial compliance ε, relative to the compliance of a contact, of a solve by proximal multipliers that starts near
+/// the end of the central path of the interior point method.
 const CLOSE: f64 = 1e-5;
 /// Minimum compliance ε, relative to the compliance of a contact. With a smaller ε, rounding errors would grow more
 /// than the error of the impulses would fall.
 const LEAST: f64 = 1e-10;
-/// Factor by which the compliance ε is multiplied each time the minimum of F has been found.
+/// Factor by which the compliance ε is multiplied each time the minimum of the objective function F has been found.
 const FACTOR: f64 = 0.1;
-/// Limit of a solve that started far from a solution: it ends after this number of factorisations that have not halved
-/// the residual.
+/// Limit of a solve by proximal multipliers that started far from a solution: it ends after this number of
+/// factorisations that have not halved the residual.
 const PATIENCE: u32 = 40;
-/// Maximum number of factorisations of a solve that finishes the path of the interior point.
+/// Maximum number of factorisations of a solve by proximal multipliers that starts near the end of the central path of
+/// the interior point method.
 const FEW: u32 = 16;
-/// Ratio of the squared gradient norm ∇F·M⁻¹∇F to its first value at the present compliance ε, at or below which the
-/// minimum of F counts as found and ε is reduced.
+/// Ratio of the squared gradient norm ∇F·M⁻¹∇F of the objective function F to its first value at the present compliance
+/// ε, at or below which the minimum of F counts as found and ε is reduced.
 const NEAR_MINIMUM: f64 = 1e-4;
-/// Maximum number of evaluations of the derivative F′ in a line search.
+/// Maximum number of evaluations of the derivative F′ of the objective function in a line search.
 const TRIALS: u32 = 40;
-/// Ratio of the derivative F′ to its value at the beginning of a line search, at or below which F′ counts as 0.
+/// Ratio of the derivative F′ of the objective function to its value at the beginning of a line search, at or below
+/// which F′ counts as 0.
 const ROOT: f64 = 1e-9;
 
 impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
-    /// Finishes a solve by proximal multipliers, from the present impulses of the path, which are near a solution.
-    /// Returns true if the problem is then solved.
+    /// Finishes a solve by proximal multipliers, from the present impulses of the central path, which are near a
+    /// solution. Returns true if the problem is then solved.
     pub(super) fn polish(&mut self) -> bool {
         self.approach(CLOSE, FEW, FEW)
     }
@@ -111,8 +115,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         }
     }
 
-    /// Sets the initial impulses and velocities of the proximal multiplier method to the present impulses of the path,
-    /// projected on the allowed impulses.
+    /// Sets the initial impulses and velocities of the proximal multiplier method to the present impulses of the
+    /// central path, projected on the allowed impulses.
     fn begin_near(&mut self) {
         let numbers = self.numbers;
         let PathWorkspace { near, contacts, .. } = &mut *self.workspace;

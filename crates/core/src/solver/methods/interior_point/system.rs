@@ -179,8 +179,8 @@ fn heavy(mass: f64, answer: Block<2>) -> Block<2> {
     answer.map(|row| row.map(|entry| mass * entry))
 }
 
-/// Returns the D × D block m H₁ᵀ S⁻¹ H₂, kg, that a contact adds to the matrix for two bodies. The gradients of the
-/// contact's velocity by their velocities are H₁ = `one` and H₂ = `other`.
+/// Returns the D × D block m H₁ᵀ S⁻¹ H₂, kg, that a contact adds to the matrix for two bodies. H₁ = `one` and H₂ =
+/// `other` are the gradients of the contact's velocity by the velocities of these bodies.
 #[inline(always)]
 fn stiffness<const D: usize>(
     [[nn, nt], [tn, tt]]: &Block<2>,

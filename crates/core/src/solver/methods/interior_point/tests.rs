@@ -23,8 +23,8 @@ fn problem<M: Model>(seed: u64, model: FrictionModel) -> StepProblem<M> {
     problem
 }
 
-/// Solves one problem by the path, and by proximal multipliers without the path. Returns both results for the
-/// velocities, and the number of factorisations of the proximal multipliers.
+/// Solves one problem twice: by following the central path of the interior point method, and by proximal multipliers
+/// alone. Returns both results for the velocities, and the number of factorisations of the proximal multipliers.
 fn both_ways<M: Model, S: Shape, const D: usize>(
     seed: u64,
     model: FrictionModel,

@@ -41,7 +41,7 @@ pub(super) struct ContactBlock {
     i: [u32; LANES],
     j: [u32; LANES],
     /// For contacts between grains, the mass ratio g_i = m_ij/m_i; for contacts with fixed bodies, the speed of the
-    /// body's surface along the tangent, m/s.
+    /// fixed body's surface along the tangent, m/s.
     share_or_speed: [f64; LANES],
     normal: [[f64; LANES]; 2],
     shifted_impulse: [f64; LANES],

@@ -41,8 +41,8 @@ pub(super) struct BlockMemory {
 }
 
 impl BlockMemory {
-    /// Returns the sum of the results of `add_up` for all blocks: tile by tile, then the blocks of contacts between
-    /// tiles.
+    /// Calls `add_up` for the blocks of each tile, and for the blocks of contacts between tiles. Returns the sum of the
+    /// results, added in this order.
     fn sum(
         &mut self,
         threads: bool,
@@ -63,7 +63,7 @@ pub(super) fn solve<M: Model>(
     solve_at::<M>(Level::new(), problem, memory, settings)
 }
 
-/// Solves a prepared problem by sweeps with the vector instructions of `level`.
+/// Solves a prepared problem by sweeps over tiles and colours, with the vector instructions that `level` names.
 fn solve_at<M: Model>(
     level: Level,
     problem: &mut StepProblem<M>,
@@ -76,8 +76,9 @@ fn solve_at<M: Model>(
     }
 }
 
-/// A contact problem arranged in tiles and colours that are valid: all its grains exist, and no two tiles and no two
-/// contacts of a colour share a grain.
+/// A contact problem whose contacts are arranged in tiles (groups of contacts near each other) and colours (groups of
+/// contacts that share no grain). When it is created, the arrangement is checked: all grains exist, and no two tiles
+/// and no two contacts of a colour share a grain.
 ///
 /// The present impulses and velocities are stored in blocks of four contacts and in slots for bodies. Until
 /// [`Tiled::store`] copies them back, `problem` has old impulses and velocities.
@@ -227,7 +228,7 @@ fn for_each_tile<T: Send>(
     }
 }
 
-/// Marks a velocity slot that has no grain, and a grain that has no slot.
+/// Number that marks a memory slot without a grain, or a grain whose velocity has no memory slot.
 const NOBODY: u32 = u32::MAX;
 
 /// A tile: contacts whose grains are in no other tile, so that one thread can solve them.
@@ -237,11 +238,12 @@ struct ContactTile {
     blocks: usize,
     /// Number of the tile's blocks whose contacts are with fixed bodies; these blocks come first.
     fixed: usize,
-    /// Number of velocity slots: one per grain of the tile, and one for idle SIMD lanes.
+    /// Number of memory slots for velocities: one per grain of the tile, and one for idle SIMD lanes.
     slots: usize,
 }
 
-/// Slot, tile and last colour of a grain, recorded while the blocks of contacts are created.
+/// Data of a grain that are needed only while contacts are arranged in blocks: the memory slot of its velocity, the
+/// tile that uses this slot, and the last colour with a contact of the grain.
 #[derive(Clone, Copy, Debug)]
 struct GrainMark {
     slot: u32,
@@ -253,7 +255,7 @@ struct GrainMark {
 
 const UNSEEN: GrainMark = GrainMark { slot: NOBODY, tile: 0, colour: 0 };
 
-/// The tile to which blocks of contacts are being added.
+/// The tile that is being filled with blocks of contacts: its number and its first velocity slot.
 #[derive(Clone, Copy)]
 struct BlockPlace {
     /// Number of the tile, from 1; 0 for the contacts between tiles.
@@ -335,8 +337,9 @@ impl TileLayout {
         Some(())
     }
 
-    /// Adds the blocks of a tile, or the blocks between tiles if `tile` is past the last tile. Returns the number of
-    /// blocks of contacts with fixed bodies.
+    /// Adds the blocks of tile number `tile`, or the blocks between tiles if `tile` is past the last tile. `place` has
+    /// the number and the first velocity slot of that tile. Returns the number of blocks of contacts with fixed bodies,
+    /// or `None` if a row or a grain is not valid.
     fn add_all<M: Model>(
         &mut self,
         problem: &StepProblem<M>,
@@ -361,7 +364,8 @@ impl TileLayout {
     }
 
     /// Adds the blocks of a colour. `rows` are the rows (the data of one contact each) of the colour, numbered from
-    /// `first`, each with its mass ratio g_i (pairs of grains) or its surface speed (fixed bodies, m/s).
+    /// `first`, each with its mass ratio g_i (pairs of grains) or its surface speed (fixed bodies, m/s). Returns `None`
+    /// if a grain does not exist, or belongs to another contact of the colour or to another tile.
     fn add<'a, M: Model>(
         &mut self,
         rows: impl ExactSizeIterator<Item = (&'a Row<M>, f64)> + Clone,

@@ -12,7 +12,7 @@ use crate::world::World;
 /// Bond that a shock closed within the step.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct ClosedBond {
-    /// Time from the shock to the end of the step, divided by the step length.
+    /// Time from the shock to the end of the step, divided by the time step.
     pub part: f64,
     /// Velocity that gravity had given the pair by the time of the shock, m/s.
     pub gained: f64,
@@ -128,9 +128,10 @@ impl Shocks {
         })
     }
 
-    /// True if the impulse on contact `number` from the solution of the step, without shocks, acts only after the pair
-    /// has met within the step. A pair that met at the time t, and whose grains were not struck later, has the gap 0 at
-    /// t. So its gap at the end of the step is (Δt − t) v^n, minus ½a(Δt − t)² if its grain falls.
+    /// True if the pair of contact `number` meets within the step, so that the impulse from the solution of the step
+    /// (without the impulses of shocks) acts on the pair only after the meeting. A pair that met at the time t, and
+    /// whose grains were not struck later, has the gap 0 at t. So its gap at the end of the step is (Δt − t) v^n, minus
+    /// ½a(Δt − t)² if its grain falls.
     fn acts_late(&self, number: usize, i: usize, j: Option<usize>) -> bool {
         let pair = &self.pairs[number];
         pair.touch == Touch::Met && pair.impulse > 0.0 && self.since(i, j) <= pair.struck_at

@@ -225,15 +225,16 @@ pub(super) struct Shocks {
     numbers: StepNumbers,
     pairs: Vec<ShockPair>,
     bodies: Vec<ShockBody>,
-    /// Impulses of the shocks, each with the number of its contact and the contact normal. `of_step` contains the
-    /// impulses of the step, one for each contact, with the contact normals.
+    /// Impulses of the shocks, N·s, each with the number of its contact and the contact normal.
     of_shocks: Vec<(usize, (DVec2, Impulse))>,
+    /// Impulses from the solution of the step after the shocks, N·s, one for each contact, with the contact normals.
     of_step: Vec<(DVec2, Impulse)>,
     /// Largest error of a contact's impulse in a step that is solved to its residual tolerance, N·s.
     least: f64,
-    /// Smallest product of effective mass and closing speed with which a touching contact is struck, N·s.
-    /// `least_closing` is the smallest closing speed, m/s. Both exceed the errors of solves.
+    /// Smallest product of effective mass and closing speed with which a touching contact is struck, N·s. It exceeds
+    /// the errors of solves.
     least_momentum: f64,
+    /// Smallest closing speed with which a touching contact is struck, m/s. It exceeds the errors of solves.
     least_closing: f64,
     /// Closing speed of the fastest shock of the step so far, m/s.
     fastest: f64,

@@ -1,4 +1,5 @@
-//! Solution of one pass, the shocks that are computed together: the struck pairs form a contact problem of their own.
+//! Solution of one pass (a group of shocks that are computed together): the struck pairs form a separate contact
+//! problem.
 
 use glam::DVec2;
 
