@@ -19,6 +19,8 @@ pub(crate) struct LessonBar {
     pub loads_before: u64,
     /// True while the summary of the lessons is open.
     pub shows_summary: bool,
+    /// Height of the bar in the last frame, points.
+    height: f32,
 }
 
 impl LessonBar {
@@ -45,6 +47,11 @@ impl LessonBar {
         }
         if self.shows_summary {
             summary(ui, context, &mut self.shows_summary);
+        }
+        // A line that is added lies outside the bar until the next frame.
+        let height = ui.min_rect().height();
+        if height != std::mem::replace(&mut self.height, height) {
+            ui.ctx().request_repaint();
         }
     }
 
