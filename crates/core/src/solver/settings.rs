@@ -173,7 +173,8 @@ impl SolverSettings {
 
     /// Checks that each number is within its range, and that the method supports the friction model.
     ///
-    /// # Errors The error names the field, its value and the allowed values.
+    /// # Errors
+    /// The error names the field, its value and the allowed values.
     pub fn validate(&self) -> Result<()> {
         self.validate_each()?;
         let (method, friction_model) = (self.method, self.friction_model);
