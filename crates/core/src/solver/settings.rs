@@ -174,7 +174,7 @@ impl SolverSettings {
     /// Checks that each number is within its range, and that the method supports the friction model.
     ///
     /// # Errors
-    /// Names the field, its value and the allowed values.
+    /// The error names the field, its value and the allowed values.
     pub fn validate(&self) -> Result<()> {
         self.validate_each()?;
         let (method, friction_model) = (self.method, self.friction_model);

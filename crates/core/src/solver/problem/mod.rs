@@ -320,9 +320,9 @@ impl<M: Model> StepProblem<M> {
         if self.extent > 0.0 { self.extent.min(grains) } else { grains.sqrt() }
     }
 
-    /// Copies the data that the velocity error is divided by (speed, mass, and size of the pile) from the complete
-    /// problem `whole`, of which this problem has only some of the contacts. So the velocity errors of both problems
-    /// can be compared.
+    /// Copies the data of a whole pile that its velocity error depends on (speed scale, grains with contacts, their
+    /// mass and extent, direction away from fixed bodies) from the complete problem `whole`. This problem has only some
+    /// of its contacts. So the velocity errors of both problems can be compared.
     pub(crate) fn hold_errors_against(&mut self, whole: &Self) {
         self.fall_speed = whole.fall_speed;
         self.touches.clone_from(&whole.touches);

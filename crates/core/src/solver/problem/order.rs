@@ -56,8 +56,8 @@ const COLOURS: u32 = u128::BITS;
 /// Sorts the contacts of a step into the order of the sweep. The memory is reused for the next step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RowOrder {
-    /// Groups of the contacts with fixed bodies, then groups of the contacts between grains; empty if contacts are not
-    /// coloured.
+    /// Groups of the contacts with fixed bodies, then groups of the contacts between grains; empty if the order of the
+    /// sweep does not use colours.
     pub groups: [RowGroups; 2],
     detected: Vec<u32>,
     keys: Vec<(f64, u32)>,

@@ -53,7 +53,7 @@ use crate::solver::settings::FrictionModel;
 
 /// Minimum cosine n·u between the normal n of a contact with a fixed body and the mean normal u of all such contacts. A
 /// contact with a smaller cosine is not opened by a motion along u: to end the shortfall of its normal velocity, the
-/// motion could have to be more than ten times as fast as the shortfall.
+/// motion might have to be more than ten times as fast as the shortfall.
 const LEAST_ALONG: f64 = 0.1;
 
 /// Estimated error of the velocities of a step, and the speed by which it is divided for the comparison with the

@@ -134,7 +134,7 @@ impl ContactNumbers {
     }
 
     /// Returns the component of the velocity (v_n, v_t) along variable `pair` of the Newton step: along a slack if the
-    /// shape is a cone, otherwise along a component of the impulses p.
+    /// allowed impulses form a cone, otherwise along a component of the impulses p.
     #[inline(always)]
     fn along<S: Shape>(&self, pair: usize, [normal, tangential]: [f64; 2]) -> f64 {
         match (S::CONE, pair) {
