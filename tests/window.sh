@@ -190,7 +190,7 @@ import -window root "$shots/window-lesson-end.png"
 
 # Film the central gesture: Δt is dragged from 0.1 ms to 2 ms and released, and the pile starts again.
 ffmpeg -loglevel error -y -f x11grab -framerate 10 -video_size 1280x800 -t 8 -i "$DISPLAY" -vf \
-    "scale=800:-1:flags=lanczos,split[a][b];[a]palettegen=max_colors=64[p];[b][p]paletteuse=dither=none" \
+    "scale=800:-1:flags=lanczos,split[a][b];[a]palettegen=max_colors=128[p];[b][p]paletteuse=dither=none" \
     "$shots/drag.gif" &
 film=$!
 sleep 1
