@@ -34,7 +34,7 @@ impl Controls {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ControlsChange {
-    /// Number of the last step before the change.
+    /// Number of the last step before the user changed the settings or the pull of the mouse.
     pub after_step: u64,
     /// Simulated time at the end of that last step, s.
     pub time_secs: f64,

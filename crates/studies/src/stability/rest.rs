@@ -130,10 +130,11 @@ pub(super) fn arch(trial: &Trial) -> Result<f64> {
     least_friction(trial, &scenes::arch(), scenes::FRICTION_OF_ARCH)
 }
 
-/// Returns the relative error of the rolling friction below which a leaning column rolls aside.
+/// Measures the smallest rolling friction with which a leaning column stays at rest, and returns its relative error.
 ///
-/// If the moment of the lowest contact lacks the fraction ε of the necessary moment, the column of n discs turns about this
-/// contact like a rod, and its top moves by about (3/8) ε g t²/n in the time t. So the time grows with √n.
+/// If the moment of the lowest contact is smaller than the necessary moment by the fraction ε, the column of n discs turns
+/// about this contact like a rod, and its top moves by about (3/8) ε g t²/n in the time t. So the test of n discs takes a
+/// time that grows with √n.
 pub(super) fn leaning_column(trial: &Trial) -> Result<f64> {
     let right = scenes::ROLLING_FRICTION_OF_COLUMN;
     let scene = with_sweeps(FEW_SWEEPS, scenes::leaning_column(trial.count()));

@@ -48,8 +48,8 @@ const STATES: &str = "states";
 const TABLE: &str = "runs.csv";
 /// Waiting time between two attempts to take over a folder that another process uses.
 const MOMENT: Duration = Duration::from_millis(100);
-/// Number of attempts to take over a folder that another process uses. A process that only reads the folder is finished
-/// before the last attempt.
+/// Number of attempts to take over a folder that another process uses. The attempts take two seconds together, which is
+/// long enough for another process that only reads the folder to finish.
 const MOMENTS: u32 = 20;
 
 /// Options of a sweep, which computes the runs of a study.

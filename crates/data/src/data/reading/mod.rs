@@ -114,8 +114,8 @@ fn read_parts(
     Err(Error::file(path, reason))
 }
 
-/// Makes discs from columns with the names of a recording's table of grains: columns of numbers and, if present, the
-/// counts `id` and the words `kind` and `material`. `what` is the name of the source in error messages.
+/// Makes discs from columns that have the same names as the columns of a recording's table of grains: columns of numbers
+/// and, if present, the integers `id` and the words `kind` and `material`. `what` is the name of the source in error messages.
 ///
 /// ```
 /// use slump_data::data::{Values, grains_of};
