@@ -61,8 +61,8 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
 
     /// Number of degrees of freedom of a body.
     const DEGREES: usize;
-    /// Inertia of each degree of freedom divided by the body's mass. The coordinate of rotation is s = rω, so its entry
-    /// is ½: ½Iω² = ½(m/2)s².
+    /// Inertia of each degree of freedom divided by the body's mass. The coordinate of rotation is radius times angular
+    /// velocity, so its entry is ½ for a solid disc.
     const INERTIA_OVER_MASS: [f64; 3];
 
     /// Returns the velocity of grain `index` of a world (the grains and boundaries of a scene).
@@ -102,8 +102,8 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     fn slide(_normal: Self::Normal<f64>) -> f64 {
         0.0
     }
-    /// Returns the normal and tangential components of the slide velocity, (n_x w, −n_y w), m/s. Subtracted from the
-    /// velocity relative to body j they give the velocity (v_n, v_t) relative to the periodic image of j.
+    /// Returns the normal and tangential components of the slide velocity w along x, (n_x w, −n_y w), m/s. Subtracted
+    /// from the velocity relative to body j they give the velocity (v_n, v_t) relative to the periodic image of j.
     #[inline(always)]
     fn slide_along(normal: Self::Normal<f64>) -> [f64; 2] {
         let [x, y] = Self::components(normal);
@@ -450,7 +450,7 @@ macro_rules! plane_model {
 
             fn kinetic_energy(body: &PlaneBody, mass: f64) -> f64 {
                 let [x, y] = body.velocity;
-                // ½Iω² = ¼mr²ω² = ½m·(s²/2)
+                // Energy of rotation with the spin s = rω: ½Iω² = ¼mr²ω² = ½m·(s²/2).
                 0.5 * mass * (x * x + y * y + 0.5 * body.spin * body.spin)
             }
 
