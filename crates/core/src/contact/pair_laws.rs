@@ -15,7 +15,7 @@ pub struct RowNumbers {
     pub rolling_friction: f64,
     /// Coefficient of restitution ρ.
     pub restitution: f64,
-    /// Cohesion force per effective mass, C₀/m_ij, m/s².
+    /// Cohesion force divided by effective mass, m/s².
     pub cohesion_per_mass: f64,
 }
 
@@ -30,7 +30,8 @@ pub(crate) struct PairLaws {
     /// Index of the material of each fixed disc. `of_boundary` lists the index for each boundary.
     of_disc: Vec<u8>,
     of_boundary: Vec<u8>,
-    /// Acceleration a in the cohesion force C₀ = Bond · m_ij · a, m/s².
+    /// Acceleration that defines the cohesion force, m/s²: the force is this acceleration times Bond number times
+    /// effective mass.
     acceleration: f64,
 }
 

@@ -5,9 +5,9 @@
 //! The unknowns are the velocities V of the bodies at the end of a substep of length h. The positions at the end are x
 //! + hV, and normals are those of the beginning. A contact is violated by the velocity c = v − w + b, with the relative
 //! velocity v of its two bodies and the velocity w of its wall. The term b = gap/h keeps a gap from closing by more
-//! than its size. With the multipliers λ⁰, the stiffness k of the penalty, the friction coefficient μ, the acceleration
-//! a that defines the cohesion force, and σ = λ_n + Bond·a·h, a contact pushes with the impulses (divided by the
-//! effective mass m_ij)
+//! than its size. With the multipliers λ⁰, the stiffness k of the penalty, the friction coefficient μ, the Bond number
+//! Bond, the acceleration a that defines the cohesion force, and σ = λ_n + Bond·a·h, a contact pushes with the impulses
+//! (divided by the effective mass m_ij)
 //!
 //! > λ_n = max(λ_n⁰ − κ_n c_n, −Bond·a·h),  λ_t = λ_t⁰ − κ_t c_t projected onto |λ_t| ≤ μσ,  κ = k h²/m_ij.
 //!
