@@ -8,7 +8,7 @@
 use super::elimination::Elimination;
 use crate::solver::kinematics::Model;
 
-/// A block of D × D numbers.
+/// A block of D × D numbers (D: degrees of freedom of a body).
 pub(crate) type Block<const D: usize> = [[f64; D]; D];
 
 /// Returns a block with these numbers on its diagonal and 0 elsewhere.
@@ -66,8 +66,9 @@ impl<const D: usize> BlockMatrix<D> {
         &mut self.diagonal[place as usize]
     }
 
-    /// Returns the two off-diagonal blocks (i, j) and (j, i) of two bodies that are neighbours. `number` is the index,
-    /// in [`Elimination::later`], of the body that is eliminated second.
+    /// Returns the two off-diagonal blocks of two neighbouring bodies i and j: the block in row i and column j, and the
+    /// block in row j and column i. `number` is the index, in [`Elimination::later`], of the body that is eliminated
+    /// second.
     #[inline(always)]
     pub(crate) fn off_diagonal_mut(
         &mut self,
@@ -78,8 +79,9 @@ impl<const D: usize> BlockMatrix<D> {
         if i_is_earlier { (upper, lower) } else { (lower, upper) }
     }
 
-    /// Replaces the matrix by its factors: L below the diagonal (the diagonal blocks of L are unit matrices), U above
-    /// the diagonal, and the inverses of U's diagonal blocks on the diagonal.
+    /// Replaces the matrix by its triangular factors: the lower factor L below the diagonal (the diagonal blocks of L
+    /// are unit matrices), the upper factor U above the diagonal, and the inverses of U's diagonal blocks on the
+    /// diagonal.
     pub(crate) fn factorise(&mut self, elimination: &Elimination) {
         let mut targets = elimination.targets.iter();
         for place in 0..self.diagonal.len() {

@@ -21,9 +21,9 @@ use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 /// method stops. It is limited by [`LEAST_PATIENCE`] and [`MOST_PATIENCE`].
 ///
 /// Both measurements are for a time step Δt of 1e-3 s. At 2,000 flowing grains (3,900 contacts) a patience of 5, 10 and
-/// 20 factorisations leaves a velocity error of 1.4e-2, 1.0e-2 and 0.8e-2 √(g d) in computing times with the ratio 1 :
-/// 2 : 3. At 138 grains (260 contacts) and Bond number 100, a patience of 20 does not solve some steps that a patience
-/// of 99 solves. Because of these unsolved steps the pile slumps.
+/// 20 factorisations leaves a velocity error of 1.4e-2, 1.0e-2 and 0.8e-2 √(g d) (gravity g, mean diameter d) in
+/// computing times with the ratio 1 : 2 : 3. At 138 grains (260 contacts) and Bond number 100, a patience of 20 does
+/// not solve some steps that a patience of 99 solves. Because of these unsolved steps the pile slumps.
 const PATIENCE_OF_CONTACTS: usize = 20_000;
 
 /// Minimum patience of Newton's method, without cohesion and with cohesion: the number of factorisations that have not
