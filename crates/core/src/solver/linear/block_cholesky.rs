@@ -39,8 +39,9 @@ pub(crate) struct SymmetricBlockMatrix<const D: usize> {
     /// Diagonal blocks in elimination order. The factorisation replaces each block by its lower triangular Cholesky
     /// factor, with the inverses of the factor's diagonal entries on the diagonal.
     diagonal: Vec<Padded<D>>,
-    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b whose bodies are neighbours. A
-    /// block has the same index as the entry for b, in the list of position a, in the vector [`Elimination::later`].
+    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b whose bodies are neighbours.
+    /// The vector [`Elimination::later`] lists the later neighbours of each position; the block has the index of the
+    /// entry b in the list of position a.
     upper: Vec<Padded<D>>,
     /// Work memory: the blocks of a supernode's rows outside the supernode, column by column.
     panel: Vec<Padded<D>>,

@@ -31,11 +31,13 @@ pub(crate) fn inertias<M: Model, const D: usize>(mass: f64) -> [f64; D] {
 pub(crate) struct BlockMatrix<const D: usize> {
     /// Diagonal blocks in elimination order. [`BlockMatrix::factorise`] inverts them.
     diagonal: Vec<Block<D>>,
-    /// Blocks below the diagonal, in row b and column a, one per pair of positions a < b whose bodies are neighbours. A
-    /// block has the same index as the entry for b, in the list of position a, in the vector [`Elimination::later`].
+    /// Blocks below the diagonal, in row b and column a, one per pair of positions a < b whose bodies are neighbours.
+    /// The vector [`Elimination::later`] lists the later neighbours of each position; the block has the index of the
+    /// entry b in the list of position a.
     lower: Vec<Block<D>>,
-    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b whose bodies are neighbours. A
-    /// block has the same index as the entry for b, in the list of position a, in the vector [`Elimination::later`].
+    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b whose bodies are neighbours.
+    /// The vector [`Elimination::later`] lists the later neighbours of each position; the block has the index of the
+    /// entry b in the list of position a.
     upper: Vec<Block<D>>,
 }
 

@@ -53,7 +53,7 @@ pub(crate) struct AdmmMemory {
     one: Directions<1>,
     two: Directions<2>,
     three: Directions<3>,
-    /// The scaled impulses with the smallest residual of the present solve.
+    /// The scaled impulses (in √J) with the smallest residual in the present solve.
     best: ScaledVector,
 }
 
@@ -64,7 +64,7 @@ impl Clone for AdmmMemory {
     }
 }
 
-/// Body velocities V and contact velocities z of one solve, and the matrix that couples them.
+/// Body velocities V and contact velocities z of one solve, m/s, and the matrix that couples them.
 #[derive(Debug, Default)]
 struct Directions<const D: usize> {
     elimination: Elimination,

@@ -1,9 +1,9 @@
 //! `auto`: chooses a method by the friction model, the stopping test and the size of the problem.
 //!
 //! Convex problems (the friction models other than Coulomb's law, and grains without friction) are solved by the
-//! interior point, which works at any size. For other problems Newton's method is tried first, or conjugate gradients
-//! if a force drives a wall. A pile at rest takes 2 factorisations in the median step, and 22 in the first step of
-//! 10,000 grains; sweeps do not solve such a pile if its cohesion is strong. A step of a flowing pile takes 12
+//! interior point method, which works at any size. For other problems Newton's method is tried first, or conjugate
+//! gradients if a force drives a wall. A pile at rest takes 2 factorisations in the median step, and 22 in the first
+//! step of 10,000 grains; sweeps do not solve such a pile if its cohesion is strong. A step of a flowing pile takes 12
 //! factorisations in the median at 138 grains and more than 100 at 2,000 grains. At 2,000 flowing grains conjugate
 //! gradients leave a smaller error at the same cost. So `auto` stops Newton's method the earlier the larger a problem
 //! is, and does not try it on a large flowing pile. With the stopping test `impulse-per-mass`, `auto` always chooses

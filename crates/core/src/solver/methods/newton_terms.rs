@@ -43,8 +43,8 @@ pub(super) fn guess<M: Model>(
     Guess::new(shifted, row.tangential_impulse - compliance * tangential_velocity, bound)
 }
 
-/// Predicts the state of a contact's rolling moment from the contact's normal velocity v_n and rolling velocity v_r
-/// (`speed`), m/s.
+/// Predicts the state of a contact's rolling moment from the contact's normal velocity and rolling velocity (`speed`),
+/// m/s.
 pub(super) fn guess_rolling<M: Model>(
     law: &ContactLaw,
     row: &Row<M>,
