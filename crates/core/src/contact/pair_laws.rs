@@ -25,7 +25,8 @@ pub struct RowNumbers {
 pub(crate) struct PairLaws {
     /// Number of materials of the world.
     count: usize,
-    /// Coefficients of the contact laws. The pair of the materials a and b is at index `count` · a + b.
+    /// Coefficients of the contact laws. The coefficients of the pair of materials with the indices a and b are at
+    /// index a · `count` + b, with the number of materials `count`.
     numbers: Vec<PairNumbers>,
     /// Index of the material of each fixed disc. `of_boundary` lists the index for each boundary.
     of_disc: Vec<u8>,

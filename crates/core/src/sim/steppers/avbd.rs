@@ -125,7 +125,8 @@ struct BlockDescent {
     speed_scale: f64,
     /// Overlap that the position correction at the end of a substep leaves, m.
     margin: f64,
-    /// Dimensionless stiffnesses (κ_n, κ_t) of each contact along normal and tangent.
+    /// Dimensionless stiffnesses of each contact along normal and tangent: stiffness times squared substep length,
+    /// divided by effective mass.
     stiffness: Vec<[f64; 2]>,
     /// The sides of all contacts, sorted by the body on which they act.
     sides: Vec<Side>,
@@ -302,8 +303,9 @@ impl BlockDescent {
     }
 }
 
-/// Impulses (λ_n, λ_t) of a contact divided by the effective mass, m/s; the violations (c_n, c_t) that cause them, m/s;
-/// and for each impulse a flag that is true if the contact law has limited the impulse.
+/// Normal and tangential impulses of a contact divided by the effective mass, m/s; the velocities by which the contact
+/// is violated along normal and tangent, m/s, which cause the impulses; and for each impulse a flag that is true if the
+/// contact law has limited the impulse.
 struct ContactPush {
     impulse: [f64; 2],
     violation: [f64; 2],

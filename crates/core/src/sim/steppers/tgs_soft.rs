@@ -137,9 +137,9 @@ fn update<M: Model>(
     }
 }
 
-/// Frequency ω/2π of the contact springs, in units of √(g/d) with gravity g and the mean diameter d: 30 Hz for discs of
-/// 1 m, as in game engines. A higher frequency makes overlaps smaller; it is limited to [`FREQUENCY_PER_SUBSTEP`] times
-/// the number of substeps per second.
+/// Frequency of the contact springs, in units of √(g/d) with gravity g and the mean diameter d: 30 Hz for discs of 1 m,
+/// as in game engines. A higher frequency makes overlaps smaller; it is limited to [`FREQUENCY_PER_SUBSTEP`] times the
+/// number of substeps per second.
 const FREQUENCY: f64 = 10.0;
 /// Largest product of the frequency ω/2π of the contact springs and the length h of a substep. With a larger value
 /// contacts are nearly rigid, and one sweep no longer transmits forces through a pile.

@@ -17,23 +17,26 @@
 //! the compressive cone a contact with p ≤ c₀ has no friction. A contact with p > c₀ is solved in a shifted cone with
 //! p − c₀ instead of p and b + c₀(W_nn, W_nt) instead of b.
 
-/// Data of one contact that its update in a sweep reads: its own block of W and quantities derived from it, friction
-/// coefficient and cohesion impulse. They are computed once before the sweeps.
+/// Data of one contact that its update in a sweep reads: its own block of the Delassus operator, quantities derived
+/// from this block, friction coefficient and cohesion impulse. They are computed once before the sweeps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LocalBlock {
-    /// Entry W_nn of the contact's own block of W: change of its normal velocity per normal impulse, 1/kg.
+    /// Entry W_nn of the Delassus operator: change of the contact's normal velocity per normal impulse of the same
+    /// contact, 1/kg.
     pub normal: f64,
-    /// Entry W_nt of the contact's own block of W: change of its normal velocity per tangential impulse, 1/kg.
+    /// Entry W_nt of the Delassus operator: change of the contact's normal velocity per tangential impulse of the same
+    /// contact, 1/kg.
     pub mixed: f64,
-    /// Entry W_tt of the contact's own block of W: change of its tangential velocity per tangential impulse, 1/kg.
+    /// Entry W_tt of the Delassus operator: change of the contact's tangential velocity per tangential impulse of the
+    /// same contact, 1/kg.
     pub tangential: f64,
     /// Three entries, kg, of the inverse of the contact's own block of the Delassus operator: normal–normal,
     /// normal–tangential and tangential–tangential.
     inverse: [f64; 3],
     /// Effective masses, kg, of slip in the direction s = −1 and s = +1: 1/(W_nn + sμW_nt), with the friction
-    /// coefficient μ and the entries W_nn and W_nt of the contact's own block of W. A mass times the closing speed is
-    /// the shifted normal impulse p. If a mass is not positive, slip in that direction would give a closing contact an
-    /// impulse p < 0, which the law forbids.
+    /// coefficient μ and the entries W_nn and W_nt of the contact's own block of the Delassus operator. A mass times
+    /// the closing speed is the shifted normal impulse p. If a mass is not positive, slip in that direction would give
+    /// a closing contact an impulse p < 0, which the law forbids.
     slip_masses: [f64; 2],
     /// Friction coefficient μ.
     pub friction: f64,

@@ -74,9 +74,9 @@ pub struct DelassusProblem {
 }
 
 impl DelassusProblem {
-    /// Creates a problem of `friction.len()` contacts with zero impulses from W (`matrix`, 1/kg). `free_velocities` is
-    /// q, the velocities without contact impulses (m/s), two entries per contact. `friction` has the friction
-    /// coefficient and `cohesion_impulses` the cohesion impulse C₀Δt (N·s) of each contact.
+    /// Creates a problem of `friction.len()` contacts with zero impulses from the Delassus operator W (`matrix`, 1/kg).
+    /// `free_velocities` is q, the velocities without contact impulses (m/s), two entries per contact. `friction` has
+    /// the friction coefficient and `cohesion_impulses` the cohesion impulse C₀Δt (N·s) of each contact.
     ///
     /// # Errors
     /// An error names a value that is not finite, out of range or not symmetric, or an array of the wrong length. Each
@@ -141,7 +141,7 @@ impl DelassusProblem {
         self.rows.is_empty()
     }
 
-    /// Returns the normal and tangential impulses (P_n, P_t) of each contact, N·s.
+    /// Returns the normal and tangential impulses of each contact, N·s, without cohesion impulses.
     pub fn impulses(&self) -> impl ExactSizeIterator<Item = [f64; 2]> {
         self.impulses
             .iter()
@@ -149,7 +149,8 @@ impl DelassusProblem {
             .map(|(impulse, row)| [impulse[0] - row.local.cohesion_impulse, impulse[1]])
     }
 
-    /// Sets the normal and tangential impulses (P_n, P_t) of each contact, N·s. They need not satisfy the contact law.
+    /// Sets the normal and tangential impulses of each contact, N·s, without cohesion impulses. They need not satisfy
+    /// the contact law.
     pub fn set_impulses(&mut self, impulses: impl IntoIterator<Item = [f64; 2]>) {
         let places = self.impulses.iter_mut().zip(&self.rows);
         for ((place, row), [normal, tangential]) in places.zip(impulses) {
@@ -157,15 +158,17 @@ impl DelassusProblem {
         }
     }
 
-    /// Returns the velocity (u_n, u_t) of each contact at the present impulses, m/s.
+    /// Returns the normal and tangential relative velocity of each contact at the present impulses, m/s.
     pub fn velocities(&self) -> impl ExactSizeIterator<Item = [f64; 2]> {
         (0..self.len()).map(|contact| self.velocity(contact))
     }
 
     /// Returns the residual of the natural map, dimensionless, defined as in [`residual`](crate::solver::residual) for
-    /// problems with bodies. The effective masses are m_n = 1/W_nn and m_t = 1/W_tt, and the velocities u and v^free
-    /// come from W and q. W_nt ≠ 0 is allowed: for any positive m_n and m_t the map is zero exactly if the law is
-    /// satisfied. If μ = 0, the tangential part of a contact does not enter the denominator.
+    /// problems with bodies. The effective masses along normal and tangent are m_n = 1/W_nn and m_t = 1/W_tt, with the
+    /// entries of the contact's own block of the Delassus operator W, and the velocities after the step and without
+    /// contact impulses come from W and q. W_nt ≠ 0 is allowed: for any positive m_n and m_t the map is zero exactly if
+    /// the law is satisfied. If the friction coefficient is 0, the tangential part of a contact does not enter the
+    /// denominator.
     pub fn residual(&self) -> f64 {
         let errors = self.rows.iter().enumerate().map(|(contact, row)| {
             row.squared_error(self.impulses[contact], self.velocity(contact), self.compressive_cone)
@@ -192,8 +195,8 @@ impl DelassusProblem {
         &self.neighbours[start..end]
     }
 
-    /// Returns the velocity (u_n, u_t), m/s, of contact number `contact` due to its free velocity and the present
-    /// impulses of the other contacts, without the effect of its own impulses.
+    /// Returns the normal and tangential velocity, m/s, of contact number `contact` due to its free velocity and the
+    /// present impulses of the other contacts, without the effect of its own impulses.
     #[inline(always)]
     fn velocity_of_others(&self, contact: usize) -> [f64; 2] {
         let mut velocity = self.rows[contact].free;

@@ -420,8 +420,8 @@ impl<M: Model> StepProblem<M> {
     }
 
     /// Calls `visit` for each row (the data of one contact) in order, with the normal and tangential relative
-    /// velocities (v_n, v_t) of the contact, m/s, that follows from the body velocities `bodies`. If the grain touches
-    /// a moving surface, v_t is relative to that surface.
+    /// velocities (v_n, v_t) of the contact, m/s, that follow from the body velocities `bodies`. If the grain touches a
+    /// moving surface, v_t is relative to that surface.
     #[inline(always)]
     pub(crate) fn for_each_velocity(
         &self,

@@ -112,9 +112,9 @@ impl<M: Model> Row<M> {
 }
 
 impl<M: Model> FixedRow<M> {
-    /// Returns the velocity (v_n, v_t) of the grain at its contact with the fixed body, m/s. v_t is relative to the
-    /// surface of the fixed body. v_n is relative to a body at rest, because the speed of a moving wall along the
-    /// normal is part of `restitution_velocity`.
+    /// Returns the normal and tangential velocity of the grain at its contact with the fixed body, m/s. The tangential
+    /// velocity is relative to the surface of the fixed body. The normal velocity is relative to a body at rest,
+    /// because the speed of a moving wall along the normal is part of `restitution_velocity`.
     #[inline(always)]
     pub fn velocity(&self, bodies: &[M::Body<f64>]) -> [f64; 2] {
         let [normal, tangential] = M::velocity(self.normal, &bodies[self.i as usize]);
@@ -123,7 +123,7 @@ impl<M: Model> FixedRow<M> {
 }
 
 impl<M: Model> PairRow<M> {
-    /// Returns the velocity (v_n, v_t) of grain i relative to grain j at the contact, m/s.
+    /// Returns the normal and tangential velocity of grain i relative to grain j at the contact, m/s.
     #[inline(always)]
     pub fn velocity(&self, bodies: &[M::Body<f64>]) -> [f64; 2] {
         M::relative_velocity(self.normal, &bodies[self.i as usize], &bodies[self.j as usize])

@@ -357,8 +357,8 @@ impl<M: Model> StepProblem<M> {
         [known.speed + along * wall.before, along * (wall.now - wall.before)]
     }
 
-    /// Scales the relative velocity (v_n, v_t) of a contact with a driven wall, m/s, for the error in the natural map;
-    /// `None` if the contact is not with a driven wall.
+    /// Scales the normal and tangential relative velocity (v_n, v_t) of a contact with a driven wall, m/s, for the
+    /// error in the natural map; `None` if the contact is not with a driven wall.
     ///
     /// A contact with a driven wall has larger compliances than a contact with a fixed wall, because the wall gives
     /// way. v_n, with its restitution term, is divided by the ratio of these compliances 1 + κ b_n², and v_t by 1 + κ
@@ -381,9 +381,9 @@ impl<M: Model> StepProblem<M> {
         Some([(normal + added) / of_normal - added, tangential / of_tangential])
     }
 
-    /// Computes the relative velocity (v_n, v_t), m/s, of a contact with a driven wall for the wall's speed without
-    /// contact impulses, and scales it like [`Self::own_part`]. The given (v_n, v_t) are relative to the wall's present
-    /// speed.
+    /// Computes the normal and tangential relative velocity, m/s, of a contact with a driven wall for the wall's speed
+    /// without contact impulses, and scales it like [`Self::own_part`]. The given velocity is relative to the wall's
+    /// present speed.
     #[inline(always)]
     pub(super) fn free_part(
         &self,
