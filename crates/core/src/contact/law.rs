@@ -9,9 +9,10 @@
 //!
 //! > 0 ≤ σ ⟂ u ≥ 0   ⇔   σ = max(σ − u, 0).
 //!
-//! C₀Δt/m_ij = Bond·a·Δt is the capture speed (m/s), with a = g unless another acceleration is given. It is the same
-//! for all contacts of a scene, unless the scene gives the cohesion for pairs of materials. In terms of σ, cohesion is
-//! only a constant pull against which the contact pushes. Without cohesion the capture speed is 0.
+//! C₀Δt/m_ij = Bond·a·Δt is the capture speed (m/s), with the Bond number Bond and the acceleration a, which is g
+//! unless another acceleration is given. It is the same for all contacts of a scene, unless the scene gives the
+//! cohesion for pairs of materials. In terms of σ, cohesion is only a constant pull against which the contact pushes.
+//! Without cohesion the capture speed is 0.
 //!
 //! Coulomb's law with the friction coefficient μ is |λ_t| ≤ μσ in the shifted cone and |λ_t| ≤ μ max(σ − capture
 //! speed, 0) in the compressive cone. Both have the form |λ_t| ≤ μ max(σ − c, 0), with the tip of the cone at c. In
@@ -51,8 +52,9 @@ impl ContactLaw {
         Self::new(self.friction, capture_speed, self.cone)
     }
 
-    /// Capture speed C₀Δt/m_ij = Bond·a·Δt, m/s: the opening speed that cohesion cancels in one step (C₀: cohesion
-    /// force, m_ij: effective mass, a: acceleration of cohesion, Δt: time step). 0 in a scene without cohesion.
+    /// Capture speed C₀Δt/m_ij = Bond·a·Δt, m/s: the opening speed that cohesion cancels in one step (Bond: Bond
+    /// number, C₀: cohesion force, m_ij: effective mass, a: acceleration of cohesion, Δt: time step). 0 in a scene
+    /// without cohesion.
     #[inline(always)]
     pub fn capture_speed(&self) -> f64 {
         self.capture_speed
@@ -64,8 +66,8 @@ impl ContactLaw {
         self.cone
     }
 
-    /// True if the whole shifted normal impulse σ (normal impulse plus cohesion) bounds friction, because the tip of
-    /// the cone is at σ = 0.
+    /// True if the friction coefficient times the shifted normal impulse (normal impulse plus cohesion) bounds
+    /// friction. The tip of the friction cone is then at a shifted normal impulse of 0.
     #[inline(always)]
     pub(crate) fn all_rubs(&self) -> bool {
         self.tip == 0.0
@@ -86,8 +88,8 @@ impl ContactLaw {
     }
 }
 
-/// Returns the cohesion force C₀ = Bond · m_ij · a, newton (Abramian & Staron 2020, eq. 10, with a = g), for an
-/// effective mass m_ij (kg) and an acceleration a (m/s²).
+/// Returns the cohesion force, newton: Bond number times effective mass (kg) times the acceleration of cohesion (m/s²).
+/// In Abramian & Staron 2020, eq. 10, this acceleration is g.
 pub(crate) fn cohesion_force(bond: f64, effective_mass: f64, acceleration: f64) -> f64 {
     bond * effective_mass * acceleration
 }

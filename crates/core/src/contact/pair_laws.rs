@@ -15,7 +15,7 @@ pub struct RowNumbers {
     pub rolling_friction: f64,
     /// Coefficient of restitution ρ.
     pub restitution: f64,
-    /// Cohesion force per effective mass, C₀/m_ij, m/s².
+    /// Cohesion force divided by effective mass, m/s².
     pub cohesion_per_mass: f64,
 }
 
@@ -25,12 +25,14 @@ pub struct RowNumbers {
 pub(crate) struct PairLaws {
     /// Number of materials of the world.
     count: usize,
-    /// Coefficients of the contact laws. The pair of the materials a and b is at index `count` · a + b.
+    /// Coefficients of the contact laws. The coefficients of the pair of materials with the indices a and b are at
+    /// index a · `count` + b, with the number of materials `count`.
     numbers: Vec<PairNumbers>,
     /// Index of the material of each fixed disc. `of_boundary` lists the index for each boundary.
     of_disc: Vec<u8>,
     of_boundary: Vec<u8>,
-    /// Acceleration a in the cohesion force C₀ = Bond · m_ij · a, m/s².
+    /// Acceleration that defines the cohesion force, m/s²: the force is this acceleration times Bond number times
+    /// effective mass.
     acceleration: f64,
 }
 

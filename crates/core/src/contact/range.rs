@@ -20,10 +20,10 @@
 //! C₀Δt/m_ij and take any amount of work, so cohesion would grow with Δt. But a bond pulls only as long as it exists.
 //! So its impulse is bounded by C₀·min(Δt, τ), with τ (s) the time at which the bond has opened by δ_c.
 //!
-//! **The time τ in a step.** Let the bond be stretched by s (m) and open with the speed v (m/s) at the beginning of
-//! the step, after the collisions of the step, which are solved first (`sim::steppers::range::bonds`). Let the forces
-//! on the two grains, other than the bond itself, change this speed evenly by J (m/s) during the step. With C =
-//! C₀Δt/m_ij, the pair opens as
+//! **The time τ in a step.** Let the bond be stretched by s (m) and open with the speed v (m/s) at the beginning of the
+//! step, after the collisions of the step, which are solved first (`sim::steppers::range::bonds`). Let the forces on
+//! the two grains, other than the bond itself, change this speed evenly by J (m/s) during the step. With C = C₀Δt/m_ij
+//! (m/s), the pair opens in the time t by
 //!
 //! > s(t) = s + v t + ½ a t²,  a = (J − C)/Δt,
 //!

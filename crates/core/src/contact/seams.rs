@@ -32,7 +32,8 @@ pub(super) struct Seam {
     pub corner: usize,
     /// The feature (half-space, segment or polygon) of another boundary on which the corner lies.
     pub other: Piece,
-    /// Index of the corner among the corners of that other feature. `None` if the corner lies on a side of it.
+    /// Index of the corner among the corners of the other feature that shares it. `None` if the corner lies on a side
+    /// of the other feature.
     pub other_corner: Option<usize>,
     /// True if the feature with this corner comes before the other feature in the list of all features. Only the last
     /// feature with a shared corner reports a contact with it.

@@ -12,10 +12,10 @@ use crate::sim::state::State;
 /// > 0 ≤ P + C₀Δt ⟂ v_n + gap/Δt ≥ 0.
 ///
 /// Gaps up to τ/2, but at most [`TOUCH_IN_DIAMETERS`](crate::contact::range::TOUCH_IN_DIAMETERS) diameters, count as
-/// rounding, and grains with such gaps touch. Without this allowance a pyramid of logs falls. So a contact pulls with C₀ until its gap is closed. Breaking a bond
-/// takes the work C₀ (τ + the distance by which the pair opens within one step). A pair of grains with the distance L
-/// between their centres that turns with the angular velocity ω opens by ½ω²Δt²·L per step (`sim::turned_bonds`). If
-/// this distance stays below τ, the next step closes the gap.
+/// rounding, and grains with such gaps touch. Without this allowance a pyramid of logs falls. A contact pulls with C₀
+/// until its gap is closed. Breaking a bond takes the work C₀ (τ + e), with the distance e by which the pair opens
+/// within one step. A pair of grains with the distance L between their centres that turns with the angular velocity ω
+/// opens by ½ω²Δt²·L per step (`sim::turned_bonds`). If this distance stays below τ, the next step closes the gap.
 pub(in crate::sim) fn touch_tolerance(state: &State, settings: &Settings) -> f64 {
     let tolerance = settings.parameters.touch_tolerance * state.world.mean_diameter;
     let is_read = settings.stepper.reads("touch-tolerance");

@@ -61,8 +61,8 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
 
     /// Number of degrees of freedom of a body.
     const DEGREES: usize;
-    /// Inertia of each degree of freedom divided by the body's mass. The coordinate of rotation is s = rω, so its entry
-    /// is ½: ½Iω² = ½(m/2)s².
+    /// Inertia of each degree of freedom divided by the body's mass. The coordinate of rotation is radius times angular
+    /// velocity, so its entry is ½ for a solid disc.
     const INERTIA_OVER_MASS: [f64; 3];
 
     /// Returns the velocity of grain `index` of a world (the grains and boundaries of a scene).
@@ -102,8 +102,8 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     fn slide(_normal: Self::Normal<f64>) -> f64 {
         0.0
     }
-    /// Returns the normal and tangential components of the slide velocity, (n_x w, −n_y w), m/s. Subtracted from the
-    /// velocity relative to body j they give the velocity (v_n, v_t) relative to the periodic image of j.
+    /// Returns the normal and tangential components of the slide velocity w along x, (n_x w, −n_y w), m/s. Subtracted
+    /// from the velocity relative to body j they give the velocity (v_n, v_t) relative to the periodic image of j.
     #[inline(always)]
     fn slide_along(normal: Self::Normal<f64>) -> [f64; 2] {
         let [x, y] = Self::components(normal);
@@ -112,22 +112,22 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     }
     /// Returns the x and y components of a stored unit normal; 0 along axes that the model does not have.
     fn components<T: Lanes>(normal: Self::Normal<T>) -> [T; 2];
-    /// Converts the velocity (v_n, v_t) relative to body j to (v_n, v_t) relative to the periodic image of body j whose
-    /// slide velocity is stored with the normal.
+    /// Converts the normal and tangential velocity relative to body j to the velocity relative to the periodic image of
+    /// body j whose slide velocity is stored with the normal.
     #[inline(always)]
     fn relative_to_image<T: Lanes>(_normal: Self::Normal<T>, velocity: [T; 2]) -> [T; 2] {
         velocity
     }
-    /// Returns the velocity (v_n, v_t) of body i relative to body j at their contact, m/s.
+    /// Returns the normal and tangential velocity of body i relative to body j at their contact, m/s.
     fn relative_velocity<T: Lanes>(
         normal: Self::Normal<T>,
         i: &Self::Body<T>,
         j: &Self::Body<T>,
     ) -> [T; 2];
-    /// Returns the velocity (v_n, v_t) of body i relative to a body at rest at their contact, m/s.
+    /// Returns the normal and tangential velocity of body i relative to a body at rest at their contact, m/s.
     fn velocity<T: Lanes>(normal: Self::Normal<T>, i: &Self::Body<T>) -> [T; 2];
-    /// Applies the impulses λ_n and λ_t of a contact, divided by its effective mass (m/s), to bodies i and j. `share`
-    /// is the mass ratio g_i = m_j/(m_i + m_j).
+    /// Applies the normal and tangential impulses of a contact, divided by its effective mass (m/s), to bodies i and j.
+    /// `share` is the mass of body j divided by the sum of both masses.
     fn push_pair<T: Lanes>(
         i: &mut Self::Body<T>,
         j: &mut Self::Body<T>,
@@ -135,8 +135,8 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
         reduced_impulse: [T; 2],
         share: T,
     );
-    /// Applies the impulses λ_n and λ_t of a contact, divided by its effective mass (m/s), to body i. The other body of
-    /// the contact is fixed.
+    /// Applies the normal and tangential impulses of a contact, divided by its effective mass (m/s), to body i. The
+    /// other body of the contact is fixed.
     fn push_single<T: Lanes>(
         i: &mut Self::Body<T>,
         normal: Self::Normal<T>,
@@ -152,8 +152,8 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     /// Sets the velocity of a body from its coordinates, m/s, one per degree of freedom of the model. Further entries
     /// of `coordinates` are ignored.
     fn set(body: &mut Self::Body<f64>, coordinates: [f64; 3]);
-    /// Returns the derivatives of a contact's (v_n, v_t) by the velocity coordinates of body i, then of body j:
-    /// v_n = Σ \[body\]\[0\]·coordinates, v_t = Σ \[body\]\[1\]·coordinates.
+    /// Returns the derivatives of a contact's normal and tangential velocities v_n and v_t by the velocity coordinates
+    /// of body i, then of body j: v_n = Σ \[body\]\[0\]·coordinates, v_t = Σ \[body\]\[1\]·coordinates.
     fn gradients(normal: Self::Normal<f64>) -> [[[f64; 3]; 2]; 2];
     /// Returns the work of gravity on a body in a step, J: the impulse of gravity, `mass` × (`free` − `before`), times
     /// the mean of the velocities `before` and `after` the step (see `solver::measure`). `free` is the velocity without
@@ -450,7 +450,7 @@ macro_rules! plane_model {
 
             fn kinetic_energy(body: &PlaneBody, mass: f64) -> f64 {
                 let [x, y] = body.velocity;
-                // ½Iω² = ¼mr²ω² = ½m·(s²/2)
+                // Energy of rotation with the spin s = rω: ½Iω² = ¼mr²ω² = ½m·(s²/2).
                 0.5 * mass * (x * x + y * y + 0.5 * body.spin * body.spin)
             }
 

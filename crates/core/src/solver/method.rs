@@ -85,11 +85,11 @@ impl MethodOrder {
     }
 }
 
-/// Text that names the contact laws that impulses satisfy at a zero of the natural map, the measure of error of all
-/// methods.
+/// Text that names the contact laws that a solution satisfies. A solution is a set of impulses at which the natural
+/// map, the measure of error of all methods, is zero.
 const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
-/// Text that names the contact laws that impulses satisfy at a fixed point of an iteration that recomputes the friction
-/// bounds from its own impulses.
+/// Text that names the contact laws that a solution satisfies, for methods that recompute the friction bounds from
+/// their own impulses in every iteration.
 const BOUND_BY_BOUND: &str = "the same, the bound of friction taken anew every iteration";
 
 /// Returns the properties of a method that supports periodic borders that shear and pairs of materials with their own

@@ -10,8 +10,9 @@ use crate::world::{Parameters, Physics, World};
 pub struct FractureWork {
     /// Work of fracture, J.
     pub joules: f64,
-    /// Work of fracture divided by m·g·d, the work that lifts one of the grains by the mean diameter d. Without
-    /// gravity, g is replaced by the acceleration that defines the cohesion force. 0 if both accelerations are 0.
+    /// Work of fracture divided by the work that lifts one of the grains (mass m) by the mean diameter d against
+    /// gravity g, m·g·d. Without gravity, g is replaced by the acceleration that defines the cohesion force. 0 if both
+    /// accelerations are 0.
     pub over_mgd: f64,
 }
 
@@ -21,8 +22,8 @@ pub(super) fn effective_mass_of_mean(world: &World) -> f64 {
     0.5 * (masses.iter().sum::<f64>() / masses.len() as f64)
 }
 
-/// Computes the work of fracture under a contact law in which a bond with the cohesion force C₀ (N) takes the work
-/// `work(C₀)` (J) to break. Returns `None` without cohesion.
+/// Computes the work of fracture. `work` returns, for the contact law, the work needed to break a bond, J, from the
+/// cohesion force of the bond, N. Returns `None` without cohesion.
 pub(super) fn fracture_work_of(
     world: &World,
     physics: Physics,

@@ -5,9 +5,9 @@
 //! The unknowns are the velocities V of the bodies at the end of a substep of length h. The positions at the end are x
 //! + hV, and normals are those of the beginning. A contact is violated by the velocity c = v − w + b, with the relative
 //! velocity v of its two bodies and the velocity w of its wall. The term b = gap/h keeps a gap from closing by more
-//! than its size. With the multipliers λ⁰, the stiffness k of the penalty, the friction coefficient μ, the acceleration
-//! a that defines the cohesion force, and σ = λ_n + Bond·a·h, a contact pushes with the impulses (divided by the
-//! effective mass m_ij)
+//! than its size. With the multipliers λ⁰, the stiffness k of the penalty, the friction coefficient μ, the Bond number
+//! Bond, the acceleration a that defines the cohesion force, and σ = λ_n + Bond·a·h, a contact pushes with the impulses
+//! (divided by the effective mass m_ij)
 //!
 //! > λ_n = max(λ_n⁰ − κ_n c_n, −Bond·a·h),  λ_t = λ_t⁰ − κ_t c_t projected onto |λ_t| ≤ μσ,  κ = k h²/m_ij.
 //!
@@ -125,7 +125,8 @@ struct BlockDescent {
     speed_scale: f64,
     /// Overlap that the position correction at the end of a substep leaves, m.
     margin: f64,
-    /// Dimensionless stiffnesses (κ_n, κ_t) of each contact along normal and tangent.
+    /// Dimensionless stiffnesses of each contact along normal and tangent: stiffness times squared substep length,
+    /// divided by effective mass.
     stiffness: Vec<[f64; 2]>,
     /// The sides of all contacts, sorted by the body on which they act.
     sides: Vec<Side>,
@@ -302,8 +303,9 @@ impl BlockDescent {
     }
 }
 
-/// Impulses (λ_n, λ_t) of a contact divided by the effective mass, m/s; the violations (c_n, c_t) that cause them, m/s;
-/// and for each impulse a flag that is true if the contact law has limited the impulse.
+/// Normal and tangential impulses of a contact divided by the effective mass, m/s; the velocities by which the contact
+/// is violated along normal and tangent, m/s, which cause the impulses; and for each impulse a flag that is true if the
+/// contact law has limited the impulse.
 struct ContactPush {
     impulse: [f64; 2],
     violation: [f64; 2],

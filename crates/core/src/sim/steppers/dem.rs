@@ -1,7 +1,8 @@
 //! Stepper `dem`: smooth discrete elements (P. A. Cundall & O. D. L. Strack, 1979), with the linear cohesive law from
 //! which S. Luding (2008) starts. A contact is a spring (stiffness k) and a dashpot (damping γ), and pulls with the
-//! cohesion force C₀ while the discs overlap. With the overlap δ = −gap, the tangential stretch ξ and the velocities
-//! v_n and v_t, the normal force N and the tangential force T are
+//! cohesion force C₀ while the discs overlap. With the overlap δ = −gap, the normal and tangential velocities v_n and
+//! v_t, the stretch ξ, stiffness k_t and damping γ_t of the tangential spring, and the largest friction force bound(N +
+//! C₀), the normal force N and the tangential force T are
 //!
 //! > N = max(k δ − γ v_n, 0) − C₀,  T = −k_t ξ − γ_t v_t with ξ̇ = v_t,  |T| ≤ bound(N + C₀).
 //!
@@ -81,8 +82,8 @@ fn velocity<M: Model>(
 /// Contact law of a substep: springs, dashpots, cohesion and friction.
 struct Elements {
     springs: SpringDashpot,
-    /// Cohesion force divided by the effective mass, m/s²: C₀/m_ij = Bond·a, with the acceleration a that defines the
-    /// cohesion.
+    /// Cohesion force divided by the effective mass, m/s²: the Bond number times the acceleration that defines the
+    /// cohesion force.
     cohesive_acceleration: f64,
     law: ContactLaw,
     substep_secs: f64,

@@ -3,8 +3,8 @@
 //!
 //! All substeps use the contacts found at the beginning of the step; no contacts are added for pairs that may meet
 //! later. Impulses λ are divided by the effective mass, and σ = λ_n + Bond·a·h is the normal impulse shifted by the
-//! cohesion of a substep of length h (a is the acceleration that defines the cohesion force). Each substep has five
-//! parts:
+//! cohesion of a substep of length h (Bond is the Bond number, and a the acceleration that defines the cohesion force).
+//! Each substep has five parts:
 //!
 //! 1. Gravity accelerates the grains.
 //! 2. The impulses of the previous substep are applied (warm start).
@@ -137,9 +137,9 @@ fn update<M: Model>(
     }
 }
 
-/// Frequency ω/2π of the contact springs, in units of √(g/d) with gravity g and the mean diameter d: 30 Hz for discs of
-/// 1 m, as in game engines. A higher frequency makes overlaps smaller; it is limited to [`FREQUENCY_PER_SUBSTEP`] times
-/// the number of substeps per second.
+/// Frequency of the contact springs, in units of √(g/d) with gravity g and the mean diameter d: 30 Hz for discs of 1 m,
+/// as in game engines. A higher frequency makes overlaps smaller; it is limited to [`FREQUENCY_PER_SUBSTEP`] times the
+/// number of substeps per second.
 const FREQUENCY: f64 = 10.0;
 /// Largest product of the frequency ω/2π of the contact springs and the length h of a substep. With a larger value
 /// contacts are nearly rigid, and one sweep no longer transmits forces through a pile.
@@ -244,11 +244,11 @@ impl Softness {
 /// Soft contacts with walls driven by a force. Such a wall is a body with a single speed V (`solver::problem::walls`).
 ///
 /// In a substep a wall with the mass M, the driving force F and the damping c moves with V_free = r (M V⁻ + hF), r =
-/// 1/(M + ch), as long as no contact pushes it. The impulses λ of a contact with a grain of mass m_i change V at once
-/// by −r m_i (b_n λ_n + b_t λ_t), with the components b_n and b_t of the wall's direction of motion along normal and
-/// tangent. So the next contact of the sweep uses the new speed. With κ = r m_i an impulse changes v_n by d_n λ_n with
-/// d_n = 1 + κb_n², and v_t by 3 d_t λ_t with d_t = 1 + κb_t²/3. So the update of a contact is divided by d_n or d_t,
-/// and its spring belongs to the effective mass m_i/d_n.
+/// 1/(M + ch), as long as no contact pushes it; V⁻ is its speed before the substep. The impulses λ of a contact with a
+/// grain of mass m_i change V at once by −r m_i (b_n λ_n + b_t λ_t), with the components b_n and b_t of the wall's
+/// direction of motion along normal and tangent. So the next contact of the sweep uses the new speed. With κ = r m_i an
+/// impulse changes v_n by d_n λ_n with d_n = 1 + κb_n², and v_t by 3 d_t λ_t with d_t = 1 + κb_t²/3. So the update of a
+/// contact is divided by d_n or d_t, and its spring belongs to the effective mass m_i/d_n.
 impl Touching {
     /// Copies the present velocity of the contact's wall into the contact, if a force drives the wall.
     #[inline(always)]

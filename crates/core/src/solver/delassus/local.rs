@@ -17,20 +17,26 @@
 //! the compressive cone a contact with p ≤ c₀ has no friction. A contact with p > c₀ is solved in a shifted cone with
 //! p − c₀ instead of p and b + c₀(W_nn, W_nt) instead of b.
 
-/// Data of one contact that its update in a sweep reads: its own block of W and quantities derived from it, friction
-/// coefficient and cohesion impulse. They are computed once before the sweeps.
+/// Data of one contact that its update in a sweep reads: its own block of the Delassus operator, quantities derived
+/// from this block, friction coefficient and cohesion impulse. They are computed once before the sweeps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LocalBlock {
-    /// Entry W_nn of the contact's own block of W, 1/kg.
+    /// Entry W_nn of the Delassus operator: change of the contact's normal velocity per normal impulse of the same
+    /// contact, 1/kg.
     pub normal: f64,
-    /// Entry W_nt of the contact's own block of W, 1/kg.
+    /// Entry W_nt of the Delassus operator: change of the contact's normal velocity per tangential impulse of the same
+    /// contact, 1/kg.
     pub mixed: f64,
-    /// Entry W_tt of the contact's own block of W, 1/kg.
+    /// Entry W_tt of the Delassus operator: change of the contact's tangential velocity per tangential impulse of the
+    /// same contact, 1/kg.
     pub tangential: f64,
-    /// Entries nn, nt and tt of W_kk⁻¹, the inverse of the contact's own block of W, kg.
+    /// Three entries, kg, of the inverse of the contact's own block of the Delassus operator: normal–normal,
+    /// normal–tangential and tangential–tangential.
     inverse: [f64; 3],
-    /// Effective masses of slip with P_t = sμp in the direction s = −1 and s = +1, 1/(W_nn + sμW_nt), kg. If a mass is
-    /// not positive, slip in that direction would give a closing contact an impulse p < 0, which the law forbids.
+    /// Effective masses, kg, of slip in the direction s = −1 and s = +1: 1/(W_nn + sμW_nt), with the friction
+    /// coefficient μ and the entries W_nn and W_nt of the contact's own block of the Delassus operator. A mass times
+    /// the closing speed is the shifted normal impulse p. If a mass is not positive, slip in that direction would give
+    /// a closing contact an impulse p < 0, which the law forbids.
     slip_masses: [f64; 2],
     /// Friction coefficient μ.
     pub friction: f64,
@@ -39,7 +45,8 @@ pub(super) struct LocalBlock {
 }
 
 impl LocalBlock {
-    /// Computes the data of a contact from its own block W_kk of W (`block`, 1/kg), which must be positive definite.
+    /// Computes the data of a contact from its own 2×2 block of the Delassus operator (`block`, 1/kg), which must be
+    /// positive definite.
     pub(super) fn new(block: [[f64; 2]; 2], friction: f64, cohesion_impulse: f64) -> Self {
         let [[normal, mixed], [_, tangential]] = block;
         let determinant = normal * tangential - mixed * mixed;
@@ -54,8 +61,9 @@ impl LocalBlock {
         }
     }
 
-    /// Returns the shifted normal impulse p = P_n + c₀ and the tangential impulse P_t (N·s) that satisfy the contact's
-    /// law. The arguments (`normal`, `tangential`) are the velocity that the contact would have at p = P_t = 0, m/s.
+    /// Returns the shifted normal impulse (normal impulse plus cohesion impulse) and the tangential impulse, N·s, that
+    /// satisfy the contact's law. The arguments (`normal`, `tangential`) are the velocity that the contact would have
+    /// if both results were 0, m/s.
     #[inline(always)]
     pub(super) fn solve(&self, [normal, tangential]: [f64; 2], compressive_cone: bool) -> [f64; 2] {
         if normal >= 0.0 {
@@ -73,8 +81,8 @@ impl LocalBlock {
         [pressure + cohesion, rubbing]
     }
 
-    /// Returns the impulses (p, P_t), N·s, of a contact that would close if its impulses were 0: the impulses of stick
-    /// if the friction cone allows them, otherwise the impulses of slip.
+    /// Returns the shifted normal and the tangential impulse, N·s, of a contact that would close if its impulses were
+    /// 0: the impulses of stick if the friction cone allows them, otherwise the impulses of slip.
     #[inline(always)]
     fn pressed(&self, free @ [normal, tangential]: [f64; 2]) -> [f64; 2] {
         let [inverse_normal, inverse_mixed, inverse_tangential] = self.inverse;
@@ -95,9 +103,10 @@ impl LocalBlock {
         if pushed_along_other < pushed_along { other } else { impulse }
     }
 
-    /// Returns the impulses (p, P_t), N·s, if the contact slips with P_t = sμp, and the velocity s·u_t, m/s. The sign s
-    /// is +1 if `positive`, otherwise −1. The impulses satisfy the law if s·u_t ≤ 0. Instead of s·u_t returns infinity
-    /// if p is not positive.
+    /// Returns the shifted normal impulse p and the tangential impulse P_t, N·s, if the contact slips with P_t = sμp
+    /// (μ: friction coefficient), and the velocity s·u_t, m/s (u_t: tangential velocity). The sign s is +1 if
+    /// `positive`, otherwise −1. The impulses satisfy the law if s·u_t ≤ 0. Instead of s·u_t returns infinity if p is
+    /// not positive.
     #[inline(always)]
     fn slip(&self, [normal, tangential]: [f64; 2], positive: bool) -> ([f64; 2], f64) {
         let side = if positive { 1.0 } else { -1.0 };
@@ -158,8 +167,8 @@ mod tests {
         assert!(kinds.iter().all(|&count| count > 50), "each kind arose: {kinds:?}");
     }
 
-    /// Checks a sliding contact that only cohesion keeps closed: it has friction in the shifted cone and none in the
-    /// compressive cone.
+    /// Checks a sliding contact that only cohesion keeps closed: it has friction in the shifted cone, which includes
+    /// the cohesion force in the friction bound, and no friction in the compressive cone, which does not.
     #[test]
     fn a_pulling_contact_rubs_in_the_shifted_cone_alone() {
         let block = LocalBlock::new([[2.0, 0.0], [0.0, 6.0]], 0.5, 1.0);

@@ -11,8 +11,8 @@ use crate::error::{self, Error, Result};
 use crate::solver::kinematics::Model;
 use crate::solver::problem::{Row, StepProblem};
 
-/// Largest allowed difference between the entries W_ij and W_ji, as a fraction of √(W_ii W_jj). It is the rounding
-/// error of a file with six digits.
+/// Largest allowed difference between the entries W_ij and W_ji of the Delassus operator W, as a fraction of √(W_ii
+/// W_jj). It is the rounding error of a file with six digits.
 const ASYMMETRY: f64 = 1e-5;
 
 /// Entries of a sparse matrix, given by row, column and value; entries at the same position are added. The entries are
@@ -56,10 +56,10 @@ pub(super) fn check_each(
     }
 }
 
-/// A 2×2 block of W: the indices [row contact, column contact], and the four entries, 1/kg.
+/// A 2×2 block of the Delassus operator: the indices [row contact, column contact], and the four entries, 1/kg.
 pub(super) type EntryBlock = ([u32; 2], [[f64; 2]; 2]);
 
-/// Checks the entries of W, and sorts them into 2×2 blocks by row contact and column contact.
+/// Checks the entries of the Delassus operator, and sorts them into 2×2 blocks by row contact and column contact.
 pub(super) fn blocks(matrix: &Triplets, contacts: usize) -> Result<Vec<EntryBlock>> {
     let Triplets { row, col, val } = matrix;
     error::check(!val.is_empty(), "W", "empty", "a matrix with an entry on each diagonal place")?;
@@ -128,8 +128,8 @@ pub(super) fn check_symmetry(blocks: &[EntryBlock], own: &[[[f64; 2]; 2]]) -> Re
     Ok(())
 }
 
-/// Maximum number of entries of W. A problem file with this number of entries has about 500 MB. Piles of 300,000 discs
-/// have fewer entries.
+/// Maximum number of entries of the Delassus operator. A problem file with this number of entries has about 500 MB.
+/// Piles of 300,000 discs have fewer entries.
 const MOST_ENTRIES: u64 = 20_000_000;
 
 /// The Delassus operator W and the free velocities q of a step's problem, with the contacts in the order of the
@@ -143,8 +143,8 @@ pub struct Assembled {
 }
 
 impl Assembled {
-    /// Computes W and q of a problem. On a line, which has no tangent, the tangential rows of W have W_tt = W_nn on the
-    /// diagonal and no other entries.
+    /// Computes the Delassus operator W and the free velocities q of a problem. On a line, which has no tangent, the
+    /// tangential rows of W have W_tt = W_nn on the diagonal and no other entries.
     ///
     /// # Errors
     /// An error names the body with the most contacts, if W would have too many entries.
@@ -188,8 +188,9 @@ impl Assembled {
     }
 }
 
-/// Checks that W has at most [`MOST_ENTRIES`] entries. The argument lists the contacts of each body. W has one block of
-/// four entries per contact, and two blocks for each pair of contacts that share a body.
+/// Checks that the Delassus operator has at most [`MOST_ENTRIES`] entries. The argument lists the contacts of each
+/// body. The operator has one block of four entries per contact, and two blocks for each pair of contacts that share a
+/// body.
 fn check_entries(contacts_of_body: &[Vec<usize>]) -> Result<()> {
     let of_body = |contacts: &Vec<usize>| 4 * (contacts.len() as u64).pow(2);
     let entries: u64 = contacts_of_body.iter().map(of_body).sum();
@@ -206,8 +207,8 @@ fn check_entries(contacts_of_body: &[Vec<usize>]) -> Result<()> {
     }
 }
 
-/// Returns the entry of W, 1/kg, in the row of one contact and axis and the column of another contact and axis (0
-/// normal, 1 tangential).
+/// Returns the entry of the Delassus operator, 1/kg, in the row of one contact and axis and the column of another
+/// contact and axis (0 normal, 1 tangential).
 fn entry<M: Model>(
     problem: &StepProblem<M>,
     [number, axis]: [usize; 2],

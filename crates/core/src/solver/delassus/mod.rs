@@ -40,8 +40,8 @@ const NEAR: f64 = 2.0;
 /// their allowed error in a sweep.
 const TEST_INTERVAL: u32 = 16;
 
-/// A 2×2 block of W outside the diagonal, 1/kg: the change of a contact's velocity per impulse of another contact,
-/// whose index is `contact`.
+/// A 2×2 block of the Delassus operator outside its diagonal, 1/kg: the change of a contact's velocity per impulse of
+/// another contact, whose index is `contact`.
 #[derive(Clone, Copy, Debug)]
 struct DelassusBlock {
     block: [[f64; 2]; 2],
@@ -52,7 +52,8 @@ struct DelassusBlock {
 #[derive(Clone, Copy, Debug)]
 struct DelassusRow {
     local: LocalBlock,
-    /// Velocity q' of the contact at the shifted impulses p = P_t = 0 of all contacts, m/s. Cohesion is part of q'.
+    /// Velocity q' of the contact if the shifted normal impulses (normal impulse plus cohesion impulse) and the
+    /// tangential impulses of all contacts are 0, m/s. Cohesion is part of q'.
     free: [f64; 2],
     /// Index of the contact's first block in `DelassusProblem::neighbours`. Its blocks end where the blocks of the next
     /// contact begin.
@@ -64,7 +65,7 @@ struct DelassusRow {
 pub struct DelassusProblem {
     rows: Vec<DelassusRow>,
     neighbours: Vec<DelassusBlock>,
-    /// Shifted normal impulse p = P_n + c₀ and tangential impulse P_t of each contact, N·s.
+    /// Shifted normal impulse (normal impulse plus cohesion impulse) and tangential impulse of each contact, N·s.
     impulses: Vec<[f64; 2]>,
     compressive_cone: bool,
     /// Denominator of the residual, ‖(m_n q_n, m_t q_t)‖₂, N·s, with the effective masses m_n and m_t and the
@@ -73,9 +74,9 @@ pub struct DelassusProblem {
 }
 
 impl DelassusProblem {
-    /// Creates a problem of `friction.len()` contacts with zero impulses from W (`matrix`, 1/kg). `free_velocities` is
-    /// q, the velocities without contact impulses (m/s), two entries per contact. `friction` has the friction
-    /// coefficient and `cohesion_impulses` the cohesion impulse C₀Δt (N·s) of each contact.
+    /// Creates a problem of `friction.len()` contacts with zero impulses from the Delassus operator W (`matrix`, 1/kg).
+    /// `free_velocities` is q, the velocities without contact impulses (m/s), two entries per contact. `friction` has
+    /// the friction coefficient and `cohesion_impulses` the cohesion impulse C₀Δt (N·s) of each contact.
     ///
     /// # Errors
     /// An error names a value that is not finite, out of range or not symmetric, or an array of the wrong length. Each
@@ -140,7 +141,7 @@ impl DelassusProblem {
         self.rows.is_empty()
     }
 
-    /// Returns the normal and tangential impulses (P_n, P_t) of each contact, N·s.
+    /// Returns the normal and tangential impulses of each contact, N·s, without cohesion impulses.
     pub fn impulses(&self) -> impl ExactSizeIterator<Item = [f64; 2]> {
         self.impulses
             .iter()
@@ -148,7 +149,8 @@ impl DelassusProblem {
             .map(|(impulse, row)| [impulse[0] - row.local.cohesion_impulse, impulse[1]])
     }
 
-    /// Sets the normal and tangential impulses (P_n, P_t) of each contact, N·s. They need not satisfy the contact law.
+    /// Sets the normal and tangential impulses of each contact, N·s, without cohesion impulses. They need not satisfy
+    /// the contact law.
     pub fn set_impulses(&mut self, impulses: impl IntoIterator<Item = [f64; 2]>) {
         let places = self.impulses.iter_mut().zip(&self.rows);
         for ((place, row), [normal, tangential]) in places.zip(impulses) {
@@ -156,15 +158,17 @@ impl DelassusProblem {
         }
     }
 
-    /// Returns the velocity (u_n, u_t) of each contact at the present impulses, m/s.
+    /// Returns the normal and tangential relative velocity of each contact at the present impulses, m/s.
     pub fn velocities(&self) -> impl ExactSizeIterator<Item = [f64; 2]> {
         (0..self.len()).map(|contact| self.velocity(contact))
     }
 
     /// Returns the residual of the natural map, dimensionless, defined as in [`residual`](crate::solver::residual) for
-    /// problems with bodies. The effective masses are m_n = 1/W_nn and m_t = 1/W_tt, and the velocities u and v^free
-    /// come from W and q. W_nt ≠ 0 is allowed: for any positive m_n and m_t the map is zero exactly if the law is
-    /// satisfied. If μ = 0, the tangential part of a contact does not enter the denominator.
+    /// problems with bodies. The effective masses along normal and tangent are m_n = 1/W_nn and m_t = 1/W_tt, with the
+    /// entries of the contact's own block of the Delassus operator W, and the velocities after the step and without
+    /// contact impulses come from W and q. W_nt ≠ 0 is allowed: for any positive m_n and m_t the map is zero exactly if
+    /// the law is satisfied. If the friction coefficient is 0, the tangential part of a contact does not enter the
+    /// denominator.
     pub fn residual(&self) -> f64 {
         let errors = self.rows.iter().enumerate().map(|(contact, row)| {
             row.squared_error(self.impulses[contact], self.velocity(contact), self.compressive_cone)
@@ -191,8 +195,8 @@ impl DelassusProblem {
         &self.neighbours[start..end]
     }
 
-    /// Returns the velocity (u_n, u_t), m/s, of contact number `contact` due to q' and the present impulses of the
-    /// other contacts, without the effect of its own impulses (p, P_t).
+    /// Returns the normal and tangential velocity, m/s, of contact number `contact` due to its free velocity and the
+    /// present impulses of the other contacts, without the effect of its own impulses.
     #[inline(always)]
     fn velocity_of_others(&self, contact: usize) -> [f64; 2] {
         let mut velocity = self.rows[contact].free;
@@ -206,14 +210,14 @@ impl DelassusProblem {
 }
 
 impl DelassusRow {
-    /// Returns the contact's squared error e_n² + e_t² in the natural map, (N·s)², at the shifted normal impulse p, the
-    /// tangential impulse `rubbing` and the velocity `u`.
+    /// Returns the sum of the contact's squared normal and tangential errors in the natural map, (N·s)², at the shifted
+    /// normal impulse p, the tangential impulse `rubbing` (N·s) and the velocity `u` (m/s).
     fn squared_error(&self, [p, rubbing]: [f64; 2], u: [f64; 2], compressive: bool) -> f64 {
         let LocalBlock { normal, tangential, friction, cohesion_impulse, .. } = self.local;
         let rubs =
             if compressive { (p - cohesion_impulse).positive_part() } else { p.positive_part() };
         let bound = friction * rubs;
-        // If an impulse has overflowed and μ = 0, the bound is NaN, and so is the error.
+        // If an impulse has overflowed and the friction coefficient is 0, the bound is NaN, and so is the error.
         if bound.is_nan() {
             return f64::NAN;
         }
@@ -223,14 +227,17 @@ impl DelassusRow {
     }
 
     /// Returns the contact's contribution (m_n q_n)² + (m_t q_t)² to the squared denominator of the residual, (N·s)²,
-    /// with the velocity q without contact impulses. The tangential term is left out if μ = 0.
+    /// with the effective masses m_n and m_t along normal and tangent, and the velocity q without contact impulses. The
+    /// tangential term is left out if the friction coefficient is 0.
     fn squared_scale(&self, q: [f64; 2]) -> f64 {
         let normal = q[0] / self.local.normal;
         let tangential = if self.local.friction > 0.0 { q[1] / self.local.tangential } else { 0.0 };
         normal * normal + tangential * tangential
     }
 
-    /// Returns √W_nn, kg^−½, the factor of the scaled variables: impulses s = √W_nn P and velocities w = u/√W_nn.
+    /// Returns the factor √W_nn of the scaled variables, kg^−½, with W_nn the change of the contact's normal velocity
+    /// per normal impulse, 1/kg. A scaled impulse is the impulse times this factor, and a scaled velocity is the
+    /// velocity divided by it.
     #[inline(always)]
     fn root(&self) -> f64 {
         self.local.normal.sqrt()
@@ -274,7 +281,8 @@ fn sweeps(problem: &mut DelassusProblem, settings: &SolverSettings) -> SolveRepo
 }
 
 impl DelassusProblem {
-    /// Performs one Gauss–Seidel sweep over all contacts. Returns Σ‖ΔP‖², the squared change of the impulses, (N·s)².
+    /// Performs one Gauss–Seidel sweep over all contacts. Returns the sum of the squared changes of all impulses,
+    /// (N·s)².
     fn pass(&mut self) -> f64 {
         let mut squared_change = 0.0;
         for contact in 0..self.len() {
@@ -337,9 +345,10 @@ impl ContactSystem for DelassusProblem {
         row.local.friction * (normal - shift).positive_part()
     }
 
-    /// Computes the weight d of each contact in the bound A ⪯ E/d, where E is the diagonal of A. By Gershgorin's
-    /// theorem the sums of the absolute entries in the rows of E^−½ A E^−½ bound this matrix, so 1/d is the larger sum
-    /// of the contact's two rows.
+    /// Computes the weight d of each contact, dimensionless, for which E/d is an upper bound of the scaled Delassus
+    /// operator A (E/d − A has no negative eigenvalue), where E is the diagonal of A. By Gershgorin's theorem the sums
+    /// of the absolute entries in the rows of E^−½ A E^−½ bound this matrix, so 1/d is the larger sum of the contact's
+    /// two rows.
     fn splitting(&self, weights: &mut Vec<f64>) {
         weights.clear();
         let diagonal = |contact: usize| {

@@ -1,17 +1,18 @@
-//! Sparse Cholesky factorisation of a symmetric positive definite matrix of D × D blocks, with one row and one column
-//! of blocks per body.
+//! Sparse Cholesky factorisation of a symmetric positive definite matrix of blocks of D × D numbers, with one row and
+//! one column of blocks per body. D is the number of degrees of freedom of a body.
 //!
-//! Rows are numbered by the bodies' positions in the elimination order. With U_ab the block in row a and column b > a,
-//! and D_k the diagonal block of position k after all earlier eliminations, the elimination of position k computes
+//! Rows are numbered by the bodies' positions in the elimination order. Let U_ab be the block in row a and column b >
+//! a, and B_k the diagonal block of position k after all earlier eliminations. The elimination of position k computes
+//! the lower triangular Cholesky factor L_k of B_k and the blocks W_kb of the final factor:
 //!
-//! > D_k = L_k L_kᵀ,  W_kb = L_k⁻¹ U_kb,  U_ab ← U_ab − W_kaᵀ W_kb for all pairs of later neighbours a ≤ b of k,
+//! > B_k = L_k L_kᵀ,  W_kb = L_k⁻¹ U_kb,  U_ab ← U_ab − W_kaᵀ W_kb for all pairs of later neighbours a ≤ b of k
 //!
-//! and finally A = WᵀW, with L_kᵀ on the diagonal of W. This takes half the work and half the memory of unsymmetric
-//! factors, and a positive definite matrix needs no pivoting. Adjacent positions with the same later neighbours form a
-//! supernode and are eliminated together: each block that they change is fetched once, and receives the changes from
-//! all of them while they are in the cache (C. C. Ashcraft, R. G. Grimes, 1989). Diagonal blocks are factorised rather
-//! than inverted: the inverse of a block that is stiff along one direction and soft along another loses half of all
-//! digits.
+//! (U_aa is the diagonal block of a). Finally the matrix A is the product WᵀW, with the blocks L_kᵀ on the diagonal of
+//! W. This takes half the work and half the memory of unsymmetric factors, and a positive definite matrix needs no
+//! pivoting. Adjacent positions with the same later neighbours form a supernode and are eliminated together: each block
+//! that they change is fetched once, and receives the changes from all of them while they are in the cache (C. C.
+//! Ashcraft, R. G. Grimes, 1989). Diagonal blocks are factorised rather than inverted: the inverse of a block that is
+//! stiff along one direction and soft along another loses half of all digits.
 
 use std::ops::Range;
 
@@ -21,7 +22,8 @@ use super::elimination::Elimination;
 /// Number of columns of a stored block: the length of a vector register, so that one operation changes a whole row.
 const WIDTH: usize = 4;
 
-/// A D × D block with additional columns of 0 after the first D columns.
+/// A block of D × D numbers (D: degrees of freedom of a body), stored with [`WIDTH`] columns. The columns after the
+/// first D are 0.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 struct Padded<const D: usize>([[f64; WIDTH]; D]);
@@ -34,11 +36,12 @@ impl<const D: usize> Padded<D> {
 /// next matrix.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SymmetricBlockMatrix<const D: usize> {
-    /// Diagonal blocks in elimination order. After the factorisation the block at position k is L_k, with the inverses
-    /// of the diagonal entries of L_k on the diagonal.
+    /// Diagonal blocks in elimination order. The factorisation replaces each block by its lower triangular Cholesky
+    /// factor, with the inverses of the factor's diagonal entries on the diagonal.
     diagonal: Vec<Padded<D>>,
-    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b whose bodies are neighbours. A
-    /// block has the same index as the entry for b, in the list of position a, in the vector [`Elimination::later`].
+    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b whose bodies are neighbours.
+    /// The vector [`Elimination::later`] lists the later neighbours of each position; the block has the index of the
+    /// entry b in the list of position a.
     upper: Vec<Padded<D>>,
     /// Work memory: the blocks of a supernode's rows outside the supernode, column by column.
     panel: Vec<Padded<D>>,
@@ -250,7 +253,8 @@ fn add<const D: usize>(to: &mut Padded<D>, block: &Block<D>) {
     }
 }
 
-/// Returns the factor L of a diagonal block D = L Lᵀ, with the inverses of L's diagonal entries on the diagonal.
+/// Returns the lower triangular Cholesky factor L of a diagonal block (the block is L Lᵀ), with the inverses of L's
+/// diagonal entries on the diagonal.
 #[inline(always)]
 fn cholesky<const D: usize>(block: &Padded<D>) -> Padded<D> {
     let mut factor = Padded::ZERO;
@@ -267,7 +271,8 @@ fn cholesky<const D: usize>(block: &Padded<D>) -> Padded<D> {
     factor
 }
 
-/// Replaces a block B by L⁻¹ B, where `factor` is L as [`cholesky`] returns it.
+/// Replaces `block` by the product L⁻¹ `block`. The lower triangular matrix L is given as `factor`, in the form that
+/// [`cholesky`] returns.
 #[inline(always)]
 fn solve_lower<const D: usize>(factor: &Padded<D>, block: &mut Padded<D>) {
     for row in 0..D {
@@ -281,7 +286,8 @@ fn solve_lower<const D: usize>(factor: &Padded<D>, block: &mut Padded<D>) {
     }
 }
 
-/// Returns the N blocks `left` − Σ aᵀb. The blocks `a` are common to all N sums; `b` has one list of blocks per sum.
+/// Returns N blocks: each block of `left` minus the sum of the products aᵀb of two lists of blocks. The list `a` is
+/// common to all N sums; `b` has one list per sum.
 #[inline(always)]
 fn less_products<const D: usize, const N: usize>(
     mut left: [Padded<D>; N],
@@ -297,7 +303,7 @@ fn less_products<const D: usize, const N: usize>(
     left
 }
 
-/// Replaces the block `from` by from − aᵀb.
+/// Subtracts from the block `from` the product aᵀb of the blocks `a` (transposed) and `b`.
 #[inline(always)]
 fn subtract_product<const D: usize>(from: &mut Padded<D>, a: &Padded<D>, b: &Padded<D>) {
     let mut result = *from;

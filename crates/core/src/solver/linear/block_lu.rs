@@ -8,7 +8,7 @@
 use super::elimination::Elimination;
 use crate::solver::kinematics::Model;
 
-/// A block of D × D numbers.
+/// A block of D × D numbers (D: degrees of freedom of a body).
 pub(crate) type Block<const D: usize> = [[f64; D]; D];
 
 /// Returns a block with these numbers on its diagonal and 0 elsewhere.
@@ -31,11 +31,13 @@ pub(crate) fn inertias<M: Model, const D: usize>(mass: f64) -> [f64; D] {
 pub(crate) struct BlockMatrix<const D: usize> {
     /// Diagonal blocks in elimination order. [`BlockMatrix::factorise`] inverts them.
     diagonal: Vec<Block<D>>,
-    /// Blocks below the diagonal, in row b and column a, one per pair of positions a < b whose bodies are neighbours. A
-    /// block has the same index as the entry for b, in the list of position a, in the vector [`Elimination::later`].
+    /// Blocks below the diagonal, in row b and column a, one per pair of positions a < b whose bodies are neighbours.
+    /// The vector [`Elimination::later`] lists the later neighbours of each position; the block has the index of the
+    /// entry b in the list of position a.
     lower: Vec<Block<D>>,
-    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b whose bodies are neighbours. A
-    /// block has the same index as the entry for b, in the list of position a, in the vector [`Elimination::later`].
+    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b whose bodies are neighbours.
+    /// The vector [`Elimination::later`] lists the later neighbours of each position; the block has the index of the
+    /// entry b in the list of position a.
     upper: Vec<Block<D>>,
 }
 
@@ -66,8 +68,9 @@ impl<const D: usize> BlockMatrix<D> {
         &mut self.diagonal[place as usize]
     }
 
-    /// Returns the two off-diagonal blocks (i, j) and (j, i) of two bodies that are neighbours. `number` is the index,
-    /// in [`Elimination::later`], of the body that is eliminated second.
+    /// Returns the two off-diagonal blocks of two neighbouring bodies i and j: the block in row i and column j, and the
+    /// block in row j and column i. `number` is the index, in [`Elimination::later`], of the body that is eliminated
+    /// second.
     #[inline(always)]
     pub(crate) fn off_diagonal_mut(
         &mut self,
@@ -78,8 +81,9 @@ impl<const D: usize> BlockMatrix<D> {
         if i_is_earlier { (upper, lower) } else { (lower, upper) }
     }
 
-    /// Replaces the matrix by its factors: L below the diagonal (the diagonal blocks of L are unit matrices), U above
-    /// the diagonal, and the inverses of U's diagonal blocks on the diagonal.
+    /// Replaces the matrix by its triangular factors: the lower factor L below the diagonal (the diagonal blocks of L
+    /// are unit matrices), the upper factor U above the diagonal, and the inverses of U's diagonal blocks on the
+    /// diagonal.
     pub(crate) fn factorise(&mut self, elimination: &Elimination) {
         let mut targets = elimination.targets.iter();
         for place in 0..self.diagonal.len() {

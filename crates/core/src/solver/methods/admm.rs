@@ -1,21 +1,27 @@
 //! Alternating directions of multipliers with a cached sparse factorisation (S. Boyd and others 2011; on contact
 //! problems V. Acary, M. Brémond, O. Huber 2018).
 //!
-//! Body velocities V and contact velocities z are separate unknowns, coupled by HV = z with the impulses as multipliers
-//! and a penalty m_ij/ε. In reduced impulses (shifted normal impulse σ, tangential impulse λ_t, `contact::law`), with u
-//! = v_n + ρ v_n^{n−1} computed from V, one iteration computes the impulses from V by the law,
+//! Body velocities V and contact velocities z, m/s, are separate unknowns. They are coupled by the condition HV = z,
+//! with H the map from V to contact velocities, the impulses as multipliers, and a penalty m_ij/ε (effective mass m_ij,
+//! kg; compliance ε, dimensionless). The impulses are the reduced impulses of `contact::law`, m/s: shifted normal
+//! impulse σ and tangential impulse λ_t. A contact has the normal n, the tangent t, the velocities v_n and v_t along
+//! them, the effective masses m_n and m_t along them, and the friction bound bound(σ). With the normal velocity plus
+//! the restitution term, u = v_n + ρ v_n^{n−1} (restitution ρ times the normal velocity before the step), computed from
+//! V, one iteration computes the impulses σ' and λ_t' by the law,
 //!
 //! > σ' = max(σ − u/ε, 0),  λ_t' = clamp(λ_t − v_t m_t/(m_n ε), ±bound(σ')),
 //!
-//! sets z = u + ε (σ' − σ), and then computes the velocities V from the impulses and the penalty for V's distance from
-//! z,
+//! sets z = v_n + ε (σ' − σ) along the normal and its counterpart along the tangent, and then computes the velocities V
+//! from the impulses and the penalty for V's distance from z,
 //!
 //! > (M + Σ m_ij/ε (n nᵀ + m_t/m_n t tᵀ)) V = M V_free + Σ m_ij [n (2σ' − σ − c + v_n/ε) + t (…)],
 //!
-//! c the capture speed. The matrix depends only on ε, so an iteration is one pass over the contacts and one solve with
-//! cached factors. At a fixed point V agrees with the impulses, and the impulses with the law: the natural map is 0. ε
-//! determines how fast the impulses and the velocities converge; it is changed if one of the two residuals ε(σ' − σ)
-//! and (z' − z)/ε is much larger than the other.
+//! with the inertias M of the bodies, their velocities V_free without contacts, and the capture speed c, m/s. The term
+//! (…) is the tangential counterpart of the term along n, without c. The matrix depends only on ε, so an iteration is
+//! one pass over the contacts and one solve with cached factors. At a fixed point V agrees with the impulses, and the
+//! impulses with the law: the natural map is 0. ε determines how fast the impulses and the velocities converge; it is
+//! changed if one of two residuals is much larger than the other: ε(σ' − σ), and (z' − z)/ε with the new z' and the
+//! previous z.
 
 use super::contact_system::{BestIterate, BodySystem, ContactSystem, ScaledVector};
 use super::stopping::{SolveReport, is_tested};
@@ -25,7 +31,7 @@ use crate::solver::linear::{BlockMatrix, Elimination};
 use crate::solver::problem::{Row, StepProblem};
 use crate::solver::settings::SolverSettings;
 
-/// Initial compliance ε, relative to the compliance of a contact; 1/ε is the penalty.
+/// Initial compliance ε, relative to the compliance 1/m_ij of a contact (effective mass m_ij); 1/ε is the penalty.
 const FIRST_COMPLIANCE: f64 = 0.03;
 /// Number of iterations between two decisions whether the compliance ε is changed, which requires a new factorisation.
 /// A factorisation costs as much as about ten iterations.
@@ -35,8 +41,9 @@ const BALANCE_INTERVAL: u32 = 24;
 const OUT_OF_BALANCE: f64 = 4.0;
 /// Maximum factor by which the compliance ε is increased or decreased in one change.
 const LARGEST_CHANGE: f64 = 10.0;
-/// Minimum and maximum compliance ε, relative to the compliance of a contact. With a smaller ε rounding errors in the
-/// factorisation matter; with a larger ε the effect of an impulse hardly spreads from contact to contact.
+/// Minimum and maximum compliance ε, relative to the compliance 1/m_ij of a contact (effective mass m_ij). With a
+/// smaller ε rounding errors in the factorisation matter; with a larger ε the effect of an impulse hardly spreads from
+/// contact to contact.
 const COMPLIANCES: [f64; 2] = [1e-5, 1.0];
 
 /// Work memory of the method for each number of degrees of freedom of a body (1 to 3). Memory that is not used
@@ -46,7 +53,7 @@ pub(crate) struct AdmmMemory {
     one: Directions<1>,
     two: Directions<2>,
     three: Directions<3>,
-    /// The scaled impulses with the smallest residual of the present solve.
+    /// The scaled impulses (in √J) with the smallest residual in the present solve.
     best: ScaledVector,
 }
 
@@ -57,7 +64,7 @@ impl Clone for AdmmMemory {
     }
 }
 
-/// Body velocities V and contact velocities z of one solve, and the matrix that couples them.
+/// Body velocities V and contact velocities z of one solve, m/s, and the matrix that couples them.
 #[derive(Debug, Default)]
 struct Directions<const D: usize> {
     elimination: Elimination,
@@ -191,7 +198,7 @@ impl<const D: usize> Directions<D> {
         self.targets = targets;
     }
 
-    /// Returns the relative velocity (v_n, v_t) at a contact that follows from the body velocities V, m/s.
+    /// Returns the normal and tangential velocity (v_n, v_t) at a contact that follow from the body velocities V, m/s.
     #[inline(always)]
     fn velocity<M: Model>(&self, row: &Row<M>, is_pair: bool) -> [f64; 2] {
         let [on_i, on_j] = M::gradients(row.normal);

@@ -1,26 +1,29 @@
 //! Accelerated projected gradients with adaptive restart (H. Mazhar, T. Heyn, D. Negrut, A. Tasora, *Using Nesterov's
 //! method to accelerate multibody dynamics with friction and contact*, 2015).
 //!
-//! With friction bounds that stay fixed during the solve (Tresca) a step's scaled impulses s minimise the convex
-//! function f(s) = ½ s·As + b·s over a box (A, b and the scaled velocities w: see `contact_system`), and Nesterov's
-//! method applies:
+//! The unknowns are the scaled impulses s of a step, √J. The scaled velocities are w(s) = A s + b, √J, with a symmetric
+//! matrix A and the velocities b without impulses (`contact_system`). With friction bounds that stay fixed during the
+//! solve (Tresca) the solution minimises the convex function f(s) = ½ s·As + b·s over a box, and Nesterov's method
+//! applies. It computes iterates x_k and extrapolated impulses y_k:
 //!
 //! > x_{k+1} = projection of y_k − D w(y_k)/L,  y_{k+1} = x_{k+1} + β_k (x_{k+1} − x_k),
 //!
-//! with D = diag(1, m_t/m_n) and β_k from Nesterov's recursion. The friction bound of *Coulomb's law* depends on the
-//! solution. The method recomputes it from the normal impulses of every iterate (an outer fixed-point iteration on the
-//! bound, with one inner step each). So a fixed point of the iteration is a zero of the natural map that is common to
-//! all methods: it solves Coulomb's law, not a convex relaxation of it. In return no theorem guarantees convergence; in
-//! practice restarts make the method converge. Solving for each bound before computing the next bound is worse: the
-//! outer iteration may oscillate with growing amplitude.
+//! with the bound L of the curvature of f (below), the factor β_k of Nesterov's recursion, and the diagonal matrix D
+//! with the entries 1 for normal and m_t/m_n for tangential impulses (m_n and m_t: effective masses along normal and
+//! tangent). The friction bound of *Coulomb's law* depends on the solution. The method recomputes it from the normal
+//! impulses of every iterate (an outer fixed-point iteration on the bound, with one inner step each). So a fixed point
+//! of the iteration is a zero of the natural map that is common to all methods: it solves Coulomb's law, not a convex
+//! relaxation of it. In return no theorem guarantees convergence; in practice restarts make the method converge.
+//! Solving for each bound before computing the next bound is worse: the outer iteration may oscillate with growing
+//! amplitude.
 //!
-//! * **L** is the largest curvature found during the solve. A step Δ is accepted if Δ·AΔ ≤ L Δ·D⁻¹Δ; otherwise it is
-//!   repeated with a larger L, up to the bound of `ContactSystem::splitting`. A variant in which L falls between
-//!   iterations, which is common, takes more iterations.
+//! * **L** is the largest curvature found during the solve. A change Δ of the impulses is accepted if Δ·AΔ ≤ L Δ·D⁻¹Δ;
+//!   otherwise the step is repeated with a larger L, up to the bound of `ContactSystem::splitting`. A variant in which
+//!   L falls between iterations, which is common, takes more iterations.
 //! * **Restart** (B. O'Donoghue, E. Candès 2015): the momentum is reset if it points away from the direction of the
 //!   projected step, (y_k − x_{k+1})·D⁻¹(x_{k+1} − x_k) > 0. The test with the gradient instead of the projected step
 //!   takes two to three times as many iterations.
-//! * w is affine, so w(y) is computed from the known w(x): one product with A per iteration.
+//! * w is affine in the impulses, so w(y) is computed from the known w(x): one product with A per iteration.
 
 use super::contact_system::{BestIterate, ContactSystem, ScaledVector, WorkVectors, projected};
 use super::stopping::{SolveReport, is_tested};
@@ -91,8 +94,10 @@ pub(super) fn solve<S: ContactSystem>(
     best.restore(system, settings.max_sweeps)
 }
 
-/// Returns the curvature Δ·AΔ / Δ·D⁻¹Δ, dimensionless, along the difference Δ of two vectors of scaled impulses x and y
-/// with the scaled velocities w_x and w_y; 0 if the vectors are the same.
+/// Returns the curvature of the minimised function, dimensionless, along the difference Δ of two vectors of scaled
+/// impulses x and y: Δ·AΔ / Δ·D⁻¹Δ, with AΔ the difference of the scaled velocities w_x and w_y, and D⁻¹ the diagonal
+/// matrix with the entries 1 (normal) and [`ContactSystem::tangential_diagonal`] (tangential). Returns 0 if x and y are
+/// the same.
 fn curvature<S: ContactSystem>(
     system: &S,
     [y, w_y]: [&ScaledVector; 2],

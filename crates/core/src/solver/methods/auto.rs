@@ -1,9 +1,9 @@
 //! `auto`: chooses a method by the friction model, the stopping test and the size of the problem.
 //!
 //! Convex problems (the friction models other than Coulomb's law, and grains without friction) are solved by the
-//! interior point, which works at any size. For other problems Newton's method is tried first, or conjugate gradients
-//! if a force drives a wall. A pile at rest takes 2 factorisations in the median step, and 22 in the first step of
-//! 10,000 grains; sweeps do not solve such a pile if its cohesion is strong. A step of a flowing pile takes 12
+//! interior point method, which works at any size. For other problems Newton's method is tried first, or conjugate
+//! gradients if a force drives a wall. A pile at rest takes 2 factorisations in the median step, and 22 in the first
+//! step of 10,000 grains; sweeps do not solve such a pile if its cohesion is strong. A step of a flowing pile takes 12
 //! factorisations in the median at 138 grains and more than 100 at 2,000 grains. At 2,000 flowing grains conjugate
 //! gradients leave a smaller error at the same cost. So `auto` stops Newton's method the earlier the larger a problem
 //! is, and does not try it on a large flowing pile. With the stopping test `impulse-per-mass`, `auto` always chooses
@@ -21,9 +21,9 @@ use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 /// method stops. It is limited by [`LEAST_PATIENCE`] and [`MOST_PATIENCE`].
 ///
 /// Both measurements are for a time step Δt of 1e-3 s. At 2,000 flowing grains (3,900 contacts) a patience of 5, 10 and
-/// 20 factorisations leaves a velocity error of 1.4e-2, 1.0e-2 and 0.8e-2 √(g d) in computing times with the ratio 1 :
-/// 2 : 3. At 138 grains (260 contacts) and Bond number 100, a patience of 20 does not solve some steps that a patience
-/// of 99 solves. Because of these unsolved steps the pile slumps.
+/// 20 factorisations leaves a velocity error of 1.4e-2, 1.0e-2 and 0.8e-2 √(g d) (gravity g, mean diameter d) in
+/// computing times with the ratio 1 : 2 : 3. At 138 grains (260 contacts) and Bond number 100, a patience of 20 does
+/// not solve some steps that a patience of 99 solves. Because of these unsolved steps the pile slumps.
 const PATIENCE_OF_CONTACTS: usize = 20_000;
 
 /// Minimum patience of Newton's method, without cohesion and with cohesion: the number of factorisations that have not

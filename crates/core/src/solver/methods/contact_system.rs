@@ -1,18 +1,22 @@
 //! A contact problem whose impulses form one vector, for methods that update all contacts at once.
 //!
-//! **Scaled variables.** With the shifted impulse p = P_n + C₀Δt (normal impulse plus cohesion force times time step)
-//! and u_n = v_n + ρ v_n^{n−1} (the normal velocity with its restitution term), a step's problem is to find impulses,
-//! and velocities that are affine in the impulses, with
+//! **Scaled variables.** A contact has the effective masses m_n and m_t along its normal and tangent, kg, the shifted
+//! normal impulse p = P_n + C₀Δt (normal impulse plus cohesion force times time step, N·s), the tangential impulse P_t,
+//! N·s, the tangential velocity v_t, m/s, and the normal velocity plus the restitution term, u_n = v_n + ρ v_n^{n−1},
+//! m/s (restitution ρ times the normal velocity before the step). A step's problem is to find impulses, and velocities
+//! that are affine in the impulses, with
 //!
-//! > p = max(0, p − m_n u_n),  P_t = clamp(P_t − m_t v_t, ±bound(p)).
+//! > p = max(0, p − m_n u_n),  P_t = clamp(P_t − m_t v_t, ±bound(p)),
 //!
-//! In the scaled impulses s = (p, P_t)/√m_n and the scaled velocities w = √m_n·(u_n, v_t) the map w(s) = A s + b has a
-//! *symmetric* positive semi-definite A (the Delassus operator multiplied by √m_n from both sides). Its diagonal is 1
-//! in every normal entry and m_n/m_t in every tangential entry. The conditions become
+//! with the largest tangential impulse bound(p) that friction allows. Impulses divided by √m_n are the scaled impulses
+//! s = (p, P_t)/√m_n, and velocities multiplied by √m_n are the scaled velocities w = √m_n·(u_n, v_t). Both have the
+//! unit √J, the root of joule. The map w(s) = A s + b, with the scaled velocities b without impulses, has a *symmetric*
+//! positive semi-definite matrix A (the Delassus operator multiplied by √m_n from both sides). Its diagonal is 1 in
+//! every normal entry and m_n/m_t in every tangential entry. The conditions become
 //!
 //! > s_n = max(0, s_n − w_n),  s_t = clamp(s_t − w_t m_t/m_n, ±bound(s_n)).
 //!
-//! Both scaled quantities have the unit √J. A method written for this trait needs no access to the bodies.
+//! A method written for this trait needs no access to the bodies.
 
 use super::pass::{sweep, tested_sweep};
 use super::stopping::{SolveReport, StallWatch};
@@ -22,8 +26,9 @@ use crate::solver::problem::{ContactRows, Row, StepProblem, is_solved, residual}
 use crate::solver::settings::{SolverSettings, StopTest};
 use crate::world::FrictionCone;
 
-/// Scaled impulses or velocities of all contacts: (normal, tangential) per contact, √J. In a vector of impulses,
-/// contacts that resist rolling have a further entry (√m_n ψ, 0) at the end, with ψ the reduced rolling impulse
+/// Scaled impulses or velocities of all contacts: two numbers (normal, tangential) per contact, in √J. The scale is the
+/// root √m_n of a contact's effective mass: impulses are divided by it, velocities multiplied. In a vector of impulses,
+/// contacts that resist rolling have a further entry (√m_n ψ, 0) at the end, with ψ the reduced rolling impulse, m/s
 /// (`problem::rolling`).
 pub type ScaledVector = Vec<[f64; 2]>;
 
@@ -43,9 +48,11 @@ impl Clone for WorkVectors {
     }
 }
 
-/// One step's contact problem in scaled variables: impulses s = (p, P_t)/√m_n, with the shifted normal impulse p, and
-/// velocities w = √m_n (u_n, v_t), √J, with w = A s + b. The argument `contact` of a function is an index below
-/// [`ContactSystem::len`].
+/// The contact problem of one step in scaled variables, which have the unit √J. The scaled impulses of a contact are
+/// its shifted normal impulse and its tangential impulse (N·s), divided by the root of its effective mass (kg). The
+/// scaled velocities are its normal velocity plus the restitution term, and its tangential velocity (m/s), multiplied
+/// by that root. The scaled velocities are an affine function of the scaled impulses, whose matrix is called A. The
+/// argument `contact` of a function is an index below [`ContactSystem::len`].
 pub trait ContactSystem {
     /// True if contacts have tangential impulses. If not, tangential entries are 0.
     const FRICTION: bool;
@@ -67,18 +74,23 @@ pub trait ContactSystem {
     /// Copies the present scaled velocities w of all contacts to `velocities`, which is cleared first.
     fn velocities(&self, velocities: &mut ScaledVector);
 
-    /// Returns m_n/m_t of a contact, the tangential entry on the diagonal of A; the normal entry is 1.
+    /// Returns the ratio m_n/m_t of a contact's effective masses along normal and tangent, dimensionless. It is the
+    /// tangential entry on the diagonal of the matrix A that maps scaled impulses to scaled velocities; the normal
+    /// entry is 1.
     fn tangential_diagonal(&self, contact: usize) -> f64;
 
     /// Returns the friction coefficient μ of a contact, dimensionless.
     fn friction(&self, contact: usize) -> f64;
 
-    /// Returns the largest scaled tangential impulse |s_t|, √J, that a scaled normal impulse s_n ≥ 0 (`normal`) allows.
+    /// Returns the largest scaled tangential impulse, in √J, that friction allows with a scaled normal impulse `normal`
+    /// ≥ 0, in √J.
     fn friction_bound(&self, contact: usize, normal: f64) -> f64;
 
-    /// Computes a weight d > 0 per contact such that A ⪯ D⁻¹, where A maps scaled impulses to scaled velocities and D
-    /// has the diagonal entries (d, d m_t/m_n). With this D a projected gradient step s − D w for all contacts at once
-    /// cannot diverge. Clears `weights` first.
+    /// Computes a dimensionless weight d > 0 per contact. Let A be the matrix that maps scaled impulses s to scaled
+    /// velocities w, and D the diagonal matrix with the entries d (normal) and d m_t/m_n (tangential) of each contact,
+    /// with the effective masses m_n and m_t along normal and tangent. The weights are such that D⁻¹ − A is positive
+    /// semi-definite. So a projected gradient step s − D w for all contacts at once cannot diverge. Clears `weights`
+    /// first.
     fn splitting(&self, weights: &mut Vec<f64>);
 
     /// Performs one Gauss–Seidel sweep from the present impulses. The resulting impulses satisfy the bounds of the
@@ -96,8 +108,8 @@ pub trait ContactSystem {
     fn is_settled(&self, before: &[[f64; 2]], settings: &SolverSettings) -> bool;
 }
 
-/// The contact problem of a step, accessed in scaled variables. Impulses change the velocities of bodies; the matrix A
-/// is never computed.
+/// The contact problem of a step, accessed in scaled variables. Impulses change the velocities of bodies; the matrix
+/// that maps impulses to contact velocities is never computed.
 #[derive(Debug)]
 pub struct BodySystem<'a, M: Model> {
     problem: &'a mut StepProblem<M>,
@@ -113,12 +125,13 @@ impl<'a, M: Model> BodySystem<'a, M> {
         Self { problem }
     }
 
-    /// Returns √m_n of a contact, kg^½, the factor between a scaled impulse s and the impulse P = √m_n s.
+    /// Returns the root √m_n of a contact's effective mass, kg^½: the factor between a scaled impulse s, √J, and the
+    /// impulse P = √m_n s, N·s.
     pub fn root_mass(&self, contact: usize) -> f64 {
         self.problem.root_masses[contact]
     }
 
-    /// Iterates over the rows (the data of the contacts), each with √m_n, kg^½.
+    /// Iterates over the rows (the data of the contacts), each with the root of the contact's effective mass, kg^½.
     fn rows(&self) -> impl Iterator<Item = (&Row<M>, &f64)> {
         self.problem.rows.iter().zip(&self.problem.root_masses)
     }
@@ -190,14 +203,19 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
         }
     }
 
-    /// Computes the weights d of the bound A ⪯ D⁻¹ by mass splitting (R. Tonge, F. Benevolenski, A. Voroshilov 2012): a
-    /// body with k contacts is cut into k parts of 1/k of its mass and inertia, one per contact. By Cauchy–Schwarz the
-    /// separate parts respond at least as much as the body does: A ⪯ D⁻¹. In the diagonal entry of a contact, 1/m_i
-    /// becomes k_i/m_i. So with the mass ratio g_i = m_ij/m_i
+    /// Computes the weights d of the diagonal matrix D with A ⪯ D⁻¹ (D⁻¹ − A is positive semi-definite), where A maps
+    /// scaled impulses to scaled velocities. The weights follow from mass splitting (R. Tonge, F. Benevolenski, A.
+    /// Voroshilov 2012): a body with k contacts is cut into k parts of 1/k of its mass and inertia, one per contact. By
+    /// Cauchy–Schwarz the separate parts respond at least as much as the body does: A ⪯ D⁻¹. In the diagonal entry of a
+    /// contact, the inverse mass 1/m_i of body i becomes k_i/m_i. So with the mass ratio g_i = m_ij/m_i (effective mass
+    /// divided by the mass of body i)
     ///
     /// > 1/d = k_i g_i + k_j (1 − g_i), or 1/d = k_i against a fixed body,
     ///
-    /// and 1/d = k_i + k κ(b_n² + b_t² m_t/m_n) against a driven wall with k contacts (κ and b: see `problem::walls`).
+    /// and 1/d = k_i + k κ(b_n² + b_t² m_t/m_n) against a driven wall with k contacts. Here κ is the ratio of the
+    /// grain's mass to the effective mass of the wall (mass plus damping coefficient times time step), b_n and b_t are
+    /// the components of the wall's direction of motion along normal and tangent (`problem::walls`), and m_n and m_t
+    /// are the effective masses along them.
     fn splitting(&self, weights: &mut Vec<f64>) {
         let ContactRows { fixed, pairs, .. } = &self.problem.rows;
         // The first entries of `weights` temporarily contain the number of contacts of each body.

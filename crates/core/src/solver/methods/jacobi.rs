@@ -3,9 +3,10 @@
 //!
 //! A grain with k contacts is cut into k parts of 1/k of its mass and inertia, one per contact. Each contact is solved
 //! exactly with its two parts; then the velocities of a grain's parts are replaced by their mean. The mean moves like
-//! the whole grain under all impulses, so parts are never stored. In scaled impulses s and velocities w, and with the
-//! inverse mass 1/(d m_n) of the split contact (D has the entries d and d m_t/m_n, `ContactSystem::splitting`), one
-//! iteration is
+//! the whole grain under all impulses, so parts are never stored. Let s be the scaled impulses and w(s) the scaled
+//! velocities, √J (`contact_system`), m_n and m_t the effective masses of a contact along normal and tangent, and 1/(d
+//! m_n) the inverse mass of the split contact, which defines the weight d. The diagonal matrix D has the entries d
+//! (normal) and d m_t/m_n (tangential) (`ContactSystem::splitting`). One iteration is
 //!
 //! > s ← projection of s − D w(s),
 //!

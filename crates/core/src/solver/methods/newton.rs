@@ -1,21 +1,26 @@
 //! Semi-smooth Newton method for the velocities of bodies, with a sparse direct factorisation.
 //!
-//! The contact law is a fixed point of projections (`contact::law`). Regularised with a compliance ε it becomes, per
-//! contact and in reduced impulses (shifted normal impulse σ and tangential impulse λ_t, m/s),
+//! The contact law is a fixed point of projections (`contact::law`). A contact has the reduced impulses σ (shifted
+//! normal) and λ_t (tangential), m/s, the velocities v_n and v_t along its normal n and tangent t, the effective masses
+//! m_n and m_t along them, and the friction coefficient μ; u = v_n + ρ v_n^{n−1} is the normal velocity plus the
+//! restitution term (restitution ρ times the normal velocity before the step). Regularised with a dimensionless
+//! compliance ε the law becomes
 //!
 //! > σ' = max(σ − u/ε, 0),  λ_t' = clamp(λ_t − v_t m_t/(m_n ε), ±μσ'),
 //!
-//! u = v_n + ρ v_n^{n−1}, with the velocities at the *end* of the Newton step. From the present impulses and velocities
-//! the method predicts the state of each contact: open, stick or slip. With a predicted state the law is linear, so
-//! impulses can be eliminated and the velocities V of the bodies remain:
+//! with the velocities at the *end* of the Newton step. From the present impulses and velocities the method predicts
+//! the state of each contact: open, stick or slip. With a predicted state the law is linear, so impulses can be
+//! eliminated and the velocities V of the bodies remain:
 //!
-//! > M (V − V_free) = Σ m_ij [ n (σ' − c) + t λ_t' ],  c the capture speed,
+//! > M (V − V_free) = Σ m_ij [ n (σ' − c) + t λ_t' ],
 //!
-//! one sparse system with a D × D block per body: masses plus contact stiffnesses m_ij/ε. A slipping contact, λ_t' =
-//! ±μσ', adds the unsymmetric term n + (±μ) t. The exact solution is a fixed point for any ε. With a small ε the method
-//! converges in few steps; with a larger ε it also converges for some problems whose predicted states keep changing. A
-//! rolling moment (`problem::rolling`) is one more clamp, ψ' = clamp(ψ − v_r/(W ε), ±μ_r σ'), with its own predicted
-//! state. After each step
+//! with the inertias M of the bodies, their velocities V_free without contacts, the effective mass m_ij of a contact
+//! and the capture speed c, m/s. This is one sparse system with a block per body, of a size equal to the body's degrees
+//! of freedom: masses plus contact stiffnesses m_ij/ε. A slipping contact, λ_t' = ±μσ', adds the unsymmetric term n +
+//! (±μ) t. The exact solution is a fixed point for any ε. With a small ε the method converges in few steps; with a
+//! larger ε it also converges for some problems whose predicted states keep changing. A rolling moment is one more
+//! clamp, ψ' = clamp(ψ − v_r/(W ε), ±μ_r σ'), with its own predicted state; ψ is the rolling impulse, v_r the rolling
+//! velocity, W its compliance and μ_r the coefficient of rolling friction (`problem::rolling`). After each step
 //!
 //! 1. the impulses are projected on the law, and the velocities are computed from them;
 //! 2. a few Gauss–Seidel sweeps correct wrong predictions;
@@ -42,13 +47,13 @@ use crate::solver::onlooker::{SolveProgress, is_ended};
 use crate::solver::problem::{StepProblem, residual};
 use crate::solver::settings::SolverSettings;
 
-/// Compliance ε of the first Newton step, relative to the compliance of a contact.
+/// Compliance ε of the first Newton step, relative to the compliance 1/m_ij of a contact (effective mass m_ij).
 const FIRST_COMPLIANCE: f64 = 1e-7;
-/// Minimum compliance ε, relative to the compliance of a contact. With a smaller ε, rounding errors in the
-/// factorisation cancel the gain.
+/// Minimum compliance ε, relative to the compliance 1/m_ij of a contact (effective mass m_ij). With a smaller ε,
+/// rounding errors in the factorisation cancel the gain.
 const SMALLEST_COMPLIANCE: f64 = 1e-7;
-/// Maximum compliance ε, relative to the compliance of a contact. With a larger ε a Newton step is no better than
-/// sweeps, so a few sweeps replace the next Newton step.
+/// Maximum compliance ε, relative to the compliance 1/m_ij of a contact (effective mass m_ij). With a larger ε a Newton
+/// step is no better than sweeps, so a few sweeps replace the next Newton step.
 const LARGEST_COMPLIANCE: f64 = 0.1;
 /// Factor by which the compliance ε is multiplied after a Newton step whose result is kept.
 const AFTER_SUCCESS: f64 = 0.2;
@@ -113,9 +118,9 @@ struct NewtonWorkspace<const D: usize> {
     /// Predicted states of the rolling moments of all contacts; empty without rolling friction.
     rolling_guesses: Vec<Guess>,
     alone: NonlinearElimination,
-    /// Impulses (σ, λ_t) of all contacts after the last step whose result was kept, m/s.
+    /// Impulses (shifted normal, tangential) of all contacts after the last step whose result was kept, m/s.
     saved: Vec<[f64; 2]>,
-    /// Impulses (σ, λ_t) of all contacts with the smallest residual so far, m/s.
+    /// Impulses (shifted normal, tangential) of all contacts with the smallest residual so far, m/s.
     best: Vec<[f64; 2]>,
 }
 

@@ -30,8 +30,8 @@ impl Guess {
     }
 }
 
-/// Predicts the state of a contact at the end of a Newton step, from its present impulses and its relative velocities
-/// (v_n, v_t), m/s.
+/// Predicts the state of a contact at the end of a Newton step, from its present impulses and its normal and tangential
+/// velocity, m/s.
 pub(super) fn guess<M: Model>(
     law: &ContactLaw,
     row: &Row<M>,
@@ -43,8 +43,8 @@ pub(super) fn guess<M: Model>(
     Guess::new(shifted, row.tangential_impulse - compliance * tangential_velocity, bound)
 }
 
-/// Predicts the state of a contact's rolling moment from the contact's normal velocity v_n and rolling velocity v_r
-/// (`speed`), m/s.
+/// Predicts the state of a contact's rolling moment from the contact's normal velocity and rolling velocity (`speed`),
+/// m/s.
 pub(super) fn guess_rolling<M: Model>(
     law: &ContactLaw,
     row: &Row<M>,
@@ -57,8 +57,9 @@ pub(super) fn guess_rolling<M: Model>(
     Guess::new(shifted, trial, rolling.bound(law, shifted))
 }
 
-/// Data of a contact's rolling moment in a Newton step: its law and impulse (`rolling`), the rolling velocity v_r
-/// (`speed`, m/s), the predicted state (`guess`), and the regularisation ε of the step (`compliance`).
+/// Data of a contact's rolling moment in a Newton step: its law and impulse (`rolling`), the rolling velocity (`speed`,
+/// m/s), the predicted state (`guess`), and the regularisation of the step (`compliance`, relative to the compliance
+/// 1/m_ij of a contact with the effective mass m_ij).
 pub(super) struct RollingTerms<'a> {
     pub rolling: &'a Rolling,
     pub speed: f64,
@@ -74,14 +75,15 @@ pub(super) struct Terms<const D: usize> {
     tangent: [f64; D],
     /// Gradient of the contact's rolling velocity v_r by the body's velocity; 0 without rolling friction.
     rolling: [f64; D],
-    /// Direction of the contact impulse that responds to v_n: the normal n, or n ± μt with the tangent t if the contact
-    /// slips, plus ±μ_r times the gradient of v_r if the rolling moment is at its bound.
+    /// Direction of the contact impulse that responds to the normal velocity: the normal n, or n ± μt if the contact
+    /// slips (tangent t, friction coefficient μ). If the rolling moment is at its bound, ±μ_r times the gradient of the
+    /// rolling velocity is added (coefficient of rolling friction μ_r).
     answer: [f64; D],
-    /// Stiffness of the contact's response to v_n, kg.
+    /// Stiffness of the contact's response to the normal velocity, kg.
     normal_stiffness: f64,
-    /// Stiffness of the contact's response to v_t, kg.
+    /// Stiffness of the contact's response to the tangential velocity, kg.
     tangential_stiffness: f64,
-    /// Stiffness of the contact's response to the rolling velocity v_r, kg.
+    /// Stiffness of the contact's response to the rolling velocity, kg.
     rolling_stiffness: f64,
     /// Right-hand side of the body's equations: the change of the contact's impulse on the body at the present
     /// velocities, kg·m/s.

@@ -1,9 +1,10 @@
 //! Non-smooth non-linear conjugate gradients (M. Silcowitz, S. Niebe, K. Erleben, *A nonsmooth nonlinear conjugate
 //! gradient method for interactive contact force problems*, 2010).
 //!
-//! A Gauss–Seidel sweep G maps impulses s to G(s), and its fixed points are solutions. If the sweep is regarded as a
-//! descent step, r = G(s) − s is a preconditioned negative gradient, and two sweeps can be combined as the
-//! Fletcher–Reeves method combines gradients:
+//! A Gauss–Seidel sweep G maps the impulses s of all contacts to G(s), and its fixed points are solutions. If the sweep
+//! is regarded as a descent step, its change of the impulses, r = G(s) − s, is a preconditioned negative gradient. Then
+//! sweep number k and the sweep before it can be combined as the Fletcher–Reeves method combines gradients, with a
+//! factor β and a search direction p:
 //!
 //! > r_k = G(s_k) − s_k,  β = ‖r_k‖²/‖r_{k−1}‖²,  s_{k+1} = G(s_k) + β p_{k−1},  p_k = r_k + β p_{k−1}.
 //!

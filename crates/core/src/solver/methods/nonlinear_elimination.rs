@@ -38,8 +38,8 @@ pub(super) struct NonlinearElimination {
     around: Vec<bool>,
     fixed: Vec<usize>,
     pairs: Vec<usize>,
-    /// Impulses (σ, λ_t) of all contacts before the elimination, m/s. They are restored if the elimination does not
-    /// reduce the residual.
+    /// Impulses (shifted normal, tangential) of all contacts before the elimination, m/s. They are restored if the
+    /// elimination does not reduce the residual.
     saved: Vec<[f64; 2]>,
 }
 

@@ -1,8 +1,10 @@
 //! Non-linear Gauss–Seidel (M. Jean, 1999): one contact after the other, each solved exactly at the velocities that
 //! result from the previous updates.
 //!
-//! For solid discs the local Delassus block is diagonal (W_nt = 0), so a contact's solution is two scalar projections
-//! (`methods::sweep`). Friction models other than Coulomb's law (`problem::friction`) have their own projections.
+//! The local Delassus block of a contact is the 2×2 matrix that maps its impulses to its velocities. For solid discs
+//! this matrix is diagonal: a normal impulse does not change the tangential velocity. So a contact's solution is two
+//! scalar projections (`methods::sweep`). Friction models other than Coulomb's law (`problem::friction`) have their own
+//! projections.
 
 use super::model_solves::solve_models;
 use super::pass::{sweep_by, sweep_of_model};

@@ -172,9 +172,9 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
     change
 }
 
-/// Solves the contact of a grain with a driven wall. Returns the change of the impulses (λ_n, λ_t) divided by the
-/// effective mass, m/s. If the wall moves obliquely to the contact's normal, a normal impulse also changes the wall's
-/// speed along the tangent, so the tangential velocity is computed after the normal update.
+/// Solves the contact of a grain with a driven wall. Returns the change of the normal and tangential impulse divided by
+/// the effective mass, m/s. If the wall moves obliquely to the contact's normal, a normal impulse also changes the
+/// wall's speed along the tangent, so the tangential velocity is computed after the normal update.
 fn solve_driven<M: Model>(
     project: impl Fn([f64; 2]) -> [f64; 2],
     row: &mut FixedRow<M>,

@@ -1,11 +1,11 @@
 //! Stopping tests of the solver's methods, and the report of a solve.
 //!
-//! **A stalled solve** must be distinguished from a solve that was stopped too early. The restitution term ρ v^{n−1}
-//! can demand velocities of wedged contacts that their neighbours do not allow. Such a problem has no solution: with
-//! any method the residual falls to some value and remains there, while impulses keep changing. In a problem that is
-//! merely slow to solve, doubling the number of sweeps clearly reduces the residual: if eight digits take 1e5 sweeps,
-//! the residual still falls by a third from 2,048 sweeps to 4,096. So each time the number of sweeps has doubled, the
-//! residual is compared with its value at half as many sweeps.
+//! **A stalled solve** must be distinguished from a solve that was stopped too early. The restitution term (restitution
+//! times the velocity before the step) can demand velocities of wedged contacts that their neighbours do not allow.
+//! Such a problem has no solution: with any method the residual falls to some value and remains there, while impulses
+//! keep changing. In a problem that is merely slow to solve, doubling the number of sweeps clearly reduces the
+//! residual: if eight digits take 1e5 sweeps, the residual still falls by a third from 2,048 sweeps to 4,096. So each
+//! time the number of sweeps has doubled, the residual is compared with its value at half as many sweeps.
 //!
 //! A stall is a property of a method: sometimes Newton's method finds a solution although Gauss–Seidel stalls. The
 //! problem has no solution only if all methods stall.
@@ -96,8 +96,8 @@ pub(in crate::solver) fn sweep_until_settled<P>(
 }
 
 /// Returns true if the stopping test is met after a sweep with the impulse change `change`. The other arguments are the
-/// quantities that the four tests need: the mean mass of the grains (kg), the sum of the squared impulses Σ P²
-/// ((N·s)²), the residual, and the velocity error.
+/// quantities that the four tests need: the mean mass of the grains (kg), the sum of the squared impulses of all
+/// contacts ((N·s)²), the residual, and the velocity error.
 pub(super) fn is_settled<P>(
     problem: &mut P,
     change: ImpulseChange,

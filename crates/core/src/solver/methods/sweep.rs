@@ -1,7 +1,9 @@
 //! The update of one contact in a Gauss–Seidel sweep, or of several contacts that share no grain.
 //!
-//! In reduced impulses (`contact::law`, `solver::kinematics`), with the shifted normal impulse σ, the tangential
-//! impulse λ_t, the relative velocities v_n and v_t of the contact and the effective masses m_n and m_t, the update is
+//! Let σ be the shifted normal impulse of the contact and λ_t its tangential impulse, both reduced impulses (impulse
+//! divided by effective mass, m/s: `contact::law`, `solver::kinematics`), v_n and v_t its normal and tangential
+//! velocity, ρ v_n^{n−1} its restitution term (restitution times normal velocity before the step), m_n and m_t its
+//! effective masses along normal and tangent, and bound(σ) the largest |λ_t| that friction allows. The update is
 //!
 //! > σ ← max(σ − (v_n + ρ v_n^{n−1}), 0),  λ_t ← clamp(λ_t − v_t · m_t/m_n, ±bound(σ)).
 //!
@@ -25,9 +27,9 @@ pub(crate) struct Local<M: Model, T: Lanes> {
 /// change per lane.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ImpulseChange<T = f64> {
-    /// Sum of the squared changes of the impulses Σ ΔP², (N·s)².
+    /// Sum of the squared changes of the contact impulses, (N·s)².
     pub squared: T,
-    /// Sum of the absolute changes of the impulses Σ |ΔP|, N·s.
+    /// Sum of the absolute changes of the contact impulses, N·s.
     pub absolute: T,
 }
 
@@ -40,8 +42,8 @@ impl ImpulseChange {
 }
 
 impl<T: Lanes> ImpulseChange<T> {
-    /// Adds the change of the impulses of one contact, if `MEASURE` is set. The change of (λ_n, λ_t) is given divided
-    /// by the effective mass `mass` (kg), m/s.
+    /// Adds the change of the impulses of one contact, if `MEASURE` is set. The changes of the normal and tangential
+    /// impulse are given divided by the effective mass `mass` (kg), m/s.
     #[inline(always)]
     pub(crate) fn add<M: Model, const MEASURE: bool>(
         &mut self,
@@ -62,16 +64,16 @@ impl<T: Lanes> ImpulseChange<T> {
 }
 
 impl<M: Model, T: Lanes> Local<M, T> {
-    /// Returns the velocities (v_n, v_t) of grains at contacts with fixed bodies, defined as in [`FixedRow::velocity`],
-    /// m/s.
+    /// Returns the normal and tangential velocities of grains at contacts with fixed bodies, defined as in
+    /// [`FixedRow::velocity`], m/s.
     #[inline(always)]
     pub(crate) fn velocity(&self, surface_speed: T, i: &M::Body<T>) -> [T; 2] {
         let [normal, tangential] = M::velocity(self.normal, i);
         [normal, tangential - surface_speed]
     }
 
-    /// Solves contacts of grains with fixed bodies: updates the impulses (σ, λ_t), m/s, and the velocities of the
-    /// grains.
+    /// Solves contacts of grains with fixed bodies: updates the impulses (shifted normal, tangential), m/s, and the
+    /// velocities of the grains. `project` projects trial impulses on the allowed impulses.
     #[inline(always)]
     pub(crate) fn solve_fixed<const MEASURE: bool>(
         &self,
@@ -86,8 +88,9 @@ impl<M: Model, T: Lanes> Local<M, T> {
         change.add::<M, MEASURE>(self.effective_mass, pushed);
     }
 
-    /// Solves contacts between grains i and j: updates the impulses (σ, λ_t), m/s, and the velocities of the grains.
-    /// `share` is the mass ratio g_i = m_ij/m_i.
+    /// Solves contacts between grains i and j: updates the impulses (shifted normal, tangential), m/s, and the
+    /// velocities of the grains. `share` is the mass ratio m_ij/m_i: effective mass divided by the mass of grain i.
+    /// `project` projects trial impulses on the allowed impulses.
     #[inline(always)]
     pub(crate) fn solve_pair<const MEASURE: bool>(
         &self,
@@ -103,8 +106,9 @@ impl<M: Model, T: Lanes> Local<M, T> {
         change.add::<M, MEASURE>(self.effective_mass, pushed);
     }
 
-    /// Updates the impulses (σ, λ_t) of contacts that have the velocities (v_n, v_t). Returns the change of (λ_n, λ_t),
-    /// m/s.
+    /// Updates the impulses (shifted normal, tangential) of contacts that have the given normal and tangential
+    /// velocities. Returns the change of the two impulses, m/s. `project` projects trial impulses on the allowed
+    /// impulses.
     #[inline(always)]
     fn update(
         &self,
@@ -164,8 +168,8 @@ impl<M: Model> PairRow<M> {
 }
 
 impl<M: Model> Row<M> {
-    /// Updates the rolling impulse of the contact, which depends on the contact's updated impulses (σ, λ_t). `share` is
-    /// the mass ratio g_i = m_ij/m_i, or `None` against a fixed body.
+    /// Updates the rolling impulse of the contact, which depends on the contact's updated normal impulse. `share` is
+    /// the mass ratio m_ij/m_i (effective mass divided by the mass of body i), or `None` against a fixed body.
     #[inline(always)]
     pub(crate) fn solve_rolling<const MEASURE: bool>(
         &self,

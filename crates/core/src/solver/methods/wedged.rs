@@ -5,10 +5,11 @@
 //! sliding, without any effect on velocities: such wedged impulses are in the null space of the problem. A warm start
 //! keeps the wedged impulses of an unsolved step. Products of these huge impulses and the rounding errors of velocities
 //! then look like an error of the solve. The path of the interior point method leads to the middle of the set of all
-//! wedged impulses. If the friction bounds are computed from these impulses, the middle moves with each solve: for
-//! three discs in a ring, whose |λ| = σ tan 30° stays within the bound μσ of the solve before, the impulses at the
-//! middle are multiplied by μ. So above a certain μ impulses would grow from step to step until rounding stops the
-//! solve.
+//! wedged impulses. If the friction bounds are computed from these impulses, the middle moves with each solve. An
+//! example is three discs in a ring, with the normal impulse σ and the tangential impulse |λ| = σ tan 30° at each
+//! contact, and a bound for |λ| of the friction coefficient μ times the σ of the solve before: the impulses at the
+//! middle are multiplied by μ in each solve. So above a certain μ impulses would grow from step to step until rounding
+//! stops the solve.
 
 use glam::DVec2;
 

@@ -1,15 +1,17 @@
 //! Friction models that replace Coulomb's law by a convex problem. Each model keeps one number per contact fixed while
 //! a step is solved: the *lagged number*, which is estimated before the solve (0 in `associated`).
 //!
-//! Let w = v_n + ρ v_n^{n−1} be the normal velocity of a contact with its restitution term, v = v_t its tangential
-//! velocity, σ its shifted normal impulse and λ_t its tangential impulse, all in m/s (reduced impulses,
-//! `contact::law`).
+//! Let v_n be the normal velocity of a contact and v_n^{n−1} its normal velocity before the step, ρ the coefficient of
+//! restitution, w = v_n + ρ v_n^{n−1}, v = v_t the tangential velocity, σ the shifted normal impulse (normal impulse
+//! plus cohesion) and λ_t the tangential impulse, all in m/s: impulses are divided by the effective mass
+//! (`contact::law`). μ is the friction coefficient, and m_n and m_t are the effective masses along normal and tangent.
 //!
 //! * `tresca`: 0 ≤ σ ⟂ w ≥ 0 and λ_t = clamp(λ_t − v m_t/m_n, ±g). The lagged number is g, Coulomb's friction bound at
 //!   an earlier σ: for the first solve of a step the σ after some sweeps under Coulomb's law, for a further solve of
 //!   the step the σ of the solve before (P. D. Panagiotopoulos, 1975, solved Coulomb's law by such problems).
-//! * `associated`: K ∋ (σ, λ_t) ⟂ (w, v) ∈ K* with K = {|λ_t| ≤ μσ} (M. Anitescu, 2006; A. Tasora and M. Anitescu,
-//!   2011). If a contact slides, w = μ|v|: the contact opens although Coulomb's law keeps it closed.
+//! * `associated`: K ∋ (σ, λ_t) ⟂ (w, v) ∈ K* with the friction cone K = {|λ_t| ≤ μσ} and its dual cone K* (M.
+//!   Anitescu, 2006; A. Tasora and M. Anitescu, 2011). If a contact slides, w = μ|v|: the contact opens although
+//!   Coulomb's law keeps it closed.
 //! * `desaxce`: like `associated`, with w + s instead of w. With s = μ|v| of the solution this would be Coulomb's law
 //!   (G. de Saxcé and Z.-Q. Feng, 1998; V. Acary and others, 2011). The lagged number is s: for the first solve from
 //!   the velocities at the beginning of the step, for a further solve from the velocities of the solve before.
@@ -49,8 +51,8 @@ pub(crate) trait FrictionProjection: Sized {
     const TAKES_DRIVES: bool = true;
 
     /// Returns the allowed shifted normal and tangential impulses (σ, λ_t), m/s, that are nearest to `trial` in the
-    /// metric diag(1, m_n/m_t). `lagged` is the contact's friction bound or opening speed, m/s, which stays fixed
-    /// during the solve; Coulomb's law ignores it.
+    /// metric diag(1, m_n/m_t), with the effective masses m_n and m_t along normal and tangent. `lagged` is the
+    /// contact's friction bound or opening speed, m/s, which stays fixed during the solve; Coulomb's law ignores it.
     fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2];
 }
 
@@ -79,9 +81,10 @@ macro_rules! with_projection {
 }
 pub(crate) use with_projection;
 
-/// Projection of Coulomb's law. `ALL_RUBS` is true if the tip of the friction cone is at 0 ([`ContactLaw::all_rubs`])
-/// and all contacts have the same law. A sweep is one chain of dependent operations. If the compiler knows that the tip
-/// of the cone is at 0, it removes two operations of the chain, which saves 11 % of the time of a run.
+/// Projection of Coulomb's law. `ALL_RUBS` is true if the tip of the friction cone is at a shifted normal impulse of 0
+/// ([`ContactLaw::all_rubs`]) and all contacts have the same law. A sweep is one chain of dependent operations. If the
+/// compiler knows that the tip of the cone is at 0, it removes two operations of the chain, which saves 11 % of the
+/// time of a run.
 pub(crate) enum CoulombFriction<const ALL_RUBS: bool> {}
 
 impl<const ALL_RUBS: bool> FrictionProjection for CoulombFriction<ALL_RUBS> {
@@ -197,7 +200,8 @@ fn bound<M: Model>(law: &ContactLaw, row: &Row<M>, _: f64) -> f64 {
     law.friction_bound(row.shifted_impulse)
 }
 
-/// Returns the opening speed s = μ|v_t| of a contact under `desaxce`, m/s, from its tangential velocity, m/s.
+/// Returns the opening speed of a contact under `desaxce`, m/s: the friction coefficient times the magnitude of the
+/// tangential velocity.
 fn opening<M: Model>(law: &ContactLaw, _: &Row<M>, tangential_velocity: f64) -> f64 {
     law.friction * tangential_velocity.abs()
 }
@@ -213,7 +217,8 @@ mod tests {
     }
 
     /// Returns half the squared distance between the impulses `point` = (σ, λ) and `trial` = (a, b) in the metric of
-    /// the projection, ½(σ − a)² + ½c(λ − b)² with c = m_n/m_t.
+    /// the projection, ½(σ − a)² + ½c(λ − b)². σ and a are normal impulses, λ and b tangential impulses, and c =
+    /// m_n/m_t is the ratio of the effective masses along normal and tangent.
     fn distance<M: Model>(point: [f64; 2], trial: [f64; 2]) -> f64 {
         let across = M::TANGENTIAL_COMPLIANCE * (point[1] - trial[1]).powi(2);
         0.5 * ((point[0] - trial[0]).powi(2) + across)

@@ -21,9 +21,9 @@ pub struct Measures {
     /// step was solved under, m/s: the root mean square over the grains with contacts, weighted by mass
     /// ([`VelocityError`](super::VelocityError)).
     pub velocity_error: f64,
-    /// Number of contacts with a normal impulse P_n > 0.
+    /// Number of contacts whose bodies push each other (normal impulse above 0).
     pub compressive_contacts: u32,
-    /// Number of contacts with a normal impulse P_n < 0.
+    /// Number of contacts whose bodies pull each other (normal impulse below 0).
     pub tensile_contacts: u32,
     /// Work of the normal contact impulses on the grains in the step, J.
     pub normal_work: f64,
@@ -96,11 +96,13 @@ pub fn worst(one: f64, other: f64) -> f64 {
 
 /// Computes residual, velocity error, contact counts and works of a problem in one pass over its contacts.
 ///
-/// Works are computed so that the energy balance closes. From v^n = v^{n−1} + M⁻¹(ΔtF + HP) (M: inertias, F: gravity,
-/// HP: contact impulses on the bodies) the kinetic energy changes by ½(v^n + v^{n−1})·(ΔtF + HP). So a contact impulse
-/// P does the work P·½(u^n + u^{n−1}), with u its relative velocity. Together with the work of gravity this closes the
-/// energy balance to rounding, however large the solver's error is. If body j is a periodic image beyond a sheared
-/// border, u is relative to the image, and P times the velocity of the image relative to j is the work of the border.
+/// Works are computed so that the energy balance closes. From v^n = v^{n−1} + M⁻¹(ΔtF + HP) (v^{n−1} and v^n:
+/// velocities of the bodies before and after the step, M: inertias, Δt: time step, F: gravity, HP: contact impulses P
+/// as impulses on the bodies) the kinetic energy changes by ½(v^n + v^{n−1})·(ΔtF + HP). So a contact impulse P does
+/// the work P·½(u^n + u^{n−1}), with u^{n−1} and u^n the relative velocities of the contact before and after the step.
+/// Together with the work of gravity this closes the energy balance to rounding, however large the solver's error is.
+/// If body j is a periodic image beyond a sheared border, these velocities are relative to the image, and P times the
+/// velocity of the image relative to j is the work of the border.
 // Without inlining, the function is compiled once per model, in this crate.
 #[inline(never)]
 pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {

@@ -400,14 +400,15 @@ impl<M: Model> StepProblem<M> {
         self.rows.law(number, &self.law)
     }
 
-    /// Returns true if friction is bounded by the whole shifted normal impulse (the tip of the friction cone is at 0)
-    /// and all contacts have the same friction coefficient.
+    /// Returns true if all contacts have the same friction coefficient, and this coefficient times the sum of normal
+    /// impulse and cohesion impulse bounds the friction impulse. This is the law of the shifted friction cone, and of a
+    /// scene without cohesion.
     pub(crate) fn has_one_simple_law(&self) -> bool {
         self.law.all_rubs() && self.rows.frictions.is_empty()
     }
 
-    /// Returns the impulses (λ_n, λ_t) of the contact in row `number`, divided by its effective mass and without the
-    /// shift by the capture speed, m/s.
+    /// Returns the normal and the tangential impulse of the contact in row `number`, divided by its effective mass,
+    /// m/s. The normal impulse does not include the cohesion impulse, which the row stores as part of it.
     #[inline(always)]
     pub fn reduced_impulse(&self, number: usize, row: &Row<M>) -> [f64; 2] {
         [row.shifted_impulse - self.capture(number), row.tangential_impulse]
@@ -418,9 +419,9 @@ impl<M: Model> StepProblem<M> {
         self.rows.iter().enumerate()
     }
 
-    /// Calls `visit` for each row (the data of one contact) in order, with the relative velocity (v_n, v_t) of the
-    /// contact, m/s, that follows from the body velocities `bodies`. If the grain touches a moving surface, v_t is
-    /// relative to that surface.
+    /// Calls `visit` for each row (the data of one contact) in order, with the normal and tangential relative
+    /// velocities (v_n, v_t) of the contact, m/s, that follow from the body velocities `bodies`. If the grain touches a
+    /// moving surface, v_t is relative to that surface.
     #[inline(always)]
     pub(crate) fn for_each_velocity(
         &self,
@@ -460,8 +461,8 @@ impl<M: Model> StepProblem<M> {
     }
 
     /// Sets the impulses of all contacts, divided by the effective masses, m/s, and recomputes the velocities.
-    /// `impulses` has (σ, λ_t) of each contact, followed by (ψ, 0) of each contact if the problem has rolling
-    /// resistance.
+    /// `impulses` has a pair for each contact: normal impulse plus cohesion impulse, and tangential impulse. If the
+    /// problem has rolling resistance, a second pair for each contact follows: the rolling impulse and 0.
     pub(crate) fn write_impulses(&mut self, impulses: impl IntoIterator<Item = [f64; 2]>) {
         let mut impulses = impulses.into_iter();
         for (row, impulse) in self.rows.iter_mut().zip(&mut impulses) {

@@ -10,17 +10,19 @@ use crate::solver::settings::FrictionModel;
 
 /// Returns the residual of a problem under Coulomb's law, dimensionless: the size of the natural map, in units of
 /// impulse. A contact's impulses satisfy its law exactly if a Gauss–Seidel update, which projects them, would not
-/// change them. So with p = P_n + C₀Δt, the normal impulse shifted by the cohesion impulse,
+/// change them. So with the normal and tangential impulses P_n and P_t (N·s), the cohesion impulse C₀Δt (cohesion force
+/// times time step) and p = P_n + C₀Δt, the normal and tangential errors e_n and e_t of a contact are
 ///
 /// > e_n = p − max(0, p − m_n (v_n + ρ v_n^{n−1})),  e_t = P_t − clamp(P_t − m_t v_t, ±bound(p)),
 ///
 /// > residual = ‖(e_n, e_t)‖₂ / ‖(m_n v_n^free, m_t v_t^free)‖₂,
 ///
-/// with v^free the relative velocity without any contact impulse, including the restitution term, and m_n and m_t the
-/// effective masses of a contact. If the denominator is 0 because no contact moves without contact impulses, the
-/// residual is 0 if the error is only rounding, and infinite otherwise. The problem stores p/m_n and P_t/m_n, so the
-/// terms of each contact are computed in m/s and weighted by m_n. Rolling moments add their own errors
-/// (`problem::rolling`).
+/// with v_n and v_t the relative velocities after the step, v_n^{n−1} the normal velocity before the step, ρ the
+/// restitution, bound(p) the largest friction impulse, v^free the relative velocity without any contact impulse,
+/// including the restitution term, and m_n and m_t the effective masses of a contact along normal and tangent. If the
+/// denominator is 0 because no contact moves without contact impulses, the residual is 0 if the error is only rounding,
+/// and infinite otherwise. The problem stores p/m_n and P_t/m_n, so the terms of each contact are computed in m/s and
+/// weighted by m_n. Rolling moments add their own errors (`problem::rolling`).
 #[inline(never)]
 pub fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
     common_map(problem).residual::<M>(problem)
@@ -75,8 +77,9 @@ pub(crate) fn natural_map<M: Model>(problem: &StepProblem<M>) -> f64 {
     natural_map_sums(problem).residual(problem)
 }
 
-/// Returns the errors (e_n, e_t) of contacts in the natural map, divided by the effective masses, m/s. The arguments
-/// are the contacts' impulses (σ, λ_t), restitution terms and relative velocities (v_n, v_t), m/s.
+/// Returns the normal and tangential errors of contacts in the natural map, divided by the effective masses, m/s. The
+/// arguments, in m/s, are the contacts' shifted normal impulses (normal impulse plus cohesion) and tangential impulses,
+/// restitution terms, and normal and tangential relative velocities.
 #[inline(always)]
 pub(crate) fn errors<M: Model, T: Lanes>(
     law: &ContactLaw,
@@ -145,8 +148,8 @@ impl Sums {
         }
     }
 
-    /// Adds a contact's errors (e_n, e_t) in the natural map, divided by the contact's effective mass, m/s, to the
-    /// squared numerator. Also adds the contact's contribution to the denominator.
+    /// Adds a contact's normal and tangential errors in the natural map, divided by the contact's effective mass, m/s,
+    /// to the squared numerator. Also adds the contact's contribution to the denominator.
     #[inline(always)]
     fn add<M: Model>(
         &mut self,
@@ -162,8 +165,8 @@ impl Sums {
         }
     }
 
-    /// Adds a contact's contribution to the squared denominator of the residual, from its relative velocity (v_n, v_t)
-    /// without contact impulses, m/s.
+    /// Adds a contact's contribution to the squared denominator of the residual, from its normal and tangential
+    /// relative velocities without contact impulses, m/s.
     #[inline(always)]
     fn add_scale<M: Model>(&mut self, row: &Row<M>, free: [f64; 2]) {
         let squared_mass = row.effective_mass * row.effective_mass;
@@ -204,8 +207,8 @@ pub(super) fn squared_rolling<M: Model>(problem: &StepProblem<M>) -> f64 {
     rolling.map(|(row, rolling)| (row.effective_mass * rolling.impulse).powi(2)).sum()
 }
 
-/// Returns the squared impulse P², (N·s)², of a contact with the impulses (λ_n, λ_t), m/s: impulses divided by the
-/// effective mass `mass`, kg.
+/// Returns the squared impulse of a contact, (N·s)², from its normal and tangential impulses divided by the effective
+/// mass, m/s, and the effective mass `mass`, kg.
 #[inline(always)]
 pub(crate) fn squared_impulse(mass: f64, [normal, tangential]: [f64; 2]) -> f64 {
     mass * mass * (normal * normal + tangential * tangential)

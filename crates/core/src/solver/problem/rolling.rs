@@ -6,8 +6,8 @@
 //! > v_r = R (ω_i − ω_j) = a_i s_i − a_j s_j,  s = rω,  a_i = R/r_i,  a_j = R/r_j = 1 − a_i,
 //!
 //! or a_i s_i − R ω_w against a fixed body that turns with ω_w; a_i is 1 against a boundary. The moment impulse MΔt
-//! acts on i, and its opposite on j. The reduced rolling impulse ψ = MΔt/(R m_ij), in m/s, obeys the law of Coulomb
-//! friction,
+//! acts on i, and its opposite on j. With the effective mass m_ij, the reduced rolling impulse ψ = MΔt/(R m_ij), in
+//! m/s, obeys the law of Coulomb friction,
 //!
 //! > |ψ| ≤ μ_r σ',  ψ = −μ_r σ' sign(v_r) unless v_r = 0,
 //!
@@ -16,7 +16,8 @@
 //! otherwise. J. Ai, J.-F. Chen, J. M. Rotter and J. Y. Ooi (2011) call this a directional constant torque; in this
 //! program the torque also acts at v_r = 0.
 //!
-//! **Response.** With I = ½mr² and the mass ratio g_i as in `solver::kinematics`, MΔt = R m_ij ψ changes the spins by
+//! **Response.** With the moment of inertia I = ½mr² of a disc and the mass ratio g_i = m_ij/m_i
+//! (`solver::kinematics`), MΔt = R m_ij ψ changes the spins by
 //!
 //! > Δs_i = r_i MΔt/I_i = 2 g_i a_i ψ,  Δs_j = −2 (1 − g_i) a_j ψ,  Δv_r = W ψ,
 //! > W = 2 (g_i a_i² + (1 − g_i) a_j²), or 2 a_i² against a fixed body.
@@ -32,37 +33,38 @@ use crate::solver::kinematics::Model;
 /// Rolling resistance of a contact: a moment against the relative spin of its two bodies.
 #[derive(Clone, Copy, Debug)]
 pub struct Rolling {
-    /// Reduced rolling impulse ψ = MΔt/(R m_ij), with the rolling moment M, m/s.
+    /// Reduced rolling impulse ψ, m/s: rolling moment times time step, divided by reduced radius and effective mass.
     pub impulse: f64,
     /// Coefficient of rolling friction μ_r.
     pub friction: f64,
-    /// Reduced radius R of the contact, m: 1/R = 1/r_i + 1/r_j.
+    /// Reduced radius R of the contact, m: 1/R = 1/r_i + 1/r_j, with the radii r_i and r_j of the two bodies.
     pub radius: f64,
     /// Ratio a_i = R/r_i of the reduced radius to the radius of body i.
     pub lever: f64,
-    /// Compliance W = ∂v_r/∂ψ: change of the rolling velocity per reduced rolling impulse.
+    /// Compliance W, dimensionless: change of the rolling velocity (m/s) per reduced rolling impulse (m/s).
     pub compliance: f64,
     /// Reduced radius R times the angular velocity of a body that is not a grain, m/s; 0 at a contact between grains.
     pub surface_speed: f64,
 }
 
 impl Rolling {
-    /// Returns the largest rolling impulse |ψ| = MΔt/(R m_ij), m/s, that a shifted normal impulse σ (m/s) allows.
+    /// Returns the largest reduced rolling impulse, m/s, that a shifted normal impulse (normal impulse plus cohesion,
+    /// m/s) allows.
     #[inline(always)]
     pub(crate) fn bound(&self, law: &ContactLaw, shifted_impulse: f64) -> f64 {
         self.friction * law::signorini(law.rubbing(shifted_impulse))
     }
 
-    /// Returns the rolling impulse ψ = MΔt/(R m_ij), m/s, that satisfies the law of rolling resistance if the rolling
-    /// velocity v_r is now `velocity`, m/s.
+    /// Returns the reduced rolling impulse, m/s, that satisfies the law of rolling resistance if the rolling velocity
+    /// v_r is now `velocity`, m/s.
     #[inline(always)]
     pub(crate) fn solved(&self, law: &ContactLaw, shifted_impulse: f64, velocity: f64) -> f64 {
         let trial = self.impulse - velocity / self.compliance;
         law::coulomb(trial, self.bound(law, shifted_impulse))
     }
 
-    /// Returns the error of the rolling impulse ψ = MΔt/(R m_ij) in the natural map, m/s: the change that an update by
-    /// the law would make to ψ.
+    /// Returns the error of the reduced rolling impulse in the natural map, m/s: the change that an update by the law
+    /// would make to this impulse.
     #[inline(always)]
     pub(crate) fn error(&self, law: &ContactLaw, shifted_impulse: f64, velocity: f64) -> f64 {
         self.impulse - self.solved(law, shifted_impulse, velocity)
@@ -81,20 +83,22 @@ impl Rolling {
         [0.0, 0.0, if on_j { self.lever - 1.0 } else { self.lever }]
     }
 
-    /// Applies the rolling impulse ψ = MΔt/(R m_ij), m/s, to body i. `share` is the mass ratio g_i = m_ij/m_i.
+    /// Applies the reduced rolling impulse, m/s, to body i. `share` is the effective mass of the contact divided by the
+    /// mass of body i.
     #[inline(always)]
     pub(crate) fn turn_i<M: Model>(&self, i: &mut M::Body<f64>, share: f64, impulse: f64) {
         turn::<M>(i, 2.0 * share * self.lever * impulse);
     }
 
-    /// Applies the rolling impulse ψ = MΔt/(R m_ij), m/s, to body j. `share` is the mass ratio g_i = m_ij/m_i.
+    /// Applies the reduced rolling impulse, m/s, to body j. `share` is the effective mass of the contact divided by the
+    /// mass of body i.
     #[inline(always)]
     pub(crate) fn turn_j<M: Model>(&self, j: &mut M::Body<f64>, share: f64, impulse: f64) {
         turn::<M>(j, -2.0 * (1.0 - share) * (1.0 - self.lever) * impulse);
     }
 }
 
-/// Adds `change`, m/s, to the spin s = rω of a body.
+/// Adds `change`, m/s, to the spin of a body (radius times angular velocity).
 #[inline(always)]
 fn turn<M: Model>(body: &mut M::Body<f64>, change: f64) {
     let [x, y, spin] = M::coordinates(body);

@@ -42,13 +42,14 @@ pub struct Row<M: Model> {
     pub j: u32,
     /// Unit normal n of the contact, from body j (or the fixed body) to grain i.
     pub normal: M::Normal<f64>,
-    /// The term that the contact law adds to v_n, m/s: ρ v_n^{n−1} minus the speed of a moving wall along n
-    /// (`problem::walls`). ρ v_n^{n−1} is replaced by 0 if the bodies approach each other more slowly than the
-    /// threshold of restitution.
+    /// The term that the contact law adds to the normal velocity, m/s: the restitution term minus the speed of a moving
+    /// wall along the normal (`problem::walls`). The restitution term is the coefficient of restitution times the
+    /// normal velocity at the beginning of the step; it is replaced by 0 if the bodies approach each other more slowly
+    /// than the threshold of restitution.
     pub restitution_velocity: f64,
-    /// Shifted normal impulse σ of the contact, m/s: λ_n plus the capture speed.
+    /// Shifted normal impulse σ of the contact, m/s: normal impulse divided by effective mass, plus the capture speed.
     pub shifted_impulse: f64,
-    /// Tangential impulse λ_t of the contact, m/s.
+    /// Tangential impulse λ_t of the contact, divided by the effective mass, m/s.
     pub tangential_impulse: f64,
     /// Effective mass m_ij of the contact, kg.
     pub effective_mass: f64,
@@ -73,7 +74,8 @@ pub struct FixedRow<M: Model> {
 pub struct PairRow<M: Model> {
     /// The data that contacts with fixed bodies and contacts between grains have in common.
     pub row: Row<M>,
-    /// Mass ratio g_i = m_ij/m_i. An impulse P changes the velocity of grain i by g_i P/m_ij.
+    /// Mass ratio g_i: effective mass of the contact divided by the mass of grain i. A reduced impulse (m/s) times g_i
+    /// is the change of the velocity of grain i.
     pub share: f64,
 }
 
@@ -101,7 +103,8 @@ is_a_row!(FixedRow);
 is_a_row!(PairRow);
 
 impl<M: Model> Row<M> {
-    /// Returns the shifted normal impulse σ and the tangential impulse λ_t, m/s.
+    /// Returns the shifted normal impulse (normal impulse plus cohesion) and the tangential impulse, both divided by
+    /// the effective mass, m/s.
     #[inline(always)]
     pub fn impulse(&self) -> [f64; 2] {
         [self.shifted_impulse, self.tangential_impulse]
@@ -109,9 +112,9 @@ impl<M: Model> Row<M> {
 }
 
 impl<M: Model> FixedRow<M> {
-    /// Returns the velocity (v_n, v_t) of the grain at its contact with the fixed body, m/s. v_t is relative to the
-    /// surface of the fixed body. v_n is relative to a body at rest, because the speed of a moving wall along the
-    /// normal is part of `restitution_velocity`.
+    /// Returns the normal and tangential velocity of the grain at its contact with the fixed body, m/s. The tangential
+    /// velocity is relative to the surface of the fixed body. The normal velocity is relative to a body at rest,
+    /// because the speed of a moving wall along the normal is part of `restitution_velocity`.
     #[inline(always)]
     pub fn velocity(&self, bodies: &[M::Body<f64>]) -> [f64; 2] {
         let [normal, tangential] = M::velocity(self.normal, &bodies[self.i as usize]);
@@ -120,7 +123,7 @@ impl<M: Model> FixedRow<M> {
 }
 
 impl<M: Model> PairRow<M> {
-    /// Returns the velocity (v_n, v_t) of grain i relative to grain j at the contact, m/s.
+    /// Returns the normal and tangential velocity of grain i relative to grain j at the contact, m/s.
     #[inline(always)]
     pub fn velocity(&self, bodies: &[M::Body<f64>]) -> [f64; 2] {
         M::relative_velocity(self.normal, &bodies[self.i as usize], &bodies[self.j as usize])
@@ -204,7 +207,8 @@ impl<M: Model> ContactRows<M> {
         }
     }
 
-    /// Returns the mass ratio g_i = m_ij/m_i of the contact in row `number`; 1 if the contact is with a fixed body.
+    /// Returns the effective mass of the contact in row `number` divided by the mass of its grain i; 1 if the contact
+    /// is with a fixed body.
     #[inline(always)]
     pub(crate) fn share(&self, number: usize) -> f64 {
         number.checked_sub(self.fixed.len()).map_or(1.0, |number| self.pairs[number].share)
@@ -253,8 +257,8 @@ impl<M: Model> ContactRows<M> {
         self.contacts.push(number as u32);
     }
 
-    /// Copies the impulses (σ, λ_t) of all contacts, m/s, then a pair (ψ, 0) per contact if the problem has rolling
-    /// resistance, with ψ the reduced rolling impulse. Clears `impulses` first.
+    /// Copies the shifted normal and the tangential impulses of all contacts, m/s, then a pair (ψ, 0) per contact if
+    /// the problem has rolling resistance, with ψ the reduced rolling impulse, m/s. Clears `impulses` first.
     pub(crate) fn read_impulses(&self, impulses: &mut Vec<[f64; 2]>) {
         impulses.clear();
         impulses.extend(self.iter().map(Row::impulse));

@@ -16,10 +16,10 @@ use crate::solver::settings::{SolverSettings, StopTest};
 ///
 /// > |e_k| ≤ m_k Σ_l |W_kl ΔP_l|,  l the later contacts of the bodies of k.
 ///
-/// No m_k/m_i is above 1, so ‖e‖ ≤ C‖ΔP‖. Among equal discs, each with at most six contacts, the row and column sums
-/// give a C of at most 7.1. In runs of all built-in scenes except the pile, ‖e‖ after a sweep was 0.14 ‖ΔP‖ in the
-/// median and 0.85 ‖ΔP‖ at most. Impulses that stop changing far from a solution, because nothing moves or because the
-/// method takes small steps, have larger errors.
+/// No m_k is above the mass of a grain of contact k, so the norms obey ‖e‖ ≤ C‖ΔP‖ with a constant C. Among equal
+/// discs, each with at most six contacts, the row and column sums give a C of at most 7.1. In runs of all built-in
+/// scenes except the pile, ‖e‖ after a sweep was 0.14 ‖ΔP‖ in the median and 0.85 ‖ΔP‖ at most. Impulses that stop
+/// changing far from a solution, because nothing moves or because the method takes small steps, have larger errors.
 pub(crate) fn is_solved<M: Model>(problem: &StepProblem<M>, settings: &SolverSettings) -> bool {
     let tolerance = settings.tolerance;
     if settings.stop == StopTest::VelocityError {

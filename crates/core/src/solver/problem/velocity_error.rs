@@ -3,15 +3,16 @@
 //! **The duality gap.** Let p be allowed impulses and V the velocities of the bodies that they cause. H maps velocities
 //! of bodies to velocities w (normal, with restitution term) and v (tangential) of contacts, as in `problem::friction`;
 //! σ and λ are the shifted normal and the tangential impulse of a contact. Let z ≥ 0 be the shortfall of w, the least
-//! value with w + z ≥ 0 within friction bounds g, or w + s + z ≥ μ|v| on the cone. V solves the dual of a problem in
-//! which z is added to w. The two energies of that problem differ by
+//! value with w + z ≥ 0 for a friction model with bounds g, or w + s + z ≥ μ|v| for a model with a friction cone (μ:
+//! friction coefficient, s: opening speed). V solves the dual of a problem in which z is added to w. The two energies
+//! of that problem differ, with the effective masses m_ij of the contacts, by
 //!
 //! > Σ m_ij (σ (w + z) + g|v| + λv) within bounds,  Σ m_ij (σ (w + s + z) + λv) on the cone,
 //!
 //! each term ≥ 0. Let p* and V* be the impulses and velocities of the solution, at which no contact has a shortfall.
-//! Since (p − p*)·H(V − V*) = ‖V − V*‖²_M, ‖V − V*‖²_M is at most that difference plus Σ m_ij z(σ* − σ). σ* is not
-//! known. It is assumed to be at most 2σ + z: twice the present impulse plus the impulse that would end the contact's
-//! shortfall by itself. With this assumption the gap is
+//! Let ‖·‖²_M be a sum of squares weighted by mass. Since (p − p*)·H(V − V*) = ‖V − V*‖²_M, ‖V − V*‖²_M is at most that
+//! difference plus Σ m_ij z(σ* − σ). σ* is not known. It is assumed to be at most 2σ + z: twice the present impulse
+//! plus the impulse that would end the contact's shortfall by itself. With this assumption the gap is
 //!
 //! > S = Σ m_ij (σ(w + 2z) + z² + g|v| + λv)
 //!
@@ -28,14 +29,14 @@
 //!
 //! **The reported error** is the larger of √S (in m/s) and f. If no contact has a shortfall, √S is a bound for a convex
 //! friction model. Otherwise it is an estimate, which was tested (`scene::law_errors`) on 574 solves of all kinds, good
-//! and bad solves, whose velocities were off by more than 1e-6 √(g d). For 3.5 % of them the true error was larger than
-//! the estimate; in the median the estimate was 4.3 times the true error. Smaller errors are overestimated because S is
-//! a product of an error of impulses and an error of velocities: for a pile at rest the estimate can be 1e-4 if the
-//! true error is 1e-6.
+//! and bad solves, whose velocities were off by more than 1e-6 √(g d), with gravity g. For 3.5 % of them the true error
+//! was larger than the estimate; in the median the estimate was 4.3 times the true error. Smaller errors are
+//! overestimated because S is a product of an error of impulses and an error of velocities: for a pile at rest the
+//! estimate can be 1e-4 if the true error is 1e-6.
 //!
 //! **Coulomb's law** has no dual. For Coulomb's law g is the friction bound μσ of the present impulses: S is 0 if and
-//! only if the law is satisfied. An impulse λ outside its cone adds its distance from the nearest allowed λ_c, as
-//! λ − λ_c||v| + (λ − λ_c)².
+//! only if the law is satisfied. An impulse λ outside its cone adds its distance from the nearest allowed λ_c, namely
+//! |λ − λ_c||v| + (λ − λ_c)².
 //!
 //! A wall that a force drives is one more body. Its mass counts in ‖V − V*‖²_M but not in the mean. w and v are
 //! relative to the wall's present velocity, without the scaling by compliances that the natural map uses
@@ -51,9 +52,9 @@ use crate::number::Parts;
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
-/// Minimum cosine n·u between the normal n of a contact with a fixed body and the mean normal u of all such contacts. A
-/// contact with a smaller cosine is not opened by a motion along u: to end the shortfall of its normal velocity, the
-/// motion might have to be more than ten times as fast as the shortfall.
+/// Minimum cosine between the normal of a contact with a fixed body and the mean normal of all such contacts. A contact
+/// with a smaller cosine is not opened by a motion along the mean normal: to end the shortfall of its normal velocity,
+/// the motion might have to be more than ten times as fast as the shortfall.
 const LEAST_ALONG: f64 = 0.1;
 
 /// Estimated error of the velocities of a step, and the speed by which it is divided for the comparison with the
@@ -62,7 +63,8 @@ const LEAST_ALONG: f64 = 0.1;
 pub struct VelocityError {
     /// Estimated error of the velocities, m/s: root mean square over the grains with contacts, weighted by mass.
     pub told: f64,
-    /// Scale of the error, m/s: √(g d + mean square of the velocities that contacts cancel), with the mean diameter d.
+    /// Scale of the error, m/s: √(g d + mean square of the velocities that contacts cancel), with gravity g and the
+    /// mean diameter d.
     pub scale: f64,
 }
 
@@ -93,16 +95,18 @@ pub(super) struct ErrorSums {
     /// The duality gap S, J: a sum over the contacts that is 0 at the solution. S estimates the squared velocity error
     /// multiplied by the mass of the grains with contacts.
     gap: f64,
-    /// Σ m_ij (v^free)², J, with v^free the relative velocities at the contacts without contact impulses, restitution
-    /// term included.
+    /// Sum over the contacts, J: effective mass times the square of the relative velocity that the contact would have
+    /// without contact impulses, restitution term included.
     undone: f64,
-    /// Σ m_ij |λ|², J, with λ the impulses divided by the effective masses.
+    /// Sum over the contacts, J: effective mass times the square of the impulse (cohesion included) divided by the
+    /// effective mass.
     impulses: f64,
-    /// Sums of squared shortfalls, (m/s)²: Σ (z/(n·u))² of contacts with fixed bodies, and Σ z² of the other contacts.
-    /// The shortfall z is the increase of normal velocity that a contact needs to satisfy its law; n·u is the cosine
-    /// between its normal and the mean normal u.
+    /// Two sums of squared shortfalls, (m/s)². A shortfall is the increase of normal velocity that a contact needs to
+    /// satisfy its law. The first sum is over the contacts with fixed bodies, each shortfall divided by the cosine
+    /// between the contact's normal and the mean normal of these contacts. The second sum is over the contacts between
+    /// grains, and the contacts with fixed bodies whose cosine is below [`LEAST_ALONG`].
     lacks: [f64; 2],
-    /// Number of contacts in each of the two sums `lacks`.
+    /// Number of contacts that contribute to the first and to the second sum of squared shortfalls (`lacks`).
     counts: [f64; 2],
 }
 

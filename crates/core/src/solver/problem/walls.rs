@@ -20,8 +20,9 @@
 //! > r = 1/(M + cΔt),  V_free = r (M V⁻ + ΔtF).
 //!
 //! V is an unknown like the velocities of grains, so a wall that is lighter than its load does not begin to oscillate.
-//! But sweeps then pass the load of the wall only slowly from contact to contact, by M/m_i per sweep. In reduced
-//! impulses λ = P/m_i, and with κ = r m_i, a contact of grain i has
+//! But sweeps then pass the load of the wall only slowly from contact to contact, by M/m_i per sweep. Let m_i be the
+//! mass of the contact's grain, κ = r m_i, u_n and u_t the velocities relative to the wall, and m_n and m_t the
+//! effective masses along normal and tangent. In reduced impulses λ = P/m_i, the contact has
 //!
 //! > u_n = v_n − b_n V,  ∂u_n/∂λ_n = 1 + κ b_n²,  ∂u_t/∂λ_t = m_n/m_t + κ b_t²,
 //!
@@ -272,8 +273,9 @@ impl<M: Model> StepProblem<M> {
     /// relative to the surfaces, so a work that is computed from them lacks this part.
     pub(crate) fn surface_works(&self) -> [f64; 2] {
         let [whole, along_tangents] = self.surface_works_of(self, |number| number);
-        // The rows contain the final speed V of a driven wall, but the wall does work at its mean speed ½(V + V⁻). So
-        // the sum is too large by Σ P·b ½(V − V⁻).
+        // The rows contain the final speed V of a driven wall, but the wall does work at its mean speed ½(V + V⁻). V⁻
+        // is its speed at the beginning of the step. So the sum is too large by ½(V − V⁻) times the impulses P·b on the
+        // wall.
         let surplus = |known: &DrivenRow| {
             let number = known.number as usize;
             let row = &self.rows.fixed[number];
@@ -355,14 +357,15 @@ impl<M: Model> StepProblem<M> {
         [known.speed + along * wall.before, along * (wall.now - wall.before)]
     }
 
-    /// Scales the relative velocity (v_n, v_t) of a contact with a driven wall, m/s, for the error in the natural map;
-    /// `None` if the contact is not with a driven wall.
+    /// Scales the normal and tangential relative velocity (v_n, v_t) of a contact with a driven wall, m/s, for the
+    /// error in the natural map; `None` if the contact is not with a driven wall.
     ///
     /// A contact with a driven wall has larger compliances than a contact with a fixed wall, because the wall gives
     /// way. v_n, with its restitution term, is divided by the ratio of these compliances 1 + κ b_n², and v_t by 1 + κ
-    /// b_t² m_t/m_n (κ is the response of the wall's speed to an impulse times the effective mass; b_n and b_t are the
-    /// components of the wall's direction of motion along the normal and the tangent). So an impulse changes the scaled
-    /// velocity as much as it would change the velocity at a fixed wall.
+    /// b_t² m_t/m_n (κ is the response of the wall's speed to an impulse times the effective mass; m_n and m_t are the
+    /// effective masses along normal and tangent; b_n and b_t are the components of the wall's direction of motion
+    /// along the normal and the tangent). So an impulse changes the scaled velocity as much as it would change the
+    /// velocity at a fixed wall.
     #[inline(always)]
     pub(super) fn own_part(
         &self,
@@ -378,9 +381,9 @@ impl<M: Model> StepProblem<M> {
         Some([(normal + added) / of_normal - added, tangential / of_tangential])
     }
 
-    /// Computes the relative velocity (v_n, v_t), m/s, of a contact with a driven wall for the wall's speed without
-    /// contact impulses, and scales it like [`Self::own_part`]. The given (v_n, v_t) are relative to the wall's present
-    /// speed.
+    /// Computes the normal and tangential relative velocity, m/s, of a contact with a driven wall for the wall's speed
+    /// without contact impulses, and scales it like [`Self::own_part`]. The given velocity is relative to the wall's
+    /// present speed.
     #[inline(always)]
     pub(super) fn free_part(
         &self,
@@ -432,9 +435,9 @@ impl<M: Model> StepProblem<M> {
 
     /// Iterates over the contacts with bodies that are not grains. Returns for each contact κ (b_n² + b_t² m_t/m_n)
     /// times the number of contacts of its driven wall, or `None` if the body is not a driven wall. κ is the response
-    /// of the wall's speed to an impulse times the contact's effective mass; b_n and b_t are the components of the
-    /// wall's direction of motion along the normal and the tangent. Methods that update all contacts at once need this
-    /// bound on the wall's compliance.
+    /// of the wall's speed to an impulse times the contact's effective mass; m_n and m_t are the effective masses along
+    /// normal and tangent; b_n and b_t are the components of the wall's direction of motion along the normal and the
+    /// tangent. Methods that update all contacts at once need this bound on the wall's compliance.
     pub(crate) fn wall_compliances(&self) -> impl Iterator<Item = Option<f64>> {
         let MovingWalls { driven, driven_rows, .. } = &self.walls;
         let mut counts = vec![0.0; driven.len()];

@@ -1,16 +1,18 @@
 //! A contact in the interior point method, and its contribution to a Newton step.
 //!
-//! A friction model allows impulses p = (σ, λ), shifted normal and tangential, with G p + h ≥ 0. The matrix G has the
-//! row (1, 0) for σ ≥ 0, and the rows (κ, ±1) for the two bounds of friction; κ = μ if the friction bound grows with σ,
-//! and κ = 0 if the bound stays fixed during the solve. With slacks x = G p + h and multipliers y, the solution
-//! satisfies
+//! A friction model allows the impulses p = (σ, λ), shifted normal and tangential impulse, m/s, with G p + h ≥ 0. The
+//! matrix G has the row (1, 0) for σ ≥ 0, and the rows (κ, ±1) for the two bounds of friction. If the friction bound
+//! grows with σ, the slope κ is the friction coefficient μ and h = 0; if the bound g stays fixed during the solve, κ =
+//! 0 and h is g in the rows of friction. With slacks x = G p + h and multipliers y, one of each per row k of G, the
+//! solution satisfies
 //!
 //! > (w, v) = Aᵀy,  x ≥ 0, y ≥ 0, x_k y_k = 0,
 //!
 //! where w is the normal velocity plus the restitution term (and, under `desaxce`, an opening speed), and v the
-//! tangential velocity. A = G, except in Coulomb's law, where the multipliers of friction have no component along the
-//! normal. With δu the change of (v_n, v_t) in the step, and D = diag(y/x), a Newton step towards the products x_k y_k
-//! = e_k satisfies for each contact
+//! tangential velocity, m/s. A = G, except in Coulomb's law, where the multipliers of friction have no component along
+//! the normal. A Newton step aims at products x_k y_k equal to the targets e_k. Let δp, δx and δy be the changes of p,
+//! x and y in the step, δu the change of the contact's velocity (v_n, v_t), and D the diagonal matrix of the ratios
+//! y_k/x_k. The step satisfies for each contact
 //!
 //! > S δp = b − δu,  S = AᵀD G + ε,  b = Aᵀ(e/x) − (w, v),
 //! > δx = G δp,  δy = e/x − y − D δx,
@@ -24,28 +26,31 @@
 
 use crate::contact::law;
 
-/// Number of slacks of a contact: one for σ ≥ 0, and two for the bounds of friction.
+/// Number of slacks of a contact: one for the condition that the shifted normal impulse is not negative, and two for
+/// the bounds of friction.
 pub(super) const PAIRS: usize = 3;
 
-/// The set of impulses (σ, λ) that a friction model allows at a contact, as constraints with slacks.
+/// The set of impulses that a friction model allows at a contact, as constraints with slacks. The impulses are the
+/// shifted normal impulse σ and the tangential impulse λ, m/s.
 pub(super) trait Shape {
-    /// Index of the first of the three slacks that a contact with this set of impulses uses. Slack 0 belongs to σ ≥ 0,
-    /// slacks 1 and 2 to the bounds of friction.
+    /// Index of the first of the three slacks that a contact with this set of impulses uses. Slack 0 belongs to the
+    /// condition that the shifted normal impulse is not negative, slacks 1 and 2 to the bounds of friction.
     const FIRST: usize;
     /// Index after the last of the three slacks that a contact with this set of impulses uses.
     const END: usize;
-    /// True if the Newton steps use the two slacks of the friction bounds as variables instead of the impulses (σ, λ).
+    /// True if the Newton steps use the two slacks of the friction bounds as variables instead of the normal and
+    /// tangential impulse.
     const CONE: bool;
-    /// True if the friction bound grows with σ but the multipliers of friction act only along the tangent, as in
-    /// Coulomb's law. The problem is then not convex.
+    /// True if the friction bound grows with the normal impulse but the multipliers of friction act only along the
+    /// tangent, as in Coulomb's law. The problem is then not convex.
     const LEANS: bool = false;
-    /// Regularisation ε, relative to the compliance of a contact whose bodies touch nothing else. With a smaller ε,
-    /// rounding errors in the factorisation would cancel the gain. With a larger ε, impulses that only balance each
-    /// other would change too little in a step.
+    /// Regularisation ε: a compliance added to each contact, relative to the compliance of a contact whose bodies touch
+    /// nothing else. With a smaller ε, rounding errors in the factorisation would cancel the gain. With a larger ε,
+    /// impulses that only balance each other would change too little in a step.
     const COMPLIANCE: f64 = 1e-11;
 }
 
-/// Allowed impulses of a contact without friction: σ ≥ 0.
+/// Allowed impulses of a contact without friction: the shifted normal impulse σ is at least 0.
 pub(super) enum HalfLine {}
 
 impl Shape for HalfLine {
@@ -54,8 +59,8 @@ impl Shape for HalfLine {
     const CONE: bool = false;
 }
 
-/// Allowed impulses of the friction model `tresca`: σ ≥ 0 and |λ| ≤ g with a friction bound g that stays fixed during a
-/// solve.
+/// Allowed impulses of the friction model `tresca`: σ ≥ 0 for the shifted normal impulse σ, and |λ| ≤ g for the
+/// tangential impulse λ, with a friction bound g that stays fixed during a solve.
 pub(super) enum Strip {}
 
 impl Shape for Strip {
@@ -64,8 +69,9 @@ impl Shape for Strip {
     const CONE: bool = false;
 }
 
-/// Allowed impulses of the friction models `associated` and `desaxce`: |λ| ≤ μσ. An opening speed that stays fixed
-/// during a solve is added to the normal velocity.
+/// Allowed impulses of the friction models `associated` and `desaxce`: |λ| ≤ μσ, with the tangential impulse λ, the
+/// friction coefficient μ and the shifted normal impulse σ. An opening speed that stays fixed during a solve is added
+/// to the normal velocity.
 pub(super) enum Cone {}
 
 impl Shape for Cone {
@@ -74,7 +80,8 @@ impl Shape for Cone {
     const CONE: bool = true;
 }
 
-/// Allowed impulses of Coulomb's law: σ ≥ 0 and |λ| ≤ μσ. The multipliers of friction act only along the tangent.
+/// Allowed impulses of Coulomb's law: σ ≥ 0 for the shifted normal impulse σ, and |λ| ≤ μσ for the tangential impulse
+/// λ, with the friction coefficient μ. The multipliers of friction act only along the tangent.
 pub(super) enum Leaning {}
 
 impl Shape for Leaning {
@@ -90,9 +97,9 @@ impl Shape for Leaning {
 pub(super) struct PathContact {
     /// Shifted normal impulse σ and tangential impulse λ, m/s.
     pub impulse: [f64; 2],
-    /// Slacks x of the constraints σ ≥ 0 and of the two bounds of friction, m/s.
+    /// Slacks of the constraints, m/s: of the shifted normal impulse σ ≥ 0, and of the two bounds of friction.
     pub slack: [f64; PAIRS],
-    /// Multipliers y of the constraints, m/s.
+    /// Multipliers of the constraints, m/s, in the order of the slacks.
     pub multiplier: [f64; PAIRS],
     /// Friction bound g, which stays fixed during a solve, m/s.
     pub bound: f64,
@@ -104,9 +111,9 @@ pub(super) struct PathContact {
     pub velocity: [f64; 2],
     /// Regularisation ε of this contact, relative to the compliance of a contact whose bodies touch nothing else.
     pub compliance: f64,
-    /// Inverse of the diagonal entries of S, dimensionless: for each variable of the Newton step, its change per change
-    /// of the contact's velocity. The variables are the impulses (σ, λ), or on the friction cone the slacks of the two
-    /// bounds of friction.
+    /// Mobility of each variable of the Newton step: its change per change of the contact's velocity, dimensionless. It
+    /// is the inverse of a diagonal entry of the contact's matrix S in the Newton step. The variables are the normal
+    /// and tangential impulse, or on the friction cone the slacks of the two bounds of friction.
     pub mobility: [f64; PAIRS],
 }
 
@@ -120,7 +127,8 @@ pub(super) struct PathStep {
 /// Coefficients that are the same for all contacts of a solve.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContactNumbers {
-    /// Slope κ of the friction bound: μ if the bound grows with σ, and 0 if the bound stays fixed during a solve.
+    /// Slope of the friction bound: the friction coefficient μ if the bound grows with the normal impulse, and 0 if the
+    /// bound stays fixed during a solve.
     pub slope: f64,
     /// Ratio m_n/m_t of the effective masses along normal and tangent.
     pub tangential_compliance: f64,
@@ -128,13 +136,14 @@ pub(super) struct ContactNumbers {
 
 impl ContactNumbers {
     /// Returns the compliance, dimensionless, of a contact whose bodies touch nothing else, to impulses that change
-    /// only one of the two slacks of the cone: impulses in the direction (1/κ, ±1)/2.
+    /// only one of the two slacks of the cone. Such impulses (normal, tangential) have the direction (1/κ, ±1)/2, with
+    /// κ the slope of the friction bound.
     fn along_slack(&self) -> f64 {
         0.25 * (1.0 / (self.slope * self.slope) + self.tangential_compliance)
     }
 
-    /// Returns the component of the velocity (v_n, v_t) along variable `pair` of the Newton step: along a slack if the
-    /// allowed impulses form a cone, otherwise along a component of the impulses p.
+    /// Returns the component of the velocity (v_n, v_t), normal and tangential, along variable `pair` of the Newton
+    /// step: along a slack if the allowed impulses form a cone, otherwise along the normal or tangential impulse.
     #[inline(always)]
     fn along<S: Shape>(&self, pair: usize, [normal, tangential]: [f64; 2]) -> f64 {
         match (S::CONE, pair) {
@@ -154,8 +163,8 @@ impl PathContact {
         if !S::CONE && !S::LEANS && self.bound == 0.0 { 1 } else { S::END }
     }
 
-    /// Computes `mobility`, the inverse diagonal entries of S, from the slacks, multipliers and regularisation ε of the
-    /// contact.
+    /// Computes `mobility`, the response of the contact's variables in a Newton step, from the slacks, multipliers and
+    /// regularisation of the contact.
     #[inline(always)]
     pub(super) fn stiffen<S: Shape>(&mut self, numbers: ContactNumbers) {
         let ratio = |pair: usize| self.multiplier[pair] / self.slack[pair];
@@ -171,7 +180,8 @@ impl PathContact {
         };
     }
 
-    /// Returns the matrix S⁻¹: the change of the impulses (σ, λ) per change of −(v_n, v_t), dimensionless.
+    /// Returns the change of the contact's impulses in a Newton step per change of its velocity with opposite sign, a
+    /// 2×2 matrix S⁻¹ for (normal, tangential), dimensionless.
     #[inline(always)]
     pub(super) fn stiffness<S: Shape>(&self, numbers: ContactNumbers) -> [[f64; 2]; 2] {
         let [normal, one, other] = self.mobility;
@@ -186,16 +196,17 @@ impl PathContact {
         }
     }
 
-    /// Returns μ (y₁/x₁ − y₂/x₂), with the slacks x and multipliers y of the two bounds of friction. Under Coulomb's
-    /// law this off-diagonal entry of S couples a change of σ to the tangential velocity.
+    /// Returns μ (y₁/x₁ − y₂/x₂), with the friction coefficient μ, and the slacks x and multipliers y of the two bounds
+    /// of friction. Under Coulomb's law this number is the off-diagonal entry of the contact's matrix S in the Newton
+    /// step, which couples a change of the normal impulse to the tangential velocity.
     #[inline(always)]
     fn lean(&self, numbers: ContactNumbers) -> f64 {
         let ratio = |pair: usize| self.multiplier[pair] / self.slack[pair];
         numbers.slope * (ratio(1) - ratio(2))
     }
 
-    /// Returns the changes δp of the impulses and δx of the slacks in a Newton step that aims at the products `targets`
-    /// of slacks and multipliers, if the velocities (v_n, v_t) change by `change`, m/s.
+    /// Returns the changes of the impulses and of the slacks, m/s, in a Newton step that aims at the products `targets`
+    /// of slacks and multipliers, (m/s)², if the normal and tangential velocity change by `change`, m/s.
     #[inline(always)]
     fn answer<S: Shape>(
         &self,
@@ -232,7 +243,8 @@ impl PathContact {
         ([normal, tangential], [normal, tangential, -tangential])
     }
 
-    /// Returns S⁻¹b, the change of the impulses in a Newton step if the velocities of the bodies did not change, m/s.
+    /// Returns the change of the impulses in a Newton step if the velocities of the bodies did not change, m/s.
+    /// `targets` are the products of slacks and multipliers at which the step aims, (m/s)².
     #[inline(always)]
     pub(super) fn load<S: Shape>(
         &self,
@@ -242,7 +254,9 @@ impl PathContact {
         self.answer::<S>(numbers, targets, [0.0; 2]).0
     }
 
-    /// Returns the Newton step of impulses, slacks and multipliers that follows from a change of (v_n, v_t), m/s.
+    /// Returns the Newton step of impulses, slacks and multipliers, m/s, that follows from the change `change` of the
+    /// normal and tangential velocity, m/s. `targets` are the products of slacks and multipliers at which the step
+    /// aims.
     #[inline(always)]
     pub(super) fn direction<S: Shape>(
         &self,
@@ -289,14 +303,16 @@ impl PathContact {
     }
 
     /// Moves the contact's impulses, slacks and multipliers to the central path of the interior point method, near the
-    /// impulses that an update of the natural map would give: every product x·y of a slack and its multiplier becomes
-    /// `centre`, (m/s)². `trial` are the trial impulses (σ − w, λ − v m_t/m_n) of this update, m/s.
+    /// impulses that an update of the natural map would give: every product of a slack and its multiplier becomes
+    /// `centre`, (m/s)². `trial` are the normal and tangential trial impulses of this update, m/s, before they are
+    /// projected on the allowed impulses.
     ///
-    /// Let τ = `centre`. The new σ and its multiplier u must have the product τ, and the difference σ − u must be the
-    /// normal trial impulse. These two conditions give a quadratic equation. With a fixed friction bound g, the smaller
-    /// slack x and the larger slack 2g − x must result in the velocity τ/x − τ/(2g − x). The second term is neglected,
-    /// which again leaves a quadratic equation. On the cone the slacks at the point of the cone that is nearest to the
-    /// trial, and their multipliers, are moved away from 0 by the same quadratic equation.
+    /// Let τ = `centre`. The new shifted normal impulse σ and its multiplier u must have the product τ, and the
+    /// difference σ − u must be the normal trial impulse. These two conditions give a quadratic equation. With a fixed
+    /// friction bound g, the smaller slack x and the larger slack 2g − x must result in the velocity τ/x − τ/(2g − x).
+    /// The second term is neglected, which again leaves a quadratic equation. On the cone the slacks at the point of
+    /// the cone that is nearest to the trial, and their multipliers, are moved away from 0 by the same quadratic
+    /// equation.
     pub(super) fn centre<S: Shape>(
         &mut self,
         numbers: ContactNumbers,

@@ -1,23 +1,25 @@
 //! A primal–dual interior point method with a sparse direct factorisation.
 //!
 //! The solution of a convex friction model (`problem::friction`) consists of the allowed impulses p = (σ, λ) of all
-//! contacts that minimise
+//! contacts (shifted normal and tangential impulse, m/s) that minimise
 //!
 //! > ½‖V‖²_M + Σ m_ij s·σ,  V = V_free + M⁻¹ Hᵀ m (p − c),
 //!
-//! with V the velocities of the bodies, M their inertias, V_free their velocities without contacts, H the map from V to
-//! contact velocities, m the effective masses, s the opening speed that the friction model keeps fixed during a solve,
-//! and c the capture speed. The velocities V of the solution are unique. Each constraint of the impulses has a slack
-//! and a multiplier (`contact`), whose product is 0 at the solution. The method follows the *central path*, on which
-//! all products are equal and decrease (S. Mehrotra, 1992, for predictor and corrector; J. Gondzio, 1996, for further
-//! corrections). V is always computed from the impulses, so that rounding errors do not add up. Impulses are eliminated
-//! from each Newton step. One linear system for the change of the velocities remains,
+//! with V the velocities of the bodies, M their inertias, ½‖V‖²_M = ½ V·MV their kinetic energy, V_free their
+//! velocities without contacts, H the map from V to contact velocities, m the effective masses m_ij of the contacts,
+//! kg, s the opening speed that the friction model keeps fixed during a solve, m/s, and c the capture speed, m/s. The
+//! velocities V of the solution are unique. Each constraint of the impulses has a slack and a multiplier (`contact`),
+//! whose product is 0 at the solution. The method follows the *central path*, on which all products are equal and
+//! decrease (S. Mehrotra, 1992, for predictor and corrector; J. Gondzio, 1996, for further corrections). V is always
+//! computed from the impulses, so that rounding errors do not add up. Impulses are eliminated from each Newton step.
+//! One linear system for the change δV of the velocities remains,
 //!
 //! > (M + Hᵀ m S⁻¹ H) δV = Hᵀ m S⁻¹ b,
 //!
-//! with a positive definite matrix that has a block for each body and for each pair in contact (S and b: see
-//! `contact`). The number of factorisations hardly depends on the number of contacts. In contrast, sweeps and the
-//! semi-smooth Newton method need more iterations on a larger pile.
+//! with a positive definite matrix that has a block for each body and for each pair in contact. S and b are the matrix
+//! and the right-hand side of a contact's own equations for the change of its impulses (`contact`). The number of
+//! factorisations hardly depends on the number of contacts. In contrast, sweeps and the semi-smooth Newton method need
+//! more iterations on a larger pile.
 //!
 //! If steps become short near the end, as on dense piles, which are hyperstatic, proximal multipliers (`proximal`)
 //! finish the solve. If the path does not lead to a solution, proximal multipliers are tried from impulses far from a

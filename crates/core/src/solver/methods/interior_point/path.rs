@@ -6,9 +6,10 @@
 //!
 //! The path of Coulomb's law may turn back. At such a fold a Newton step becomes very long, and only a tiny fraction of
 //! the step keeps slacks and multipliers positive (is feasible). The contacts that limit the step, and the other
-//! contacts of their bodies, then get a larger regularisation ε in the next steps, so that their impulses change little
-//! in a step. This leads around a fold in one region of the pile while the rest makes progress. If the path does not
-//! lead to a solution, sweeps change the impulses before the next start, so that it is on another path.
+//! contacts of their bodies, then get a larger regularisation ε (a compliance added to a contact) in the next steps, so
+//! that their impulses change little in a step. This leads around a fold in one region of the pile while the rest makes
+//! progress. If the path does not lead to a solution, sweeps change the impulses before the next start, so that it is
+//! on another path.
 
 use super::contact::{PAIRS, PathContact, PathStep, Shape};
 use super::point::{InteriorPoint, PathWorkspace, SWEEPS_FIRST};
@@ -68,13 +69,14 @@ const SHORT_STEPS: u32 = 3;
 /// counts as short.
 const SHORT_STEP: f64 = 0.05;
 /// Step length, as a fraction of the full Newton step, below which the contacts that limit the step get a larger
-/// regularisation ε.
+/// regularisation (a compliance added to a contact).
 const LONG_STEP: f64 = 0.3;
-/// Minimum and maximum regularisation ε of a contact that limits a step, relative to the compliance of a contact.
+/// Minimum and maximum regularisation of a contact that limits a step: a compliance added to the contact, relative to
+/// the compliance of a contact whose bodies touch nothing else.
 const SOFT: [f64; 2] = [1e-3, 1.0];
-/// Factor by which the regularisation ε of a contact that limits a step grows per step.
+/// Factor by which the regularisation (added compliance) of a contact that limits a step grows per step.
 const SOFTENING: f64 = 30.0;
-/// Factor by which the regularisation ε of all other contacts falls per step.
+/// Factor by which the regularisation (added compliance) of all other contacts falls per step.
 const HARDENING: f64 = 0.5;
 
 impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
@@ -314,8 +316,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         false
     }
 
-    /// Increases the regularisation ε of all contacts of the bodies whose contacts limited the last step, which had the
-    /// length `share`. Decreases ε of all other contacts.
+    /// Increases the regularisation (added compliance) of all contacts of the bodies whose contacts limited the last
+    /// step, which had the length `share`. Decreases the regularisation of all other contacts.
     fn soften(&mut self, share: f64) {
         let Self { problem, workspace, .. } = self;
         let PathWorkspace { contacts, step, stopped, .. } = &mut **workspace;

@@ -49,13 +49,14 @@ pub(super) struct PathWorkspace<const D: usize> {
     pub targets: Vec<[f64; PAIRS]>,
     pub step: Vec<PathStep>,
     pub other_step: Vec<PathStep>,
-    /// Impulses (σ, λ_t) of all contacts with the smallest residual so far, m/s.
+    /// Impulses (shifted normal, tangential) of all contacts with the smallest residual so far, m/s.
     pub best: Vec<[f64; 2]>,
-    /// Impulses (σ, λ_t) of all contacts at the start of the solve, m/s.
+    /// Impulses (shifted normal, tangential) of all contacts at the start of the solve, m/s.
     pub first: Vec<[f64; 2]>,
     /// Impulses and velocities of all contacts in the proximal multiplier method.
     pub near: Vec<ProximalContact>,
-    /// Momenta M(V − V_free) of the bodies in the proximal multiplier method, in elimination order, kg m/s.
+    /// Momentum changes of the bodies by contact impulses in the proximal multiplier method, in elimination order, kg
+    /// m/s: the inertia times the difference from the velocity without contacts.
     pub momenta: Vec<[f64; D]>,
     /// True for each body with a contact that limited the length of the last step.
     pub stopped: Vec<bool>,
@@ -68,7 +69,7 @@ pub(super) struct InteriorPoint<'a, M: Model, S, const D: usize> {
     pub workspace: &'a mut PathWorkspace<D>,
     pub numbers: ContactNumbers,
     pub report: SolveReport,
-    /// Largest shifted normal impulse σ, m/s, with which a result counts as a solution.
+    /// Largest shifted normal impulse, m/s, with which a result counts as a solution.
     pub largest_impulse: f64,
     /// The smallest residual of the natural map so far; `workspace.best` has the impulses with this residual.
     pub best: f64,

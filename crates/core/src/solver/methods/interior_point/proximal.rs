@@ -1,10 +1,12 @@
 //! Proximal multipliers with a semi-smooth Newton method and exact line search. They finish a solve if the steps of the
 //! interior point method become short, and are tried if the path of that method does not lead to a solution.
 //!
-//! Let p be the present impulses, (w, v) the velocities of a contact, R = diag(1, m_n/m_t), ε a compliance relative to
-//! the compliance of a contact, Π the projection on the allowed impulses in the metric R, and y = p − R⁻¹(w, v)/ε. With
-//! the velocities V of the bodies, their inertias M and their velocities V_free without contacts, the map H from V to
-//! contact velocities, and the effective masses m of the contacts,
+//! A contact has the present impulses p (shifted normal and tangential, m/s), the velocities (w, v) (normal with
+//! restitution term, and tangential, m/s), and the effective mass m, kg; m_n and m_t are its effective masses along
+//! normal and tangent. Let ε be a compliance relative to the compliance 1/m_ij of a contact (effective mass m_ij), R
+//! the diagonal matrix diag(1, m_n/m_t), ‖y‖²_R = y·Ry, Π the projection on the allowed impulses in the metric R, and y
+//! = p − R⁻¹(w, v)/ε the trial impulses. The bodies have the velocities V, the inertias M, and the velocities V_free
+//! without contacts; H maps V to contact velocities. The function
 //!
 //! > F(V) = ½‖V − V_free‖²_M + Σ (m ε/2) (‖y‖²_R − ‖y − Π(y)‖²_R)
 //!
@@ -29,14 +31,14 @@ use super::system::{all_inertias, for_each_change, push_all};
 use crate::solver::kinematics::Model;
 use crate::solver::problem::natural_map;
 
-/// Initial compliance ε, relative to the compliance of a contact, of a solve by proximal multipliers that starts far
-/// from a solution.
+/// Initial compliance ε, relative to the compliance 1/m_ij of a contact (effective mass m_ij), of a solve by proximal
+/// multipliers that starts far from a solution.
 const FAR: f64 = 0.1;
-/// Initial compliance ε, relative to the compliance of a contact, of a solve by proximal multipliers that starts near
-/// the end of the central path of the interior point method.
+/// Initial compliance ε, relative to the compliance 1/m_ij of a contact (effective mass m_ij), of a solve by proximal
+/// multipliers that starts near the end of the central path of the interior point method.
 const CLOSE: f64 = 1e-5;
-/// Minimum compliance ε, relative to the compliance of a contact. With a smaller ε, rounding errors would grow more
-/// than the error of the impulses would fall.
+/// Minimum compliance ε, relative to the compliance 1/m_ij of a contact (effective mass m_ij). With a smaller ε,
+/// rounding errors would grow more than the error of the impulses would fall.
 const LEAST: f64 = 1e-10;
 /// Factor by which the compliance ε is multiplied each time the minimum of the objective function F has been found.
 const FACTOR: f64 = 0.1;
@@ -46,8 +48,8 @@ const PATIENCE: u32 = 40;
 /// Maximum number of factorisations of a solve by proximal multipliers that starts near the end of the central path of
 /// the interior point method.
 const FEW: u32 = 16;
-/// Ratio of the squared gradient norm ∇F·M⁻¹∇F of the objective function F to its first value at the present compliance
-/// ε, at or below which the minimum of F counts as found and ε is reduced.
+/// Ratio of the squared norm of the gradient of the objective function (in the metric of the inverse inertias) to its
+/// first value at the present compliance, at or below which the minimum counts as found and the compliance is reduced.
 const NEAR_MINIMUM: f64 = 1e-4;
 /// Maximum number of evaluations of the derivative F′ of the objective function in a line search.
 const TRIALS: u32 = 40;
@@ -146,8 +148,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         problem.write_impulses(workspace.near.iter().map(impulse));
     }
 
-    /// Sets the impulses of the problem to the projected impulses Π(y). Returns the residual of the natural map at
-    /// these impulses.
+    /// Sets the impulses of the problem to the trial impulses, projected on the allowed impulses. Returns the residual
+    /// of the natural map at these impulses.
     fn take_allowed(&mut self, compliance: f64) -> f64 {
         let numbers = self.numbers;
         self.take_near(|contact| {
@@ -156,8 +158,9 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         natural_map(self.problem)
     }
 
-    /// Writes −∇F, the negative gradient of F by the velocities, to the right-hand side of the linear system. Returns
-    /// the squared norm ∇F·M⁻¹∇F of the gradient, J.
+    /// Writes −∇F, the negative gradient of the objective function F (J) by the velocities of the bodies, to the
+    /// right-hand side of the linear system. Returns the squared norm ∇F·M⁻¹∇F of the gradient, in joules, with M the
+    /// inertias of the bodies.
     fn gradient(&mut self, compliance: f64) -> f64 {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, vector, near, momenta, .. } = &mut **workspace;
@@ -177,8 +180,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         squared
     }
 
-    /// Takes a Newton step towards the minimum of F, from the present gradient. A line search determines the step
-    /// length.
+    /// Takes a Newton step towards the minimum of the objective function, from its present gradient. A line search
+    /// determines the step length.
     fn step_near(&mut self, compliance: f64) {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, system, vector, near, .. } = &mut **workspace;
@@ -208,7 +211,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         }
     }
 
-    /// Returns the step length at which F has its minimum along the Newton step (exact line search).
+    /// Returns the step length at which the objective function has its minimum along the Newton step (exact line
+    /// search).
     fn least_on_line(&self, compliance: f64) -> f64 {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, vector, near, momenta, .. } = &**workspace;

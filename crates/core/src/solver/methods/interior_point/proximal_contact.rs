@@ -18,18 +18,21 @@ pub(super) struct ProximalContact {
     pub bound: f64,
 }
 
-/// A region of trial impulses in which the derivative J of the projection Π is constant.
+/// A region of trial impulses in which the derivative of the projection on the allowed impulses is constant.
 #[derive(Clone, Copy)]
 pub(super) enum ProjectionPiece {
-    /// One flag for σ and one for λ: true if the projected impulse equals the trial impulse, false if it is at a bound.
+    /// One flag for the normal and one for the tangential impulse: true if the projected impulse equals the trial
+    /// impulse, false if it is at a bound.
     Free([bool; 2]),
-    /// The projected impulse is on an edge of the friction cone: λ = ±μσ with the given sign.
+    /// The projected impulse is on an edge of the friction cone, λ = ±μσ with the given sign (tangential impulse λ,
+    /// friction coefficient μ, shifted normal impulse σ).
     Edge(f64),
 }
 
 impl ProjectionPiece {
-    /// Returns the stiffness J R⁻¹/ε of a contact, with the derivative J of the projection, the metric R = diag(1,
-    /// m_n/m_t) and the compliance ε. On an edge of the cone with the direction d the stiffness is d dᵀ/(ε dᵀR d).
+    /// Returns the dimensionless stiffness J R⁻¹/ε of a contact, with the derivative J of the projection, the metric R
+    /// = diag(1, m_n/m_t) (effective masses m_n and m_t along normal and tangent) and the compliance ε (`compliance`).
+    /// On an edge of the cone with the direction d the stiffness is d dᵀ/(ε dᵀR d).
     pub(super) fn stiffness(self, numbers: ContactNumbers, compliance: f64) -> Block<2> {
         let soft = numbers.tangential_compliance;
         match self {
@@ -47,8 +50,10 @@ impl ProjectionPiece {
 }
 
 impl ProximalContact {
-    /// Returns the trial impulses y = p − R⁻¹(w, v)/ε after a Newton step whose length is the fraction `share` of the
-    /// full step, m/s.
+    /// Returns the trial impulses y = p − R⁻¹(w, v)/ε, m/s, after a Newton step whose length is the fraction `share` of
+    /// the full step: p are the impulses, m/s, (w, v) the velocities of the contact, m/s, ε its dimensionless
+    /// compliance (`compliance`), and R = diag(1, m_n/m_t) has the ratio of its effective masses along normal and
+    /// tangent.
     #[inline(always)]
     pub(super) fn trial(&self, numbers: ContactNumbers, compliance: f64, share: f64) -> [f64; 2] {
         let [normal, tangential] =
@@ -57,7 +62,7 @@ impl ProximalContact {
         [shifted - normal, across - tangential / numbers.tangential_compliance]
     }
 
-    /// Returns the projection Π of trial impulses on the allowed impulses, m/s.
+    /// Returns the projection of the trial impulses `trial` on the allowed impulses, m/s.
     #[inline(always)]
     pub(super) fn allowed<S: Shape>(&self, numbers: ContactNumbers, trial: [f64; 2]) -> [f64; 2] {
         if S::CONE {
@@ -66,7 +71,7 @@ impl ProximalContact {
         [law::signorini(trial[0]), law::coulomb(trial[1], self.bound)]
     }
 
-    /// Returns the region of the projection Π that contains trial impulses.
+    /// Returns the region of the projection on the allowed impulses that contains the trial impulses `trial`, m/s.
     #[inline(always)]
     pub(super) fn piece<S: Shape>(
         &self,

@@ -2,9 +2,10 @@
 //! law.
 //!
 //! M are the inertias of the bodies, H maps velocities of bodies to velocities of contacts, m are the effective masses,
-//! and S is defined in `contact`. A driven wall is one more body, numbered after the grains: the first of its
-//! coordinates is its speed V with the inertia M + cΔt (`problem::walls`), and its other coordinates are not coupled to
-//! anything.
+//! and the matrix S⁻¹ of a contact is the change of its impulses per change of its velocity with opposite sign
+//! (`contact`). A driven wall is one more body, numbered after the grains: the first of its coordinates is its speed,
+//! with the inertia M + cΔt of its mass M, its damping coefficient c and the time step Δt (`problem::walls`), and its
+//! other coordinates are not coupled to anything.
 
 use super::contact::Shape;
 use crate::solver::kinematics::Model;
@@ -22,7 +23,8 @@ pub(super) struct StepMatrix<const D: usize> {
 }
 
 impl<const D: usize> StepMatrix<D> {
-    /// Assembles the matrix from S⁻¹ of each contact, and factorises it.
+    /// Assembles the matrix and factorises it. `answers` has one 2×2 matrix per contact: the change of its impulses per
+    /// change of its velocity with opposite sign.
     pub(super) fn assemble<M: Model, S: Shape>(
         &mut self,
         problem: &StepProblem<M>,
@@ -87,8 +89,8 @@ impl<const D: usize> StepMatrix<D> {
 /// Gradients of a contact's normal and tangential velocity (v_n, v_t) by a body's velocity.
 type Gradients<const D: usize> = [[f64; D]; 2];
 
-/// Returns the gradients of a contact's (v_n, v_t) by the velocity of grain i. If the other body of the contact can
-/// move (grain or driven wall), also returns that body's number and gradients.
+/// Returns the gradients of a contact's normal and tangential velocity by the velocity of grain i. If the other body of
+/// the contact can move (grain or driven wall), also returns that body's number and gradients.
 #[inline(always)]
 fn bodies_of<M: Model, const D: usize>(
     problem: &StepProblem<M>,
@@ -107,8 +109,8 @@ fn bodies_of<M: Model, const D: usize>(
     (on_i, problem.walls.driven_row(number).map(|known| of_wall(known.by)))
 }
 
-/// Adds to `momenta` the momentum changes Hᵀ m p of the bodies that follow from contact impulses, kg m/s, in
-/// elimination order. `impulses` are the impulses p = (σ, λ) of each contact, m/s.
+/// Adds to `momenta` the momentum changes of the bodies that follow from contact impulses, kg m/s, in elimination
+/// order. `impulses` are the impulses (normal, tangential) of each contact divided by its effective mass, m/s.
 #[inline(always)]
 pub(super) fn push_all<M: Model, const D: usize>(
     problem: &StepProblem<M>,
@@ -126,8 +128,8 @@ pub(super) fn push_all<M: Model, const D: usize>(
     }
 }
 
-/// Calls `visit` for each contact with its row number and the change of (v_n, v_t), m/s, that follows from `changes`,
-/// the changes of the bodies' velocities in elimination order.
+/// Calls `visit` for each contact with its row number and the change of its normal and tangential velocity, m/s, that
+/// follows from `changes`, the changes of the bodies' velocities in elimination order.
 #[inline(always)]
 pub(super) fn for_each_change<M: Model, const D: usize>(
     problem: &StepProblem<M>,
@@ -173,14 +175,16 @@ pub(super) fn all_inertias<M: Model, const D: usize>(
     })
 }
 
-/// Returns m S⁻¹, kg: the effective mass of a contact times the 2×2 matrix S⁻¹, given as `answer`.
+/// Returns the effective mass of a contact, kg, times the 2×2 matrix `answer`.
 #[inline(always)]
 fn heavy(mass: f64, answer: Block<2>) -> Block<2> {
     answer.map(|row| row.map(|entry| mass * entry))
 }
 
-/// Returns the D × D block m H₁ᵀ S⁻¹ H₂, kg, that a contact adds to the matrix for two bodies. H₁ = `one` and H₂ =
-/// `other` are the gradients of the contact's velocity by the velocities of these bodies.
+/// Returns the block, kg, that a contact adds to the matrix for two bodies. The first argument is the contact's
+/// stiffness, a 2×2 matrix, kg: the change of its impulses per change of its velocity with opposite sign. `one` and
+/// `other` are the gradients of the contact's velocity by the velocities of the two bodies. The block is the product of
+/// `one` transposed, the stiffness and `other`.
 #[inline(always)]
 fn stiffness<const D: usize>(
     [[nn, nt], [tn, tt]]: &Block<2>,

@@ -40,8 +40,8 @@ impl BodySlot {
 pub(super) struct ContactBlock {
     i: [u32; LANES],
     j: [u32; LANES],
-    /// For contacts between grains, the mass ratio g_i = m_ij/m_i; for contacts with fixed bodies, the speed of the
-    /// fixed body's surface along the tangent, m/s.
+    /// For contacts between grains i and j, the mass ratio m_ij/m_i (effective mass divided by the mass of grain i);
+    /// for contacts with fixed bodies, the speed of the fixed body's surface along the tangent, m/s.
     share_or_speed: [f64; LANES],
     normal: [[f64; LANES]; 2],
     shifted_impulse: [f64; LANES],
@@ -52,7 +52,8 @@ pub(super) struct ContactBlock {
 
 impl ContactBlock {
     /// Creates the block of up to four rows (the data of one contact each). Each row is given with the slots that store
-    /// the velocities of its grains, and with its mass ratio g_i or surface speed. Idle lanes use the first slot.
+    /// the velocities of its grains, and with its mass ratio (effective mass divided by the mass of the first grain) or
+    /// surface speed (m/s). Idle lanes use the first slot.
     pub(super) fn of<'a, M: Model>(
         rows: impl Iterator<Item = (&'a Row<M>, [u32; 2], f64)>,
     ) -> Self {
@@ -88,7 +89,8 @@ impl ContactBlock {
         }
     }
 
-    /// Returns the sum of the squared impulses Σ P² of the block's contacts, (N·s)², given their capture speeds, m/s.
+    /// Returns the sum of the squared impulses of the block's contacts, (N·s)², given the capture speeds of the
+    /// contacts (the opening speed that cohesion cancels in one step), m/s.
     #[inline(always)]
     pub(super) fn squared_impulses(&self, captures: [f64; LANES]) -> f64 {
         sum(std::array::from_fn(|lane| {
@@ -202,8 +204,8 @@ pub(super) fn solve_blocks<S: Simd, M: Model, const MEASURE: bool>(
     ImpulseChange { squared: sum(squared.to_array()), absolute: sum(absolute.to_array()) }
 }
 
-/// Returns the squared numerator of the residual (`problem::residual`), Σ (e_n² + e_t²) over the contacts of blocks,
-/// (N·s)².
+/// Returns the squared numerator of the residual (`problem::residual`): the sum of the squared errors of the normal and
+/// tangential impulse over the contacts of the blocks, (N·s)².
 #[inline(always)]
 pub(super) fn squared_error<S: Simd, M: Model>(
     simd: S,

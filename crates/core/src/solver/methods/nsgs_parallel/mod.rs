@@ -167,7 +167,7 @@ impl<'a, M: Model> Tiled<'a, M> {
         )
     }
 
-    /// Returns the sum of the squared impulses of all contacts, Σ P², (N·s)².
+    /// Returns the sum of the squared impulses of all contacts, (N·s)².
     fn squared_impulses(&mut self) -> f64 {
         let captures = &self.problem.rows.captures;
         let capture_speed = self.law.capture_speed();
@@ -364,8 +364,9 @@ impl TileLayout {
     }
 
     /// Adds the blocks of a colour. `rows` are the rows (the data of one contact each) of the colour, numbered from
-    /// `first`, each with its mass ratio g_i (pairs of grains) or its surface speed (fixed bodies, m/s). Returns `None`
-    /// if a grain does not exist, or belongs to another contact of the colour or to another tile.
+    /// `first`, each with its mass ratio (effective mass divided by the mass of the first grain) or, against a fixed
+    /// body, its surface speed (m/s). Returns `None` if a grain does not exist, or belongs to another contact of the
+    /// colour or to another tile.
     fn add<'a, M: Model>(
         &mut self,
         rows: impl ExactSizeIterator<Item = (&'a Row<M>, f64)> + Clone,

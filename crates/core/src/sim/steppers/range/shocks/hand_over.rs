@@ -130,16 +130,16 @@ impl Shocks {
 
     /// True if the pair of contact `number` meets within the step, so that the impulse from the solution of the step
     /// (without the impulses of shocks) acts on the pair only after the meeting. A pair that met at the time t, and
-    /// whose grains were not struck later, has the gap 0 at t. So its gap at the end of the step is (Δt − t) v^n, minus
-    /// ½a(Δt − t)² if its grain falls.
+    /// whose grains were not struck later, has the gap 0 at t. So its gap at the end of the step is (Δt − t) v^n, with
+    /// its normal velocity v^n at the end of the step, minus ½a(Δt − t)² if its grain falls with the acceleration a.
     fn acts_late(&self, number: usize, i: usize, j: Option<usize>) -> bool {
         let pair = &self.pairs[number];
         pair.touch == Touch::Met && pair.impulse > 0.0 && self.since(i, j) <= pair.struck_at
     }
 
     /// Records the results of a solved step. If a pair met at the time t, the impulse λ of the step on it moves its
-    /// grains only for the rest of the step: by (Δt − t)·λ, and not by Δt·λ. Also adds the impulses of shocks and step
-    /// to the sums of the contacts.
+    /// grains only for the rest of the step: by (Δt − t)·λ, and not by Δt·λ, with the time step Δt. Also adds the
+    /// impulses of shocks and step to the sums of the contacts.
     pub(in super::super) fn finish<M: Model>(
         &mut self,
         problem: &StepProblem<M>,

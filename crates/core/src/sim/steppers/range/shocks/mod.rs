@@ -209,7 +209,7 @@ struct ShockBody {
     /// True if the grain does not fall freely, because it rests on a body or is bonded.
     is_supported: bool,
     /// Displacement of the grain in the step minus Δt times its velocity at the end, m: −½aΔt² for a freely falling
-    /// grain, and −Σ tλ for the impulses λ of the step on pairs that met at a time t.
+    /// grain with the acceleration a, and −Σ tλ for the impulses λ of the step on pairs that met at a time t.
     rest_of_way: DVec2,
     /// Next grain on the path to the representative grain of this grain's cluster. A cluster is a set of grains that
     /// are struck together.
@@ -254,8 +254,9 @@ fn grains<M: Model>(problem: &StepProblem<M>, number: usize) -> (usize, Option<u
     (row.i as usize, is_pair.then_some(row.j as usize))
 }
 
-/// Returns the number by which the residual of a contact problem is divided, N·s: the norm ‖m_n (v_n^free + term)‖ of
-/// the normal impulses that would stop the free velocities. `term` is the term that the contact law adds to v_n.
+/// Returns the number by which the residual of a contact problem is divided, N·s: the norm of the normal impulses that
+/// would stop the contacts' normal velocities without contact impulses, including the term that the contact law adds to
+/// the normal velocity.
 fn scale<M: Model>(problem: &StepProblem<M>) -> f64 {
     let mut squared = 0.0;
     for_each_row(problem, |_, row, motion| {
