@@ -190,8 +190,8 @@ pub fn arrows(
     arrows
 }
 
-/// Returns a description of each cycle of arrows: the folder, and the arrows between its files and subfolders that form
-/// the cycle.
+/// Returns a description of each cycle of imports: the folder, and the imports between its files and subfolders that form
+/// the cycle. An arrow is an import, from the importing file to the imported file.
 pub fn circles(arrows: &BTreeSet<(String, String)>) -> Vec<String> {
     let files = arrows.iter().flat_map(|(from, to)| [from, to]);
     let folders: BTreeSet<&str> = files

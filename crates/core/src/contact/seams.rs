@@ -35,8 +35,9 @@ pub(super) struct Seam {
     /// Index of the corner among the corners of the other feature that shares it. `None` if the corner lies on a side
     /// of the other feature.
     pub other_corner: Option<usize>,
-    /// True if the feature with this corner comes before the other feature in the list of all features. Only the last
-    /// feature with a shared corner reports a contact with it.
+    /// True if the wall piece with this corner comes before the other wall piece that shares the corner, in the list of
+    /// all wall pieces. A grain that touches the corner would touch both pieces, so only the later piece reports the
+    /// contact.
     pub is_earlier: bool,
 }
 

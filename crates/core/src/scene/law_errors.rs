@@ -37,7 +37,7 @@ struct Judge<'a> {
 struct Search {
     starts: u32,
     max_sweeps: u32,
-    /// Largest residual of a solution that the search found. Less exact solutions are not used.
+    /// Solutions with a larger residual (dimensionless) are ignored.
     largest_residual: f64,
 }
 

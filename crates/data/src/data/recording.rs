@@ -438,7 +438,7 @@ impl FrameSchedule {
     }
 
     /// True if a frame is to be recorded after step number `step`. `step_at` returns the number of the step that is
-    /// nearest to a time. For all times up to `latest_secs` (s) this is at most `step`.
+    /// nearest to a time; for times up to `latest_secs` (s) it returns at most `step`.
     fn is_due_at(&mut self, step: u64, latest_secs: f64, step_at: impl Fn(f64) -> u64) -> bool {
         let mut due = false;
         while self.next_secs().is_some_and(|secs| step_at(secs) <= step) {

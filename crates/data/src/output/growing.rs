@@ -116,7 +116,8 @@ impl GrowingFile {
     }
 
     /// Writes bytes to the file after its complete rows, and replaces bytes that are already there. If the bytes span
-    /// several pages (blocks of [`PAGE`] bytes of the file), the last page is written first.
+    /// several pages (blocks of [`PAGE`] bytes of the file), the last page is written first: until the first page is written,
+    /// the place still begins with the bytes that were there before.
     fn put_from_its_end(&mut self, bytes: &[u8]) -> std::io::Result<()> {
         self.pages_from_the_last(bytes.len())
             .into_iter()

@@ -34,8 +34,8 @@ pub(crate) struct Elimination {
     /// Numbers of the blocks that the elimination of each position changes: for each pair a < b of the position's later
     /// neighbours, in lexicographic order, the number of block (a, b).
     pub targets: Vec<u32>,
-    /// First position of each supernode, and finally the number of positions. A supernode is a run of positions, each
-    /// of which has as later neighbours the next position and all later neighbours of the next position.
+    /// First position of each supernode, and finally the number of positions. A supernode is a run of successive positions
+    /// whose columns of the factor have the same pattern below the run.
     pub supernodes: Vec<u32>,
     postorder: Postorder,
     neighbours: Vec<BodyNeighbours>,

@@ -101,7 +101,7 @@ impl<const ALL_RUBS: bool> FrictionProjection for CoulombFriction<ALL_RUBS> {
     }
 }
 
-/// Returns trial impulses projected on Coulomb's law, m/s: the shifted normal impulse σ on σ ≥ 0, and the tangential
+/// Returns trial impulses projected on Coulomb's law. All impulses are divided by the effective mass, m/s. The result is the shifted normal impulse σ on σ ≥ 0, and the tangential
 /// impulse λ_t on the friction bound of the projected σ.
 #[inline(always)]
 pub(crate) fn project_by_coulomb<M: Model, T: Lanes>(

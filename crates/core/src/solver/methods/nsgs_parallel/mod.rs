@@ -337,9 +337,10 @@ impl TileLayout {
         Some(())
     }
 
-    /// Adds the blocks of tile number `tile`, or the blocks between tiles if `tile` is past the last tile. `place` has
-    /// the number and the first velocity slot of that tile. Returns the number of blocks of contacts with fixed bodies,
-    /// or `None` if a row or a grain is not valid.
+    /// Groups the contacts of a tile (a region of the scene) into blocks of contacts that are solved at once, and adds these
+    /// blocks to `self.blocks`. If `tile` is larger than the number of the last tile, does the same for the contacts
+    /// between tiles. `place` has the number of the tile and the index of its first velocity. Returns the number of
+    /// blocks of contacts with fixed bodies, or `None` if the index of a contact or a grain is out of range.
     fn add_all<M: Model>(
         &mut self,
         problem: &StepProblem<M>,

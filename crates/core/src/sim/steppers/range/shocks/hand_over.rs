@@ -9,7 +9,7 @@ use crate::sim::steppers::range::step_numbers::StepNumbers;
 use crate::solver::{Model, StepProblem};
 use crate::world::World;
 
-/// Bond that a shock closed within the step.
+/// Bond that was formed within the step by a shock (a collision that is solved in zero time).
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct ClosedBond {
     /// Time from the shock to the end of the step, divided by the time step.
