@@ -108,7 +108,7 @@ const GRAIN_COLUMNS: &[ColumnSpec<GrainTableRow>] = &[
     column(
         "kind",
         "",
-        "grain, fixed disc, or lost: a grain that went through a wall or left the world",
+        "grain, fixed (a fixed disc), or lost: a grain that went through a wall or left the world",
         Word(KINDS, |row| row.kind as u32),
     ),
     column("x_unwrapped", "m", UNWRAPPED, Number(|row| row.state.unwrapped.x)),
