@@ -206,7 +206,7 @@ fn dumps_say_this() {
         &contacts,
         &format!(
             "ITEM: UNITS\nsi\nITEM: PARAMETERS\nprogram: slump; …\n…\n\
-             grains: id: number of the disc, the same in all frames: grains first, then fixed discs, boundaries, and grains that were added later; type: grain, fixed disc, …\n\
+             grains: id: number of the disc, the same in all frames: grains first, then fixed discs, boundaries, and grains that were added later; type: grain, fixed (a fixed disc), …\n\
              walls: id: number of the wall; …\n{DUMPED_CONTACTS}"
         ),
     );
