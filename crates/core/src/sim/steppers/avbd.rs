@@ -2,8 +2,8 @@
 //! ACM Transactions on Graphics 44, 2025). It minimises, body by body, penalties that become stiffer while a contact is
 //! violated. Multipliers gradually replace the penalty forces.
 //!
-//! The unknowns are the velocities V of the bodies at the end of a substep of length h. The positions at the end are x
-//! + hV, and normals are those of the beginning. A contact is violated by the velocity c = v − w + b, with the relative
+//! The unknowns are the velocities V of the bodies at the end of a substep of length h. The positions at the end are
+//! x + hV, and normals are those of the beginning. A contact is violated by the velocity c = v − w + b, with the relative
 //! velocity v of its two bodies and the velocity w of its wall. The term b = gap/h keeps a gap from closing by more
 //! than its size. With the multipliers λ⁰, the stiffness k of the penalty, the friction coefficient μ, the Bond number
 //! Bond, the acceleration a that defines the cohesion force, and σ = λ_n + Bond·a·h, a contact pushes with the impulses
