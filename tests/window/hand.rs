@@ -44,12 +44,16 @@ fn shift_that_is_released_in_the_frame_of_the_click_counts() {
     let grains = count(&robot);
     let pos = robot.place("scene", 0.555, 0.08);
     let (button, modifiers) = (PointerButton::Primary, Modifiers::SHIFT);
-    robot.harness.event(Event::PointerMoved(pos));
-    robot.harness.event(Event::ModifiersChanged(modifiers));
-    for pressed in [true, false] {
-        robot.harness.event(Event::PointerButton { pos, button, pressed, modifiers });
-    }
-    robot.harness.event(Event::ModifiersChanged(Modifiers::NONE));
+    let press = |pressed| Event::PointerButton { pos, button, pressed, modifiers };
+    robot.harness.hover_at(pos);
+    robot.frames(2);
+    // The harness would give each event a frame of its own.
+    robot.harness.input_mut().events.extend([
+        Event::ModifiersChanged(modifiers),
+        press(true),
+        press(false),
+        Event::ModifiersChanged(Modifiers::NONE),
+    ]);
     robot.frames(2);
     robot.settle();
     assert_eq!(count(&robot), grains + 1);
