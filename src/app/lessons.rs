@@ -3,7 +3,6 @@
 
 use glam::DVec2;
 
-use super::IN_BROWSER;
 use super::page::Page;
 use super::predictions::{self, Question};
 use super::preferences::{Choices, LessonPlace, Preferences};
@@ -122,12 +121,8 @@ fn in_cone(mut settings: Settings, cone: FrictionCone) -> Settings {
 pub const LESSONS: [Lesson; 7] = [
     Lesson {
         title: "Two time steps",
-        watch: if IN_BROWSER {
-            "One pile twice, with the same cohesion. Only the time step Δt of the solver differs: 0.1 ms and 5 ms."
-        } else {
-            "One pile twice, with the same cohesion. Only the time step Δt of the solver differs: 0.1 ms and 5 ms. The \
-             slump Δy is the drop of the mean height, divided by that height. Thin lines will be other initial states."
-        },
+        watch: "One pile twice, with the same cohesion. Only the time step Δt of the solver differs: 0.1 ms and 5 ms. The \
+                slump Δy is the drop of the mean height, divided by that height.",
         question: Some(Question {
             text: "Will both piles slump alike?",
             answers: ["alike", "not alike"],
@@ -135,7 +130,7 @@ pub const LESSONS: [Lesson; 7] = [
             result: predictions::two_time_steps,
         }),
         learnt: "Long steps act like glue: in each step cohesion stops grains that separate at up to Bond·g·Δt, 0.02 m/s at \
-                 0.1 ms and 1 m/s at 5 ms. Shorter steps are more accurate.",
+                 0.1 ms and 1 m/s at 5 ms. Lesson 4 has a law under which Δt hardly matters.",
         worlds: |base| two_time_steps(base, 20.0),
         ..PILE
     },

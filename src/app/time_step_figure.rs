@@ -84,7 +84,7 @@ impl TimeStepFigure {
         let controls: Vec<_> =
             all.iter().map(|&(settings, _)| Controls { settings, pull: None }).collect();
         let worlds = if worlds.len() > 1 { worlds } else { &[] };
-        let mut others = worlds.len()..;
+        let mut next = worlds.len();
         let series = all.into_iter().enumerate().map(|(index, (settings, mut points))| {
             points.sort_by(|one, other| one.time_step_secs.total_cmp(&other.time_step_secs));
             let bond = settings.parameters.bond;
@@ -96,8 +96,8 @@ impl TimeStepFigure {
             let is_of_series = |world: &Settings| without_time_step(world) == settings;
             let is_alone = worlds.iter().filter(|world| is_of_series(world)).count() == 1;
             let own = worlds.iter().position(is_of_series).filter(|_| is_alone);
-            let colour = own.or_else(|| others.next()).unwrap_or(index);
-            let colour = theme::world_colour(colour, is_dark);
+            let colour = theme::world_colour(own.unwrap_or(next), is_dark);
+            next += usize::from(own.is_none());
             FigureSeries { name, bond, colour, points }
         });
         let series: Vec<_> = series.collect();

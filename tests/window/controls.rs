@@ -69,22 +69,26 @@ fn the_run_changes_while_it_runs() {
 #[test]
 fn a_press_and_release_without_delay_are_a_click() {
     let mut robot = Robot::open(pile());
-    let click = |robot: &mut Robot, at: egui::Pos2| {
+    let click = |robot: &mut Robot, at: egui::Pos2, in_one_frame: bool| {
         let (button, modifiers) = (egui::PointerButton::Primary, egui::Modifiers::NONE);
-        robot.harness.event(egui::Event::PointerMoved(at));
-        for pressed in [true, false] {
-            robot.harness.event(egui::Event::PointerButton { pos: at, button, pressed, modifiers });
+        let press = |pressed| egui::Event::PointerButton { pos: at, button, pressed, modifiers };
+        let events = [egui::Event::PointerMoved(at), press(true), press(false)];
+        if in_one_frame {
+            robot.harness.input_mut().events.extend(events);
+        } else {
+            events.into_iter().for_each(|event| robot.harness.event(event));
         }
         robot.frames(2);
         robot.settle();
     };
     let release = robot.place("release", 0.5, 0.5);
-    click(&mut robot, release);
+    click(&mut robot, release, true);
     assert!(robot.state().run.frame.playing);
-    click(&mut robot, release);
+    click(&mut robot, release, true);
     assert!(!robot.state().run.frame.playing);
     let (left, ground) = (robot.place("Δt", 0.1, 0.5), robot.settings());
-    click(&mut robot, left);
+    // A slider of egui misses a press that is released in the same frame.
+    click(&mut robot, left, false);
     assert!(robot.settings().parameters.time_step_secs < ground.parameters.time_step_secs);
 }
 

@@ -30,10 +30,10 @@ fn a_press_and_release_in_one_frame_pin_a_grain() {
     let mut robot = Robot::open(pile());
     let pos = at(&robot, robot.world().snapshot.grains[60].position);
     let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
-    robot.harness.event(Event::PointerMoved(pos));
-    for pressed in [true, false] {
-        robot.harness.event(Event::PointerButton { pos, button, pressed, modifiers });
-    }
+    let press = |pressed| Event::PointerButton { pos, button, pressed, modifiers };
+    // The harness would give each event a frame of its own.
+    let events = [Event::PointerMoved(pos), press(true), press(false)];
+    robot.harness.input_mut().events.extend(events);
     robot.frames(2);
     assert_eq!(robot.state().run.pinned, Some(GrainRef { world: 0, grain: 60 }));
 }
@@ -47,7 +47,6 @@ fn shift_that_is_released_in_the_frame_of_the_click_counts() {
     let press = |pressed| Event::PointerButton { pos, button, pressed, modifiers };
     robot.harness.hover_at(pos);
     robot.frames(2);
-    // The harness would give each event a frame of its own.
     robot.harness.input_mut().events.extend([
         Event::ModifiersChanged(modifiers),
         press(true),

@@ -213,11 +213,10 @@ fn what_to_try(ui: &mut Ui, context: &PanelContext<'_>) {
         ui.add(egui::Label::new(text).truncate());
         return;
     }
-    let of_worlds;
+    let selected =
+        format!("These sliders change run {}, the framed one.", context.run.selected + 1);
     let text = if context.run.compares() && context.touring {
-        of_worlds =
-            format!("These sliders change run {}, the framed one.", context.run.selected + 1);
-        Some(of_worlds.as_str())
+        Some(selected.as_str())
     } else if !context.preferences.starts_again && !context.run.frame.at_start() {
         Some(LIVE)
     } else if context.run.slumps() && !context.touring {

@@ -10,7 +10,7 @@ use crate::app::predictions::{Prediction, Question};
 use crate::app::theme;
 use crate::app::watched_run::WatchedRun;
 use crate::number::millis_text;
-use crate::sim::Settings;
+use crate::sim::{Observables, Settings};
 
 /// State of the bar above the scene, which shows the present lesson.
 #[derive(Default)]
@@ -113,6 +113,17 @@ impl LessonBar {
     }
 }
 
+/// Returns the result of a run of one pile that has ended and has had the same Δt from the start; `None` for other runs.
+fn result_of_one(run: &WatchedRun) -> Option<String> {
+    let [world] = &run.frame.worlds[..] else { return None };
+    let Observables { time_step_secs, slump, .. } = world.snapshot.observables;
+    let mut taken = world.curve.rows().filter(|row| row.step > 0);
+    let is_one =
+        run.has_ended() && run.slumps() && taken.all(|row| row.time_step_secs == time_step_secs);
+    let step = millis_text(time_step_secs);
+    is_one.then(|| format!("Computed with {step} from the start, the pile slumped by {slump:.2}."))
+}
+
 /// Shows the question of a lesson and its two answers or, when the run has decided the question, the result.
 fn prediction(
     ui: &mut Ui,
@@ -140,14 +151,8 @@ fn prediction(
     let waits = is_there && context.run.frame.at_start() && !context.run.frame.playing;
     // This is a later run, after another run has decided the question.
     if predicted.as_ref().is_some_and(|it| it.was_right.is_some()) && is_there && !waits {
-        let run = &context.run;
-        if let (true, true, [world]) = (run.has_ended(), run.slumps(), &run.frame.worlds[..]) {
-            let row = world.snapshot.observables;
-            let step = millis_text(row.time_step_secs);
-            let slump = row.slump;
-            ui.label(format!(
-                "Computed with {step} from the start, the pile slumped by {slump:.2}."
-            ));
+        if let Some(result) = result_of_one(context.run) {
+            ui.label(result);
         }
         ui.label(LESSONS[at].learnt);
         return;

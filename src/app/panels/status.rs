@@ -19,12 +19,12 @@ pub(super) fn show(
 ) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 10.0;
-        trust.button(ui, context);
+        let reason = trust.button(ui, context);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ways(ui, context, help);
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 pace(ui, &context.run.frame);
-                messages(ui, context, trust);
+                messages(ui, context, reason);
             });
         });
     });
@@ -67,7 +67,7 @@ fn pace(ui: &mut Ui, frame: &LiveFrame) {
 
 /// Shows one message: the latest notice, otherwise a failure of the run, a warning, or the reason not to trust the run.
 /// Lessons show no warnings, because some lessons demonstrate errors.
-fn messages(ui: &mut Ui, context: &mut PanelContext<'_>, trust: &TrustPanel) {
+fn messages(ui: &mut Ui, context: &mut PanelContext<'_>, distrust: Option<String>) {
     if let Some((notice, left_secs)) =
         context.notice.as_ref().and_then(|it| Some((it, it.left_secs()?)))
     {
@@ -82,7 +82,7 @@ fn messages(ui: &mut Ui, context: &mut PanelContext<'_>, trust: &TrustPanel) {
     {
         let rect = message(ui, &format!("▲ {alarm}"), warning);
         context.note_control("alarm", rect);
-    } else if let Some(reason) = trust.reason_against(context.run) {
+    } else if let Some(reason) = distrust {
         message(ui, &reason, ui.visuals().weak_text_color());
     }
 }

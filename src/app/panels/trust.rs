@@ -123,8 +123,9 @@ impl TrustPanel {
         (run.command_line().as_ref() == Some(&budget.of)).then_some(told)
     }
 
-    /// Shows the button with the verdict in the status bar, which opens or closes the panel.
-    pub(super) fn button(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
+    /// Shows the button with the verdict in the status bar, which opens or closes the panel. Returns the
+    /// reason not to trust the run; `None` if the run can be trusted or the verdict is not known yet.
+    pub(super) fn button(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) -> Option<String> {
         let (trust, reason) = self.verdict(context.run);
         let dark = ui.visuals().dark_mode;
         let colour = match trust {
@@ -137,11 +138,6 @@ impl TrustPanel {
         context.note_control("trust", button.rect);
         let hint = format!("{reason} A click opens the whole answer.");
         self.is_open ^= button.on_hover_text(hint).clicked();
-    }
-
-    /// Returns the reason not to trust the run; `None` if the run can be trusted or the verdict is not known yet.
-    pub(super) fn reason_against(&self, run: &WatchedRun) -> Option<String> {
-        let (trust, reason) = self.verdict(run);
         (trust == Trust::No).then_some(reason)
     }
 

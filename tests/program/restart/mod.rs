@@ -43,7 +43,7 @@ fn refusal(bytes: &[u8]) -> String {
 /// Returns a saved state that consists of this content and a first line with its length and checksum.
 fn sealed(content: &[u8]) -> Vec<u8> {
     let version = env!("CARGO_PKG_VERSION");
-    let line = format!("slump-state 7 {version} {} {}\n", content.len(), blake3::hash(content));
+    let line = format!("slump-state 8 {version} {} {}\n", content.len(), blake3::hash(content));
     [line.as_bytes(), content].concat()
 }
 
@@ -79,7 +79,7 @@ fn what_is_no_state_or_of_another_version_says_so() {
     let version = env!("CARGO_PKG_VERSION");
     for (other, named) in [
         (text.replace(version, "99.0.1"), "version 99.0.1 of the program"),
-        (text.replace("state 7 ", "state 77 "), "format 77"),
+        (text.replace("state 8 ", "state 77 "), "format 77"),
     ] {
         let said = refusal(&[other.as_bytes(), &bytes[line..]].concat());
         assert!(said.contains(named) && said.contains(&format!("version {version}")), "{said}");

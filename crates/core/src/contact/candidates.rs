@@ -104,7 +104,7 @@ impl Candidates {
         })
     }
 
-    /// Returns candidates with the same search distances, but for `world` and with an empty list of pairs.
+    /// Returns candidates for `world`, with the same search distances and an empty list of pairs.
     ///
     /// # Errors
     /// The errors of [`Self::new`].

@@ -13,7 +13,7 @@ use crate::world::{Grain, Gravity};
 /// Header of files with saved runs, and the words for such files in error messages.
 const SEAL: Seal = Seal {
     magic: "slump-state ",
-    format: 7,
+    format: 8,
     what: "state",
     of: " of a run",
     form: "a state that --save or --checkpoint-every wrote",

@@ -151,19 +151,21 @@ impl StabilityTable {
 }
 
 /// Returns the worst verdict among the results `levels` of one solver variant in one test, and the first value of the
-/// driving parameter with this verdict; `None` if all verdicts are "holds".
+/// driving parameter with this verdict; `None` if all verdicts are "holds", or if the variant refuses the scene.
 fn summary(levels: &[&StabilityCell]) -> (StabilityVerdict, Option<f64>) {
     let worst = levels.iter().map(|cell| cell.verdict).max().unwrap_or(StabilityVerdict::Holds);
-    let first =
-        levels.iter().find(|cell| cell.verdict == worst && worst != StabilityVerdict::Holds);
+    let has_levels = matches!(worst, StabilityVerdict::Degrades | StabilityVerdict::Fails);
+    let first = levels.iter().find(|cell| cell.verdict == worst && has_levels);
     (worst, first.map(|cell| cell.level))
 }
 
 fn cell(challenge: &Challenge, trial: &Trial) -> Result<StabilityCell> {
     let (verdict, error) = match challenge.error(trial) {
         Ok(error) => (StabilityVerdict::of(error, challenge.limits), format!("{error:.1e}")),
-        // The default accepts every scene, so the variant is the reason for the error.
-        Err(_) if trial.variant.name != DEFAULT => (StabilityVerdict::Refuses, String::new()),
+        // The default accepts every scene, so the variant is the reason for the refusal.
+        Err(Error::Value { .. }) if trial.variant.name != DEFAULT => {
+            (StabilityVerdict::Refuses, String::new())
+        }
         Err(error) => return Err(error),
     };
     Ok(StabilityCell {
@@ -191,7 +193,6 @@ impl fmt::Display for StabilityTable {
             write!(out, "{:SCENE_WIDTH$}", challenge.name)?;
             for variant in VARIANTS.iter() {
                 let (verdict, from) = summary(&self.levels(challenge, variant));
-                let from = from.filter(|_| verdict != StabilityVerdict::Refuses);
                 let from = from.map_or(String::new(), |level| format!(" {}", number(level)));
                 write!(out, "{:CELL_WIDTH$}", format!("{}{from}", verdict.name()))?;
             }
@@ -264,7 +265,6 @@ pub fn picture(table: &StabilityTable) -> Sheet {
                 });
                 let first = levels.iter().find(|cell| cell.verdict != StabilityVerdict::Holds);
                 let text = match (first.map(|cell| cell.level), from) {
-                    _ if verdict == StabilityVerdict::Refuses => verdict.name().to_owned(),
                     (Some(first), Some(worst)) if first == worst => {
                         format!("from {}", number(first))
                     }
