@@ -2,7 +2,7 @@
 
 use crate::world::Grain;
 
-/// Height of the layers of a pile that have different grey levels, in diameters.
+/// Height of one layer of a pile in pictures, in diameters. Neighbouring layers have different grey levels.
 const LAYER_IN_DIAMETERS: f64 = 2.0;
 /// Grey levels of the layers of a pile, in turn from the bottom: 0 is black, 255 is white.
 const LAYER_TONES: [u8; 2] = [222, 168];

@@ -12,12 +12,13 @@ use crate::world::Boundary;
 const HIGH: u8 = 6;
 /// Distance between neighbouring columns when the walls of the scene [`press`] have stopped, in diameters.
 const NARROWEST: f64 = 0.6;
-/// Speed of each wall of the scene [`press`], m/s. At this speed the highest disc rises with a speed of at most ½√(g d)
-/// (g: gravity, d: diameter).
+/// Speed of each wall of the scene [`press`], m/s. It makes the highest disc rise at up to 0.13 m/s, which is below
+/// half of √(g d) (gravity g, diameter d), the scale of the speeds at which discs fall. With a larger value, inertia
+/// would displace the discs from their equilibrium positions.
 const SPEED: f64 = 0.007;
 
-/// Returns the exact equilibrium positions of the discs, in diameters, when neighbouring columns are `spacing`
-/// diameters apart.
+/// Returns the exact equilibrium positions of the discs of the scene [`press`], in diameters, at the time when
+/// neighbouring columns are `spacing` diameters apart.
 fn places(spacing: f64) -> Vec<DVec2> {
     let height = (1.0 - spacing * spacing).sqrt();
     let column = |x: f64, lift: f64| {
@@ -33,8 +34,8 @@ fn places(spacing: f64) -> Vec<DVec2> {
 /// other discs, so there are more contacts than degrees of freedom. As the walls push the columns together, h grows,
 /// and the discs within a column separate. Then each disc rests on two bodies below it (discs, a wall or the floor),
 /// which share its weight and the load above it. All contacts push, and there are as many contacts as degrees of
-/// freedom. So no disc can sink, and if the walls move slowly the positions are unique. The k-th disc of a column is
-/// at
+/// freedom. So the contacts determine all positions, and if the walls move slowly the discs are at these positions at
+/// any time. The k-th disc of a column (k = 0 for the lowest disc) is at
 ///
 /// > x = −s, 0 or s,  y = 1/2 + 2kh, and h higher in the middle column,
 ///
@@ -57,20 +58,21 @@ pub fn press() -> Scene {
     scene
 }
 
-/// Returns the exact positions that the discs must have when the walls have stopped, m, in the order of the scene.
+/// Returns the exact positions that the discs of the scene [`press`] must have when its walls have stopped, m, in the
+/// order of the grains of the scene.
 pub fn pressed_places() -> Vec<DVec2> {
     places(NARROWEST).into_iter().map(|place| DIAMETER * place).collect()
 }
 
-/// Returns the time at which the walls stop at their final positions, s.
+/// Returns the time at which the walls of the scene [`press`] stop at their final positions, s.
 pub fn pressing_secs() -> f64 {
     DIAMETER * (0.75f64.sqrt() - NARROWEST) / SPEED
 }
 
 /// Number of discs along each side of the box in the scene [`squeeze`].
 const SIDE: i32 = 5;
-/// Largest component of the initial velocity of each disc in the scene [`squeeze`], in √(g d) (g: gravity, d:
-/// diameter).
+/// Upper limit for the random initial velocities of the discs in the scene [`squeeze`], along x and along y, in units
+/// of √(g d) (g: gravity, d: diameter).
 const SQUEEZED_SPEED: f64 = 0.3;
 
 /// Returns the scene of a lattice of 5 × 5 discs in a box that is too small: each side of the box is shorter than the

@@ -6,13 +6,15 @@ use super::{DIAMETER, GRAVITY, TOUCH, disc, half_space, on_floor, view};
 use crate::scene::Scene;
 use crate::world::{Disc, Grain, Gravity, Physics};
 
-/// Returns the scene of a column of n discs with mass m. The contact with the floor carries n·m·g, and the k-th
-/// contact above it carries (n − k)·m·g.
+/// Returns the scene of a column of n discs with mass m under gravity g. The contact with the floor carries n·m·g, and
+/// the k-th contact above it carries (n − k)·m·g.
 ///
-/// On this chain of contacts, Jacobi's iteration for the impulses is P_k ← (P_{k−1} + P_{k+1})/2, with P_{−1} = P_1 at
-/// the floor and P_n = 0 at the top. Its error consists of modes cos kθ with cos nθ = 0, so the slowest mode decays by
-/// the factor cos(π/2n) per iteration. A chain has no loops, so every order of the contacts is consistent (D. M.
-/// Young, 1971), and in Gauss–Seidel the slowest mode decays by cos²(π/2n) per sweep.
+/// Let P_k be the error of the impulse of contact k (k = 0 at the floor), N·s, while a solver iterates. An iteration of
+/// Jacobi's method changes these errors to P_k ← (P_{k−1} + P_{k+1})/2, with P_{−1} = P_1 at the floor and P_n = 0 at
+/// the top. The modes of the error are cos kθ with the angles θ for which cos nθ = 0. Each mode decays by the factor
+/// cos θ per iteration, so the slowest mode decays by cos(π/2n). A chain has no loops, so every order of the contacts
+/// is *consistent* (D. M. Young, 1971). For a consistent order a sweep of Gauss–Seidel is as good as two iterations of
+/// Jacobi's method: the slowest mode decays by cos²(π/2n).
 pub fn column(count: usize) -> Scene {
     let place = |k: usize| (0.5 + k as f64) * (1.0 - TOUCH) - 0.5 * TOUCH;
     on_floor("column", (0..count).map(|k| disc(0.0, place(k))).collect())
@@ -43,16 +45,17 @@ pub fn mass_ratio(ratio: f64) -> Scene {
     on_floor("mass-ratio", vec![disc(0.0, 0.5 - TOUCH), heavy])
 }
 
-/// Smallest rolling friction at which [`leaning_column`] stays at rest.
+/// Smallest coefficient of rolling friction, dimensionless, at which the column of [`leaning_column`] stays at rest.
 pub const ROLLING_FRICTION_OF_COLUMN: f64 = 1.0;
 
-/// Returns the scene of n discs on a fixed disc. All centres are on a line that leans from the vertical by the angle φ with
-/// tan φ = 1/(2n). Without rolling friction the column rolls aside, whatever its friction coefficient is.
+/// Returns the scene of n discs on a fixed disc. All centres are on a line that leans from the vertical by the angle φ
+/// with tan φ = 1/(2n). Without rolling friction the column rolls aside, at any friction coefficient.
 ///
-/// Each disc has the weight w and the radius r. The contact below the k-th disc from the top carries k discs: N = k w cos
-/// φ and T = k w sin φ. The weight of these discs acts at the distance k r from the contact, so the contact must transmit
-/// the moment M = k² r w sin φ. Rolling friction allows |M| ≤ μ_r R N with the reduced radius R = r/2. So the lowest
-/// contact, k = n, decides, and the column holds if
+/// Each disc has the weight w and the radius r. The contact below the k-th disc from the top carries k discs, so its
+/// normal force is N = k w cos φ and its tangential force k w sin φ. The weight of these discs acts at the distance k r
+/// from the contact, so the contact must transmit the moment M = k² r w sin φ. Rolling friction with the coefficient
+/// μ_r transmits moments up to μ_r R N, with the reduced radius R = r/2 of two equal discs. So the lowest contact, k =
+/// n, decides, and the column holds if
 ///
 /// > μ_r ≥ 2n tan φ = 1.
 pub fn leaning_column(count: usize) -> Scene {
@@ -66,7 +69,7 @@ pub fn leaning_column(count: usize) -> Scene {
     scene
 }
 
-/// Number of discs in the column below the heavy disc.
+/// Number of discs in the column below the heavy disc of the scene [`lift_off`].
 const BELOW: usize = 5;
 
 /// Returns the scene of a column of five discs under a heavy disc, which is removed during the run. The heavy disc is
@@ -86,11 +89,12 @@ pub fn lift_off(ratio: f64) -> Scene {
 /// Returns the scene of a large disc on two small discs, as in a pile of logs. `ratio` is the ratio of the radii, R/r.
 ///
 /// The two small discs of radius r touch each other, and the large disc has the radius R. The upper contacts are
-/// inclined by θ to the vertical, with sin θ = r/(R + r). Two forces act on a small disc, from the floor and from the
-/// large disc. They pass through the two contact points of the small disc and exert no torque on it. So the force
-/// from above is inclined by θ/2 to the normal of its contact, and the contact does not slide if the friction
-/// coefficient is μ ≥ tan(θ/2). For R = r, θ is 30°, and the condition is μ ≥ tan 15° = 2 − √3. The contacts with the
-/// floor need less friction.
+/// inclined by θ to the vertical, with sin θ = r/(R + r). The two small discs need not push each other. Then three
+/// forces act on a small disc: its weight, the force of the floor and the force of the large disc. The weight and the
+/// force of the floor act along lines through the lowest point of the disc. So in equilibrium the force of the large
+/// disc acts along the line from the upper contact to this point, which is inclined by θ/2 to the normal of the upper
+/// contact. The upper contact does not slide if the friction coefficient is μ ≥ tan(θ/2). For R = r, θ is 30°, and the
+/// condition is μ ≥ tan 15° = 2 − √3. The contacts with the floor need less friction.
 pub fn logs(ratio: f64) -> Scene {
     let half = 0.5 * (1.0 - TOUCH);
     let reach = 0.5 * (1.0 + ratio) - TOUCH;

@@ -10,9 +10,11 @@ use crate::world::{Disc, Grain};
 /// springs need some overlap to find the equilibrium.
 const OVERLAP: f64 = 1e-3;
 
-/// Returns the scene of a chain of n ≥ 2 equal discs of mass m that hang from a fixed disc. The contact with the
-/// fixed disc has the cohesion force C₀ = Bond·m·g and carries n·m·g. The next contact has C₀ = Bond·(m/2)·g and
-/// carries (n − 1)·m·g. So the chain does not break if the Bond number is above max(n, 2(n − 1)), at every time step.
+/// Returns the scene of a chain of n ≥ 2 equal discs of mass m that hang from a fixed disc under gravity g. The
+/// cohesion force C₀ of a contact is the Bond number times the weight of the effective mass, which is m at a fixed disc
+/// and m/2 between two discs. The contact with the fixed disc has C₀ = Bond·m·g and carries n·m·g. The next contact has
+/// C₀ = Bond·(m/2)·g and carries (n − 1)·m·g. So the chain does not break if the Bond number is above max(n, 2(n − 1)),
+/// at every time step.
 pub fn hanging_chain(count: usize, bond: f64) -> Scene {
     let place = |k: usize| -(k as f64) * (1.0 - OVERLAP);
     let mut scene = dry("chain", (1..=count).map(|k| disc(0.0, place(k))).collect());
@@ -31,7 +33,8 @@ pub fn breaking_bond(count: usize) -> f64 {
 /// Distance between the centres of neighbouring discs of the cantilever and the bridge, in diameters. The discs
 /// overlap about as in a pile at rest.
 const SPACING: f64 = 1.0 - 1e-4;
-/// Bond number of the cantilever and the bridge.
+/// Bond number of the cantilever and the bridge: cohesion force divided by the weight of the effective mass. With this
+/// value a cantilever of 4 discs per row does not tear, and a cantilever of 8 discs per row must tear.
 const BOND: f64 = 100.0;
 
 fn lower(k: i32) -> Grain {
@@ -55,11 +58,13 @@ fn truss(name: &str, grains: Vec<Grain>, fixed: Vec<Grain>) -> Scene {
     scene
 }
 
-/// Returns the scene of a cantilever: two rows of L discs each, fixed to a wall on one side.
+/// Returns the scene of a cantilever: two rows of L discs each, next to two fixed discs on one side, which act as a
+/// wall. Each disc has the mass m and the diameter d, and g is gravity.
 ///
-/// **Estimate.** The cantilever weighs 2L·m·g, and its weight acts L/2 diameters from the wall on average. So its rows
-/// carry a force of L²·m·g·d divided by their distance of 0.87 d. A contact carries up to 50 m·g at Bond 100. A
-/// cantilever with L = 4 needs 18 m·g and is far from tearing. With L = 8 it needs 74 m·g and must tear.
+/// **Estimate.** The cantilever weighs 2L·m·g, and its weight acts L/2 diameters from the wall on average. So this
+/// weight exerts a moment of L²·m·g·d at the wall. The rows, whose distance is 0.87 d, balance it by a pull in the
+/// upper row and an equal push in the lower row of L²·m·g/0.87. At Bond 100 a contact of two discs carries up to 50
+/// m·g. A cantilever with L = 4 needs 18 m·g and is far from tearing. With L = 8 it needs 74 m·g and must tear.
 ///
 /// **Exact limit.** Without friction the cantilever is a truss of 4L bars (contacts) between 2L joints (discs), so it
 /// is statically determinate. Cut a bar of the upper row, with n discs of each row beyond the cut, and take moments

@@ -10,7 +10,8 @@ use super::{DIAMETER, TOUCH, disc, dry, floor, half_space, view};
 use crate::scene::{Scene, rough_base};
 use crate::world::{Disc, direction};
 
-/// Initial position of the falling disc relative to the highest disc of the heap, in diameters along x and y.
+/// Initial position of the falling disc of the scene [`heap_far_away`] relative to the highest disc of its heap, in
+/// diameters along x and y.
 const FALLING: [f64; 2] = [0.3, 1.5];
 
 /// Returns the scene of a triangular heap over a rough base, with slopes of 60°. It has `rows` rows, and its lowest
@@ -45,8 +46,9 @@ pub fn heap_of(count: usize) -> Scene {
     Scene { name: "size".into(), ..heap(rows) }
 }
 
-/// Returns the scene of [`heap`] with one more disc, which falls onto the slope, far from the origin of the
-/// coordinates. All discs are shifted by `distance` diameters along both axes.
+/// Returns the scene of [`heap`] with one more disc, which falls onto the slope. All discs are shifted by `distance`
+/// diameters along both axes, so that they are far from the origin. There the rounding of coordinates is coarser, but
+/// the discs should move as they do at the origin.
 pub fn heap_far_away(rows: usize, distance: f64) -> Scene {
     let mut scene = heap(rows);
     scene.name = "far".into();
@@ -64,8 +66,8 @@ pub fn heap_far_away(rows: usize, distance: f64) -> Scene {
 /// Steepest inclination of the base at which the heap of [`heap_on_slope`] stays at rest, degrees.
 pub const STEEPEST_DEGREES: f64 = 30.0;
 
-/// Returns the scene of [`heap`] on a slope. The heap stays at rest up to an inclination of exactly 30°, whatever its
-/// size is and for every friction coefficient below √3.
+/// Returns the scene of [`heap`] on a base that is inclined by `degrees` (degrees). The heap stays at rest up to an
+/// inclination of exactly 30°, for every number of rows and every friction coefficient below √3.
 ///
 /// **Up to 30°** every disc can rest on the two discs below it without friction. Let f₁ be the force of the lower
 /// disc on the uphill side and f₂ the force of the lower disc on the downhill side. Both act along the lattice, at
@@ -77,10 +79,10 @@ pub const STEEPEST_DEGREES: f64 = 30.0;
 /// The load on a disc passes straight on to the discs below. So the forces along each line of the lattice add up, and
 /// all of them push.
 ///
-/// **Beyond 30°** the line of the weight of the highest disc passes outside its downhill contact, about which the
-/// disc turns. Its uphill contact opens at 30° to the normal of that contact, so only a friction coefficient of at
-/// least tan 60° = √3 could hold the disc. Without friction the whole base would have to pull, Σf₁ < 0, so no
-/// equilibrium exists.
+/// **Beyond 30°** the line of the weight of the highest disc passes outside its downhill contact, about which the disc
+/// turns. As the disc turns, its surface leaves the uphill contact in a direction at 30° to the normal of the uphill
+/// contact. So friction could hold the disc only with a coefficient of at least tan 60° = √3. Without friction the
+/// whole base would have to pull, Σf₁ < 0, so no equilibrium exists.
 ///
 /// A heap of grains that are poured at random does not have such an exact limit: its angle of repose depends on its
 /// history.
@@ -109,16 +111,17 @@ const GROUND: f64 = 0.5;
 /// Returns the scene of an arch: three discs between two fixed discs. The centres of all five discs are on a
 /// semicircle, an eighth of a turn apart.
 ///
-/// The highest disc is the keystone. Its two contacts are the crown contacts, and the contacts with the fixed discs
-/// are the spring contacts. A contact whose normal, from the lower to the higher disc, rises at the angle φ transmits
-/// a force N along the normal and T across it. So the force that pushes up the arch has the components H = N cos φ −
-/// T sin φ (thrust) and V = N sin φ + T cos φ. With the weight w of a disc, each crown contact carries half of the
-/// keystone (V = w/2, φ = β). The spring contact below carries one disc more (V = 3w/2, φ = α) at the same thrust H,
-/// so that
+/// The highest disc is the keystone. Its two contacts are the crown contacts, and the contacts with the fixed discs are
+/// the spring contacts. Let the normal of a contact, from the lower to the higher disc, rise at the angle φ to the
+/// horizontal: φ = β at a crown contact, and φ = α at a spring contact. The lower disc pushes the higher disc with a
+/// force N along the normal and T across it. The horizontal component of this force is the thrust H = N cos φ − T sin
+/// φ, and the vertical component is V = N sin φ + T cos φ. With the weight w of a disc, each crown contact carries half
+/// of the keystone, V = w/2. Each spring contact carries one disc more, V = 3w/2, at the same thrust H. With T_β at a
+/// crown contact and T_α at a spring contact,
 ///
 /// > T_β = (w/2) cos β − H sin β,  T_α = (3w/2) cos α − H sin α.
 ///
-/// Zero torque on the disc between the two contacts requires T_α = −T_β, which gives
+/// No torque acts on the disc between a crown contact and a spring contact if T_α = −T_β, which gives
 ///
 /// > H = (w/2) (cos β + 3 cos α)/(sin α + sin β),
 /// > T_β = (w/2) (sin α cos β − 3 cos α sin β)/(sin α + sin β).

@@ -6,12 +6,12 @@ use crate::scene::Scene;
 use crate::scene::stability::{DIAMETER, GRAVITY, TOUCH, disc, dry, mass_ratio, on_floor, view};
 use crate::world::{Boundary, Gravity, Physics};
 
-/// Height from which the disc falls, in diameters.
+/// Height of fall of the disc in the scene [`bounce`], from its lowest point to the floor, in diameters.
 const DROP: f64 = 5.0;
 
-/// Returns the scene of a disc that falls from the height h onto the floor. After the first bounce with the
-/// restitution ρ it rises to ρ² h. For ρ < 1 it comes to rest after infinitely many bounces, at the time √(2h/g)·(1 +
-/// ρ)/(1 − ρ).
+/// Returns the scene of a disc that falls under gravity g from the height h onto the floor. After the first bounce with
+/// the restitution ρ it rises to ρ² h. For ρ < 1 it comes to rest after infinitely many bounces. The time until then is
+/// √(2h/g)·(1 + ρ)/(1 − ρ).
 pub fn bounce(restitution: f64) -> Scene {
     let mut scene = on_floor("bounce", vec![disc(0.0, DROP + 0.5)]);
     scene.parameters.restitution = restitution;
@@ -20,7 +20,7 @@ pub fn bounce(restitution: f64) -> Scene {
     scene
 }
 
-/// Speed of the ball that hits the row of balls, in √(g d) (g: gravity, d: diameter).
+/// Speed of the ball that hits the row of balls in the scene [`balls`], in units of √(g d) (g: gravity, d: diameter).
 const BALL_SPEED: f64 = 3.0;
 
 /// Returns the scene of Newton's cradle, without gravity: one ball hits a row of `count` − 1 balls, which touch each
@@ -47,8 +47,9 @@ const RATIO: f64 = 9.0;
 const SLIDING: f64 = 6.0;
 /// Initial speed at which the heavy disc falls, in √(g d) (g: gravity, d: diameter), in the scene `blow`.
 const FALLING: f64 = 2.0;
-/// Initial gap between the falling disc and the lower disc, in diameters. It is so large that in the first steps,
-/// whatever the time step is, only the lower disc touches another body.
+/// Initial gap between the falling disc and the lower disc in the scene `blow`, in diameters. The gap is so large that
+/// the first step, at any time step, has a single contact: that of the lower disc with the floor. So this contact
+/// exists before the blow.
 const HEIGHT: f64 = 0.05;
 
 /// Returns the scene of a blow: a disc slides along the floor, and a heavy disc, which moves along above it, hits it
@@ -65,11 +66,12 @@ const HEIGHT: f64 = 0.05;
 /// only be 0.9 μ times the normal impulse of the blow, which is less than μ times this impulse (the lower disc has the
 /// mass M/10).
 ///
-/// The friction model `tresca` bounds friction in a step by the normal impulse of the previous step. In the step of the
-/// blow this bound is still zero. Only in the next step is the bound μ times the normal impulse of the blow. So the
-/// discs have the right speed one step late, and both discs move too far by Δt μ|p_y|/M (time step Δt). A second solve
-/// of the same step uses the impulse of the blow, because here the normal impulse of the floor does not depend on
-/// friction.
+/// The friction model `tresca` bounds friction by μ times a normal impulse that is known before the solve. With the
+/// normal impulse of the previous step, this bound would be zero in the step of the blow. The discs would have the
+/// right speed one step late, and both discs would move too far by Δt μ|p_y|/M (time step Δt). Therefore `tresca`
+/// estimates the normal impulse by sweeps under Coulomb's law in the same step, which include the blow. A second solve
+/// of the same step (setting `model-solves`) makes the bound exact, because here the normal impulse of the floor does
+/// not depend on friction.
 pub fn blow() -> Scene {
     let mut scene = mass_ratio(RATIO);
     scene.name = "blow".into();
@@ -86,7 +88,8 @@ pub fn blow() -> Scene {
     scene
 }
 
-/// Initial speed of the sliding disc along the floor, in √(g d) (g: gravity, d: diameter).
+/// Initial speed of the sliding disc along the floor in the scene [`dilatancy`], in units of √(g d) (g: gravity, d:
+/// diameter).
 const SLIDING_SPEED: f64 = 3.0;
 
 /// Returns the scene of a disc that slides on the floor and does not rotate. In a correct solution the disc keeps its
@@ -107,9 +110,9 @@ const SLIDING_SPEED: f64 = 3.0;
 /// The disc is lifted by Δt μ v_t and loses a fraction μ²/(1 + μ²) of its speed, as if it had hit a slope. Then it
 /// flies up to a height of v_n²/2g, at any time step.
 ///
-/// **The friction model `desaxce`** allows v_n = μ(|v_t| − |v_t| of the previous solve), which is negative for a disc
-/// that slows down. The sum of v_n over all steps is −μ v₀, so at the end the disc is lower by μ v₀ Δt than at the
-/// start.
+/// **The friction model `desaxce`** allows v_n = μ(|v_t| − |v_t'|), with the tangential velocity v_t' before the step.
+/// This v_n is negative for a disc that slows down. The sum of v_n over all steps is −μ v₀, so at the end the disc is
+/// lower by μ v₀ Δt than at the start.
 pub fn dilatancy() -> Scene {
     let mut grain = disc(0.0, 0.5 - TOUCH);
     grain.velocity.x = SLIDING_SPEED * (GRAVITY * DIAMETER).sqrt();
@@ -119,13 +122,14 @@ pub fn dilatancy() -> Scene {
     scene
 }
 
-/// Distance of the wall from the initial position of the disc, in diameters.
+/// Distance of the wall from the origin, near which the disc starts, in the scene [`thin_wall`], in diameters.
 pub const WALL_DISTANCE: f64 = 20.0;
 
 /// Returns the scene of a fast disc and a wall without thickness. The disc moves `travel` diameters per step. Its
-/// initial position is shifted by the fraction `phase` of the distance per step. If a step is longer than the radius r
-/// of the disc, it can carry the centre past the wall before the disc overlaps the wall, or in the step in which the
-/// two first overlap. This happens for a fraction 1 − r/(v Δt) of all phases (speed v, time step Δt).
+/// initial position is shifted by the fraction `phase` of the distance per step. A solver that detects contacts only at
+/// the beginning of a step misses the wall if the gap is then still open and the step carries the centre of the disc
+/// past the wall. This can happen if the distance per step, v Δt (speed v, time step Δt), is longer than the radius r
+/// of the disc. It happens for a fraction 1 − r/(v Δt) of all phases.
 pub fn thin_wall(travel: f64, phase: f64) -> Scene {
     let mut grain = disc(travel * phase, 0.0);
     let mut scene = dry("thin-wall", Vec::new());

@@ -23,9 +23,10 @@ pub use impacts::{WALL_DISTANCE, balls, blow, bounce, dilatancy, thin_wall};
 use super::{Scene, View};
 use crate::world::{Boundary, Grain, Gravity, Parameters};
 
-/// Diameter d of a disc in the stability scenes and in the experiments, m.
+/// Diameter d of a disc in the scenes of this module and, as a mean, in the experiments of
+/// [`crate::scene::experiments`], m.
 pub const DIAMETER: f64 = 0.01;
-/// Gravity g in the stability scenes and in the experiments, m/s².
+/// Gravity g in the scenes of this module and in the experiments of [`crate::scene::experiments`], m/s².
 pub const GRAVITY: f64 = 9.8;
 /// Initial overlap of discs that are meant to touch, in diameters. It is larger than the gap that the error of a well
 /// solved step may open, and much smaller than any length that the stability tests measure.
