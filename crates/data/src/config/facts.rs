@@ -9,8 +9,9 @@ use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::sim::Settings;
 
-/// Names of the fields of a scene that are not written as metadata of a recording: the discs are in the tables, and the
-/// other fields concern the file of the grains and the recording itself.
+/// Names of the fields of a scene that are not written as metadata of a recording: grains and fixed discs are in the
+/// tables of the recording; `source` names the file of the grains or describes a new pile; `data` has the options of
+/// the recording.
 const LEFT_OUT: [&str; 4] = ["grains", "fixed_discs", "source", "data"];
 
 /// Name of the metadata entry that lists the changes of settings during the run.
@@ -43,7 +44,7 @@ pub fn scene_facts(scene: &Scene) -> Result<RunFacts> {
 /// step in seconds, and the new settings. Settings that did not change are not written.
 ///
 /// # Errors
-/// As [`scene_facts`].
+/// If a value cannot be written as JSON.
 pub fn run_facts(scene: &Scene, changes: &[(u64, f64, Settings)]) -> Result<RunFacts> {
     let mut run = scene_facts(scene)?;
     let mut told = Vec::new();
@@ -66,7 +67,7 @@ pub fn run_facts(scene: &Scene, changes: &[(u64, f64, Settings)]) -> Result<RunF
 }
 
 /// Converts `something`, serialisable data of a scene, to values with dotted names such as `parameters.bond`. Fields in
-/// [`LEFT_OUT`] are omitted. The scene itself only serves for error messages.
+/// [`LEFT_OUT`] are omitted. `scene` is used only for its name in error messages.
 fn values_of(scene: &Scene, something: &impl Serialize) -> Result<Map<String, Json>> {
     let said = serde_json::to_value(something)
         .map_err(|error| Error::value("scene", &scene.name, error.to_string()))?;

@@ -15,7 +15,8 @@ pub fn parser_of<T: Settable + Send + Sync + 'static>() -> ValueParser {
     possible(words).try_map(said).into()
 }
 
-/// Returns a command-line parser that accepts only the words of a list. The help shows the text of each word.
+/// Returns a command-line parser that accepts only the words of a list. The help of the command line explains each word
+/// by the text `hint` of its [`Word`].
 pub(super) fn possible(words: &'static [Word]) -> PossibleValuesParser {
     let word = |word: &Word| PossibleValue::new(word.name).help(word.hint);
     PossibleValuesParser::new(words.iter().map(word))

@@ -1,6 +1,6 @@
-//! Converts the configuration of a run ([`Config`]) to and from options of the command line, and to and from the flat
-//! table with the same names that studies and their journals contain. Also rewrites errors in a command line as
-//! messages of one sentence.
+//! Converts the configuration of a run ([`Config`]) to and from options of the command line. Also converts it to and
+//! from a table without nested tables, whose entries have the names of the options. The files and journals of studies
+//! (lists of runs) contain such tables. Also rewrites errors in a command line as messages of one sentence.
 
 use std::error::Error as _;
 use std::fmt;

@@ -8,9 +8,9 @@ use crate::data::facts_of_recording;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 
-/// Properties in which a pile keeps its own values if it starts from the grains of a recorded scene. Each text is the
-/// beginning of a property's name in the recording's metadata. Settings are not in the list, because every run has its
-/// own settings.
+/// Properties of the scene `pile` that do not change if the pile starts from the grains of a recorded scene. Each text
+/// is the beginning of a property's name in the recording's metadata. Settings are not in the list, because every run
+/// has its own settings.
 const OF_THE_PILE: [&str; 10] = [
     "areal_density",
     "boundaries",

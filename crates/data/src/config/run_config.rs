@@ -1,5 +1,6 @@
 //! Defines the configuration of a run: the source of the scene, and changes to the scene. The same structure is used
-//! for the options of the command line, for a run of a study, and for the configuration that is stored with results.
+//! for the options of the command line, for one run of a study (a list of runs), and for the configuration that is
+//! stored with results.
 
 use std::path::{Path, PathBuf};
 
@@ -36,7 +37,7 @@ pub struct Config {
     /// Changes to the remedies, which are optional corrections for known failures of a stepper, such as overlap.
     pub remedies: RemedyChanges,
     /// Folder to which relative paths in the configuration refer; empty for the working directory. It is not stored
-    /// with the configuration, because a study defines the same runs in any folder.
+    /// with the configuration, because a study (a list of runs) defines the same runs in any folder.
     pub folder: PathBuf,
 }
 
@@ -64,7 +65,7 @@ pub struct SceneSource {
     #[arg(long, value_name = "D", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub box_width: Option<f64>,
-    /// Width of the rough base under a pile, in mean diameters [default: five heights beyond the box on either side]
+    /// Width of the rough base under a pile, in mean diameters [default: box width plus 5 pile heights on either side]
     #[arg(long, value_name = "D", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub base_width: Option<f64>,
@@ -80,7 +81,7 @@ pub struct SceneSource {
     #[arg(long, value_name = "SIZES", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sizes: Option<Sizes>,
-    /// Start of the ball k of the cradle, in diameters to the left of i, between centres
+    /// Initial distance of the moving ball of the cradle from the ball that it hits, between centres, in diameters
     #[arg(long, value_name = "D", help_heading = "Scene")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start: Option<f64>,
@@ -174,7 +175,8 @@ impl BaseScene {
 impl Config {
     /// Name of the scene for a configuration that names no scene.
     pub const DEFAULT_SCENE: &str = "pile";
-    /// Name of Newton's cradle, the only scene that has the option `start`.
+    /// Name of Newton's cradle, the only scene with the option `start`: the initial distance of the moving ball from
+    /// the ball that it hits.
     const CRADLE: &str = "cradle";
 
     /// Creates a configuration for a scene, given by its name or file, without changes.
@@ -221,9 +223,9 @@ impl Config {
     }
 
     /// Makes the scene of this configuration with all changes and checks it, but does not let the grains of a new pile
-    /// settle. The scene then has the grains of the built-in scene instead or, if a scene file describes the pile, the
-    /// new grains at their initial positions. This takes little time, so that a wrong value is reported before long
-    /// work begins.
+    /// settle. If a scene file describes the new pile, the scene has the new grains at their initial positions. If the
+    /// options of the configuration describe it, the scene has the grains of the built-in pile instead of the new
+    /// grains. This takes little time, so that a wrong value is reported before long work begins.
     ///
     /// # Errors
     /// The error names the first field that is unknown or outside its range, or the file that cannot be read.
@@ -241,10 +243,13 @@ impl Config {
         self.scene_on(self.base_scene()?, progress)
     }
 
-    /// Like [`Config::scene`], but changes the scene `base` instead of the scene that the configuration names.
+    /// Applies all changes of this configuration to the scene `base`, which replaces the scene that the configuration
+    /// names, and checks the result. If the grains of a new pile must settle, this takes a while: `progress` is called
+    /// repeatedly and stops the work by returning false.
     ///
     /// # Errors
-    /// As [`Config::scene`].
+    /// The error names the first field that is unknown or outside its range. Also fails if the grains do not come to
+    /// rest.
     pub fn scene_on(
         &self,
         base: BaseScene,
@@ -261,7 +266,7 @@ impl Config {
     /// which have already settled.
     ///
     /// # Errors
-    /// As [`Config::without_settling`].
+    /// The error names the first field that is unknown or outside its range, or the file that cannot be read.
     pub fn scene_from(&self, settled: Vec<Grain>) -> Result<Scene> {
         self.settled_on(self.base_scene()?, settled)
     }
@@ -270,7 +275,7 @@ impl Config {
     /// option `initial` named a file with these discs.
     ///
     /// # Errors
-    /// As [`Config::without_settling`].
+    /// The error names the first field that is unknown or outside its range, or the file that cannot be read.
     pub fn scene_of_discs(&self, discs: RecordedGrains) -> Result<Scene> {
         self.check_source()?;
         let scene = self.pile_of_recorded("initial".as_ref(), discs)?;
@@ -280,7 +285,7 @@ impl Config {
     /// Returns the description of the new pile whose grains must settle before this run, if there is a new pile.
     ///
     /// # Errors
-    /// As [`Config::without_settling`].
+    /// The error names the first field that is unknown or outside its range, or the file that cannot be read.
     pub fn new_pile(&self) -> Result<Option<NewPile>> {
         if self.source.makes_new_pile() {
             return Ok(Some(self.source.new_pile()));
@@ -292,7 +297,7 @@ impl Config {
     /// without any of the other changes.
     ///
     /// # Errors
-    /// As [`Config::without_settling`].
+    /// The error names the first field that is unknown or outside its range, or the file that cannot be read.
     pub fn base_scene(&self) -> Result<BaseScene> {
         self.check_source()?;
         let SceneSource { initial, initial_step, start, .. } = &self.source;
@@ -325,10 +330,11 @@ impl Config {
         format!("{:?}", (self.named(), is_named, initial, initial_step, box_width, start))
     }
 
-    /// Like [`Config::without_settling`], but changes the scene `base`, which the caller has already made.
+    /// Applies all changes of this configuration to the scene `base` and checks the result, but does not let the grains
+    /// of a new pile settle.
     ///
     /// # Errors
-    /// As [`Config::without_settling`].
+    /// The error names the first field that is unknown or outside its range, or the file that cannot be read.
     pub fn change(&self, base: &BaseScene) -> Result<Scene> {
         self.check_source()?;
         let mut scene = base.scene.clone();

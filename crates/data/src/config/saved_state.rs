@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::sim::{Simulation, Tally};
 use crate::world::{Grain, Gravity};
 
-/// Header of files with saved runs, and the words for such files in error messages.
+/// Header of files with saved runs, and the words by which error messages name such a file: a state of a run.
 const SEAL: Seal = Seal {
     magic: "slump-state ",
     format: 8,

@@ -27,8 +27,9 @@ pub fn read_scene(path: &Path) -> Result<Scene> {
     }
 }
 
-/// Like [`read_scene`], but fast, because the grains of a new pile do not settle. The scene then has these grains at
-/// their initial positions, and the description of the pile is also returned, so that its grains can settle later.
+/// Reads a scene from a TOML file. If the scene describes a new pile, its grains do not settle, which would take long:
+/// the scene has the grains at their initial positions, and the description of the pile is also returned, so that the
+/// grains can settle later.
 pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<NewPile>)> {
     let text = read_text(path, FORM, MOST_OF_TOML)?;
     let scene = toml::from_str(&text).map_err(|error| {
@@ -67,8 +68,9 @@ pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Optio
     Ok((scene, new_pile))
 }
 
-/// Reads the grains for a scene from a file, at the step `step` or at the last step. If the scene lists no fixed discs,
-/// the fixed discs of the file are added to the scene.
+/// Reads the grains for a scene from a file of discs. If the file has several steps, reads the grains at the step
+/// number `step`, or at the last step if `step` is `None`. If the scene lists no fixed discs, the fixed discs of the
+/// file are added to the scene.
 fn discs_of(scene: &mut Scene, path: &Path, step: Option<u64>) -> Result<Vec<Grain>> {
     let mut discs = read_grains(path, step)?;
     let grains = std::mem::take(&mut discs.grains);

@@ -291,7 +291,8 @@ pub(super) fn histogram_table(now: &Observables, histograms: &[Histogram]) -> Ta
     Table::new("histograms", BIN_COLUMNS, &bins, &words)
 }
 
-/// Row of the file `frames.csv`, which lists the frames that have been written in every file format.
+/// Row of the file `frames.csv`, which lists the frames that have been written completely, in all file formats of the
+/// recording.
 pub(super) struct FrameRow {
     pub step: u64,
     pub time_secs: f64,

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use crate::error::{Error, Result};
 use crate::output::final_name;
 
-/// Name of the file that lists the frames of a recording that have been written in every file format.
+/// Name of the file that lists the frames of a recording that have been written completely, in all file formats of the
+/// recording.
 pub(super) const FRAMES: &str = "frames.csv";
 /// Beginning of the name of a table's Parquet file. The number of the file follows.
 const BEGINNING_OF_PART: &str = "part-";

@@ -125,14 +125,15 @@ pub(super) trait Format: Send {
         self.flush()
     }
 
-    /// Checks that the files still have the measurements of all steps up to `step`, and all frames up to the frame of
-    /// the step `last_frame`, in the numbers stated by `mark`. Changes no file.
+    /// Checks that the files still have the measurements of all steps up to step number `step`, and all frames up to
+    /// step number `last_frame` (no frames if it is `None`). `mark` has the numbers of frames and rows that must be
+    /// there. Changes no file.
     ///
     /// # Errors
     /// The error names a file that has lost data.
     fn check(&self, step: u64, last_frame: Option<u64>, mark: &RecordingMark) -> Result<()>;
 
-    /// Removes the measurements of steps after `step`, and all frames after the frame of the step `last_frame` (all
-    /// frames if it is `None`), so that the run can resume from `step`.
+    /// Removes the measurements of all steps after step number `step`, and all frames after step number `last_frame`
+    /// (all frames if it is `None`), so that the run can resume from `step`.
     fn roll_back(&mut self, step: u64, last_frame: Option<u64>) -> Result<()>;
 }

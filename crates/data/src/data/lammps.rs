@@ -28,7 +28,8 @@ pub(super) const FOLDER: &str = "ovito";
 /// File names of the dumps of grains, contacts and walls.
 pub(super) const FILES: [&str; 3] = ["grains.dump", "contacts.dump", "walls.dump"];
 
-/// First line of an incomplete frame. No reader knows this item, and every reader skips this item at the end of a file.
+/// First line of an incomplete frame, which begins a section whose name is unknown to readers. Every reader skips such
+/// a section at the end of a file.
 const DRAFT: &str = "ITEM: DRAFT";
 /// Beginning of a line that identifies an incomplete frame, even if the line was cut because the program was killed.
 const OF_A_DRAFT: &str = "ITEM: D";
@@ -220,8 +221,9 @@ fn whole_frames(path: &Path, step: Option<u64>) -> Result<u64> {
 
 /// The text of a frame in a dump.
 struct FrameText {
-    /// Text ahead of the first frame of a file: units, and the description of the run. Readers skip unknown items only
-    /// ahead of the first frame.
+    /// Text ahead of the first frame of a file: units, and the description of the run. It consists of sections (each
+    /// below a line `ITEM: NAME`) that readers do not know. Readers skip such sections ahead of the first frame, but
+    /// not between frames.
     pub front: String,
     /// Text of the frame from its first line to the names of the columns.
     pub head: String,
@@ -287,8 +289,9 @@ fn dump(
     FrameText { front: String::new(), head, rows: text }
 }
 
-/// Returns the name of the z component to be written after the column `name`; `None` if the column is not a y
-/// component. Readers expect vectors in three dimensions.
+/// Returns the name of the z component to be written after the column `name`; `None` if the column is not the y
+/// component of a vector of grains. `label` is the word for the rows of the dump, such as `ATOMS`. Readers expect
+/// vectors in three dimensions.
 fn along_z(label: &str, name: &str) -> Option<&'static str> {
     match name {
         "y" if label == ATOMS => Some("z"),

@@ -23,7 +23,8 @@ pub(super) struct Means {
 
 impl Means {
     /// Computes the means. `sums` are the sums of contact forces since the previous frame, `moment` is the present
-    /// snapshot, `grains` are the measures of its grains, and `area` is the area of its pile, m².
+    /// snapshot, `grains` are the measures of the grains in this snapshot, and `area` is the area of the pile in this
+    /// snapshot, m².
     pub(super) fn of(
         sums: &ForceSums,
         moment: &Moment,
@@ -145,7 +146,8 @@ fn some(number: f64) -> Option<f64> {
 }
 
 /// Columns of the mean stress σ, N/m: Σ f ⊗ ℓ over contacts, averaged over the time since the previous frame and
-/// divided by the area, with the contact force f (N) and the branch vector ℓ (m), which leads to the centre of grain i.
+/// divided by the area, with the contact force f (N) and the branch vector ℓ (m), which leads to the centre of grain i
+/// from the centre of grain j, or from the touched point of a wall or fixed disc.
 const STRESS_COLUMNS: &[ColumnSpec<DMat2>] = &[
     column(
         "mean_stress_xx",

@@ -14,12 +14,14 @@ use crate::error::{Error, Result};
 use crate::scene::{DataSettings, FormatName};
 use crate::sim::{ForceSums, Moment, Observables, Simulation};
 
-/// Default simulated time between two frames, s. Pictures have the same default interval.
+/// Default simulated time between two frames, s: 25 frames per simulated second. Pictures have the same default
+/// interval.
 const DEFAULT_EVERY_SECS: f64 = 0.04;
 /// Largest number of messages that may wait for the writing thread. If it is larger, waiting frames take more memory.
 /// If it is smaller, the run must wait whenever the disk is busy for a short time.
 const MOST_WAITING: usize = 4;
-/// Number of rows of the table of steps that are collected before they are sent to the writing thread.
+/// Number of rows of the table of steps that are collected before they are sent to the writing thread. If it is larger,
+/// fewer messages are sent, but more rows are lost when the program is killed.
 const MOST_ROWS: usize = 1024;
 /// Largest number of frames that are added before the files are flushed, if the run is faster than the disk. If it is
 /// larger, more frames are lost when the program is killed.
@@ -438,7 +440,8 @@ impl FrameSchedule {
     }
 
     /// True if a frame is to be recorded after step number `step`. `step_at` returns the number of the step that is
-    /// nearest to a time; for times up to `latest_secs` (s) it returns at most `step`.
+    /// nearest to a given simulated time (s). `latest_secs` is the end of the time interval (s) in which this step is
+    /// the nearest one.
     fn is_due_at(&mut self, step: u64, latest_secs: f64, step_at: impl Fn(f64) -> u64) -> bool {
         let mut due = false;
         while self.next_secs().is_some_and(|secs| step_at(secs) <= step) {

@@ -86,8 +86,9 @@ impl Values {
         words.get(codes[row] as usize).map(String::as_str)
     }
 
-    /// Returns the values of a column extended to `rows` rows, with missing values at the end. Counts become numbers,
-    /// because a number can be missing but a count cannot. Words, and numbers that cannot be missing, are not extended.
+    /// Adds missing values at the end of a column until it has `rows` rows, and returns the result. Counts become
+    /// numbers, because a number can be missing but a count cannot. Columns of words, and columns whose numbers cannot
+    /// be missing, are returned unchanged.
     pub(super) fn padded(self, rows: usize) -> Self {
         match self {
             Self::SomeNumbers(mut numbers) => {
@@ -141,8 +142,8 @@ impl Column {
         format!("{name}{unit}: {about}")
     }
 
-    /// Like [`Column::described`], but also lists the number of each word, for formats that write words as numbers. The
-    /// first word has the number `first_code`.
+    /// Returns name, unit and meaning of the column in one line. If the column has words, the line also lists the
+    /// number of each word, for formats that write words as numbers. The first word has the number `first_code`.
     pub(super) fn described_with_codes(&self, name: &str, first_code: u32) -> String {
         let codes = match &self.values {
             Values::Words { words, .. } => {
@@ -158,8 +159,8 @@ impl Column {
 }
 
 impl Table {
-    /// Makes a table from rows, with the columns `specs`. `names` is the list from which columns of names take their
-    /// values by index.
+    /// Makes a table from rows, with the columns `specs`. The columns of type [`CellValue::Name`] state an index for
+    /// each row; `names` is the list of words to which these indices refer.
     pub(super) fn new<Row>(
         name: &'static str,
         specs: &[ColumnSpec<Row>],

@@ -32,28 +32,35 @@ use crate::sim::{GrainState, Surroundings};
 use crate::world::{Boundary, Edge, Periodic};
 
 /// Limit of the packing: the largest power |p − x|² − r² of a point p in the packing with respect to the nearest grain
-/// (centre x, radius r), in squares of the mean radius. If it is smaller, loose packings have open cells inside. If it
+/// (centre x, radius r), in squares of the mean radius. The power is 3 in the centre of a pore that is surrounded by
+/// grains of the mean radius and just large enough for one more of them: the centre of the pore is 2 radii from the
+/// centres of the grains, and 2² − 1² = 3. If the limit is smaller, loose packings have open cells inside. If the limit
 /// is larger, more of the air above a free surface counts.
 const LARGEST_POWER: f64 = 3.0;
 
-/// Relative margin for rounding in the test whether a cell is closed, which means that all its corners are in the
-/// packing. The squared distances of its corners from its centre must be below the limit by this fraction.
+/// Relative margin for rounding errors in the test whether a cell is closed, which means that all corners of the cell
+/// are in the packing. The squared distance of each corner from the centre of the grain must be below the largest
+/// squared distance of a point in the packing, by at least this fraction of the latter.
 const CLOSED_WITHIN: f64 = 1e-9;
 
 pub(super) struct PowerCells {
-    /// Area of each grain's cell, m²; NaN for a lost grain (which went through a wall or left the scene).
+    /// Area, m², of each grain's cell, the region that is nearer to the grain than to any other disc, as far as it
+    /// belongs to the packing; NaN for a lost grain (which went through a wall or left the scene).
     pub areas: Vec<f64>,
-    /// Area of each grain's disc divided by the area of its cell; NaN if a corner of the cell is outside the packing.
+    /// Area of each grain's disc divided by the area of the grain's cell, the region that is nearer to the grain than
+    /// to any other disc. NaN if a corner of the cell is outside the packing: at a free surface or a hole.
     pub solid_fractions: Vec<f64>,
-    /// Sum of the areas of the cells of all grains, m².
+    /// Sum of the areas of the cells of all grains, m². The cell of a grain is the region that is nearer to the grain
+    /// than to any other disc, as far as it belongs to the packing.
     pub area: f64,
     /// Area of the axis-parallel box around all grains, m²; NaN without grains.
     pub box_area: f64,
     /// Total area Σ πr² of the discs of all grains, m².
     pub disc_area: f64,
     pub closed: u32,
-    /// Total disc area of the grains with closed cells (all corners in the packing), divided by the total area of those
-    /// cells; NaN without closed cells.
+    /// Total disc area of the grains with closed cells, divided by the total area of those cells; NaN without closed
+    /// cells. A cell, the region nearer to a grain than to any other disc, is closed if all its corners are in the
+    /// packing.
     pub solid_fraction: f64,
 }
 
@@ -150,8 +157,9 @@ fn cut(sites: &[Site], first: usize, second: usize) -> HalfPlane {
     HalfPlane { offset: 0.5 * (distance + powers / distance), direction: branch / distance }
 }
 
-/// Returns, for each of the first `grains` discs, the indices of the discs whose cells may border on its cell: the
-/// circles with the radii `reach` around the two discs overlap.
+/// Returns, for each of the first `grains` discs of `sites`, the indices of the discs whose cells may border on the
+/// cell of this disc. Each cell lies within the circle with the radius `reach` around the centre of its disc, so only
+/// cells whose circles overlap can border on each other.
 fn neighbours(sites: &[Site], grains: usize) -> Vec<Vec<usize>> {
     let mut neighbours = vec![Vec::new(); grains];
     let centres: Vec<DVec2> = sites.iter().map(|site| site.position).collect();

@@ -58,7 +58,8 @@ columns! {
         coordination: u32, "1";
         /// True for a rattler, a grain that transmits no force.
         rattler: bool, "1";
-        /// Area a of the grain's cell, as far as the cell belongs to the packing.
+        /// Area a of the grain's cell (the region that is nearer to the grain than to any other disc), as far as the
+        /// cell belongs to the packing.
         cell_area: f64, "m²";
         /// Stress component σ_xx of σ = (1/a) Σ f ⊗ ℓ over the contacts of the grain, compression positive. f is the
         /// force on the grain, and ℓ leads from the contact point to the grain's centre. The mean over all grains,
@@ -68,13 +69,14 @@ columns! {
         stress_xy: f64, "N/m";
         /// Stress component σ_yx: y component of the forces, x component of the branch vectors.
         stress_yx: f64, "N/m";
-        /// Stress component σ_yy.
+        /// Stress component σ_yy: y components of both the forces and the branch vectors.
         stress_yy: f64, "N/m";
         /// Pressure p = (σ_1 + σ_2)/2, half the trace of the stress σ.
         pressure: f64, "N/m";
         /// Deviatoric stress q = (σ_1 − σ_2)/2 of the symmetric part of the stress σ, never negative.
         deviator: f64, "N/m";
-        /// Area of the grain's disc divided by the area of the grain's cell; NaN if the cell is not closed.
+        /// Area of the grain's disc divided by the area of the grain's cell; NaN if the cell is at a free surface or a
+        /// hole.
         solid_fraction: f64, "1";
     }
 }
@@ -130,7 +132,7 @@ columns! {
         /// Stress component σ_yx: y component of the forces, x component of the branch vectors. It equals σ_xy if the
         /// torques on each grain balance.
         stress_yx: f64, "N/m";
-        /// Stress component σ_yy.
+        /// Stress component σ_yy: y components of both the forces and the branch vectors.
         stress_yy: f64, "N/m";
         /// Pressure p = (σ_1 + σ_2)/2, half the trace of the stress σ.
         pressure: f64, "N/m";
@@ -147,9 +149,9 @@ columns! {
         /// Fabric component F_xx. The fabric F is the mean of n ⊗ n over all contacts with the normals n; its trace is
         /// 1.
         fabric_xx: f64, "1";
-        /// Fabric component F_xy.
+        /// Fabric component F_xy: mean of n_x·n_y over all contacts with the normals n.
         fabric_xy: f64, "1";
-        /// Fabric component F_yy.
+        /// Fabric component F_yy: mean of n_y² over all contacts with the normals n.
         fabric_yy: f64, "1";
         /// Fabric anisotropy F_1 − F_2, the difference of the principal values of the fabric: 0 if the normals have no
         /// preferred direction, 1 if all have the same direction.
@@ -166,7 +168,8 @@ columns! {
         rattlers: u32, "1";
         /// Area of all discs, overlaps counted twice, divided by the area of the axis-parallel box around them.
         solid_fraction_box: f64, "1";
-        /// Area of the discs with closed cells divided by the area of their cells.
+        /// Area of the discs whose cells are closed (not at a free surface or a hole), divided by the area of these
+        /// cells.
         solid_fraction_cells: f64, "1";
         /// Number of grains with closed cells: the pores around such a grain are too small for a mean grain.
         closed_cells: u32, "1";

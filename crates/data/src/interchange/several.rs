@@ -29,7 +29,8 @@ pub struct FoundSolution {
     pub velocities: Vec<[f64; 3]>,
 }
 
-/// Largest number of initial guesses in one search.
+/// Largest number of initial guesses that a user may request for one search. The contact problem is solved once for
+/// each initial guess.
 pub const MOST_STARTS: u32 = 1_000;
 
 /// Searches for several solutions of the contact problem in a file. The file must contain the bodies, because solutions

@@ -216,8 +216,9 @@ pub fn check_file(field: &str, path: &Path) -> Result<()> {
         .or_else(|error| refuse(&format!("a file in a folder that can be written to ({error})")))
 }
 
-/// Like [`check_file`], but also fails if the file at `path` exists and is not empty, unless `overwrite` allows its
-/// replacement.
+/// Checks that a new file can be written at `path`, and creates the folder of the file if it does not exist. Fails if a
+/// file at `path` exists and is not empty, unless `overwrite` is true, which allows its replacement. `field` is the
+/// name of the option, for error messages.
 ///
 /// # Errors
 /// The error names the option and the file, and gives the reason.

@@ -87,16 +87,18 @@ impl GrowingFile {
         Ok(())
     }
 
-    /// Writes a head (header lines) and rows at the end of the file, so that all of them appear in the file in one
-    /// operation. Head and rows include their line ends. The rows are first written below a draft line that begins with
-    /// `draft`. Readers must skip this line and the rows below it. Finally the head replaces the draft line.
+    /// Writes header lines (`head`) and rows at the end of the file, so that readers see either all of them or none.
+    /// Head and rows include their line ends. The rows are first written below a draft line, which begins with the text
+    /// `draft` and is as long as the head. Readers must skip this line and the rows below it. Finally the head replaces
+    /// the draft line.
     ///
     /// If the program is killed, a write can only be interrupted at the end of a page, which is a block of [`PAGE`]
-    /// bytes of the file. A head that spans two pages is therefore written from its end, the second page first. The
-    /// rows remain a draft until the first page is written, which happens completely or not at all. If the first page
-    /// ends within the text `draft`, letters of the head may follow the beginning of that text. If the first page ends
-    /// within the characters with which both `draft` and the head begin, the second page decides. A reader must
-    /// therefore recognise a draft by the first letter that no head has at that position.
+    /// bytes of the file. If the head spans two pages, its part in the second page is therefore written first. The rows
+    /// remain a draft until the part in the first page is written, which happens completely or not at all. If the
+    /// program is killed between the two parts, the line begins like the draft line and ends like the head. A reader
+    /// must therefore recognise a draft by its first letter that differs from the letter of every head at that
+    /// position. If this letter is in the second page, the rows are no longer a draft as soon as the second page is
+    /// written, because both lines have the same letters in the first page.
     ///
     /// # Errors
     /// The error names the file and gives the system's message. The file then contains neither the rows nor the head.
@@ -116,8 +118,8 @@ impl GrowingFile {
     }
 
     /// Writes bytes to the file after its complete rows, and replaces bytes that are already there. If the bytes span
-    /// several pages (blocks of [`PAGE`] bytes of the file), the last page is written first: until the first page is written,
-    /// the place still begins with the bytes that were there before.
+    /// several pages (blocks of [`PAGE`] bytes of the file), the last page is written first: until the first page is
+    /// written, the replaced part of the file still begins with its old bytes.
     fn put_from_its_end(&mut self, bytes: &[u8]) -> std::io::Result<()> {
         self.pages_from_the_last(bytes.len())
             .into_iter()

@@ -14,7 +14,8 @@ const MOST_OF_HEAD: u64 = 1 << 20;
 /// Number of bytes at the end of a Parquet file that are searched for the name of the program that wrote it.
 const TAIL: u64 = 4096;
 
-/// First bytes of a line in the journal of a study, the file with its finished runs.
+/// First bytes of a line in the journal of a study (a list of runs). The journal is the file that lists the finished
+/// runs.
 const OF_JOURNAL: &[u8] = b"{\"checksum\":\"";
 /// Pairs of byte strings that identify files that Slump writes. A file begins with the first string. The second string
 /// must also occur near the beginning of the file; it is empty if the first string is sufficient.
@@ -44,8 +45,8 @@ const OF_VTK: [&[u8]; 2] = [
     b"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" \
         header_type=\"UInt64\">\n  <PolyData>\n    <FieldData>\n      <DataArray type=\"Int64\" Name=\"step\" ",
 ];
-/// Bytes 8 to 15 of a file with states of a run that wait to be drawn as pictures. Bytes 0 to 7 are the length of the
-/// data that follow.
+/// Bytes 8 to 15 of a file that collects states of a run until they are drawn as pictures at the end of the run. Bytes
+/// 0 to 7 are the length of the first state.
 const STATE: &[u8] = b"\x82\xa6number";
 
 /// True if the content shows that Slump wrote the file, even if the file was cut because the program was killed. A

@@ -16,12 +16,13 @@ use crate::error::{Error, Result};
 use crate::input::open;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
-/// Length of the longest first line, bytes.
+/// Largest number of bytes that are read to find the end of a file's first line. All first lines that Slump writes are
+/// shorter.
 const MOST_OF_LINE: u64 = 256;
 /// Error message for a file whose content does not match its checksum.
 const DAMAGED: &str = "is damaged: its checksum is not that of its content, but must be, as it was when it was written";
 
-/// Header of a type of file that only Slump reads, and the words for such files in error messages.
+/// Header of a type of file that only Slump reads, and the words by which error messages name a file of this type.
 pub struct Seal {
     /// The first word of the file and the space after it.
     pub magic: &'static str,

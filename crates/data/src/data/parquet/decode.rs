@@ -24,7 +24,8 @@ const MARK: u64 = 8;
 /// Number of bytes that are read of each word in a column of words; further bytes are ignored. All words for kinds of
 /// discs are shorter.
 const MOST_OF_WORD: usize = 64;
-/// Number of rows of a column that are decoded in one call of the decoder.
+/// Largest number of rows of a column that are decoded in one call of the decoder. More rows need fewer calls, but a
+/// larger buffer.
 const ROWS_AT_ONCE: usize = 1 << 16;
 
 /// An open Parquet file.
@@ -152,7 +153,8 @@ fn check_whole(file: &File) -> std::result::Result<(), String> {
     check_footer(&footer, bytes)
 }
 
-/// Returns the message of an error of the crate `parquet`, without the kind of error if that adds nothing.
+/// Returns the message of an error of the crate `parquet`. The name of the kind of error is omitted if the kind is
+/// general, not implemented or end of file, because the message then says enough.
 fn said(error: &ParquetError) -> String {
     match error {
         ParquetError::General(said) | ParquetError::NYI(said) | ParquetError::EOF(said) => {

@@ -31,8 +31,8 @@ use crate::sim::Observables;
 const SIZE_OF_PART: usize = 256 << 10;
 /// Key of the entry in a file's metadata that describes the units and meanings of the columns, as JSON.
 const COLUMNS_KEY: &str = "columns";
-/// Least mean number of rows between two changes of the value of a column of numbers, from which the column is written
-/// as a dictionary and indices. Such a column then takes almost no space.
+/// A column of numbers is written as a dictionary (list of its different values) with an index for each row if its
+/// value changes less often than once in this number of rows, on average. Such a column then takes almost no space.
 const FEW_CHANGES: usize = 8;
 
 /// Writer of a recording as Parquet files.

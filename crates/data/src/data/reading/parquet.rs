@@ -8,8 +8,9 @@ use super::rows::{
 use crate::data::parquet::{Decoded, ParquetFile};
 use crate::error::{Error, Result};
 
-/// Largest number of rows in one Parquet file. If a table is split into several files, the number of a row in the whole
-/// table is the index of its file times this number, plus its index in the file.
+/// Distance between the row numbers of the first rows of two successive files of a table: the number of a row is the
+/// index of its file times this distance, plus the index of the row in its file. No file has as many rows, so each row
+/// has its own number.
 const MOST_ROWS: u64 = 1 << 32;
 
 /// Reads the discs of step number `step`, or of the last step if `step` is `None`, from the Parquet files of a table,

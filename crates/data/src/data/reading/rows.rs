@@ -94,7 +94,7 @@ pub(super) fn check_names(path: &Path, names: &[String]) -> Result<()> {
     Err(Error::file(path, reason))
 }
 
-/// Returns the first name that is not a column of a file of discs.
+/// Returns the first of the column names `names` that a file of discs may not have; `None` if all names are allowed.
 pub(super) fn unknown_of(names: &[String]) -> Option<&String> {
     let known = empty_grains();
     names.iter().find(|name| known.column(name).is_none() && *name != DENSITY)

@@ -3,12 +3,12 @@
 //! the centre to the touched point of a boundary. `fields/fields.pvd`, a separate format, is a series of images
 //! (`.vti`) of smoothed fields on a grid ([`Fields`](crate::granular::Fields)).
 //!
-//! Arrays have the names of the tables' columns. Two columns that form a vector become one array (`velocity`, `normal`,
-//! `force` or `point`), because vectors of VTK have three components; the components have the names of the columns.
-//! Words become numbers, because readers cannot colour by words. Some arrays belong to the whole file. They contain the
-//! words in the order of their numbers (`NAME_words`), the description and unit of each column (`columns`), the
-//! description of the run (`about`), the measures of the whole pile (`pile_NAME`), and the values of each wall
-//! (`wall_NAME`).
+//! Arrays have the names of the tables' columns. Two columns that are the x and y components of a vector become one
+//! array (`velocity`, `normal`, `force` or `point`) with the third component 0, because vectors of VTK have three
+//! components. The components have the names of the columns. Words become numbers, because readers cannot colour by
+//! words. Some arrays belong to the whole file. They contain the words in the order of their numbers (`NAME_words`),
+//! the description and unit of each column (`columns`), the description of the run (`about`), the measures of the whole
+//! pile (`pile_NAME`), and the values of each wall (`wall_NAME`).
 
 mod fields_file;
 mod head;
@@ -89,9 +89,10 @@ const NEITHER: i8 = -1;
 /// and file name. It divides 4096, so that no slot lies in two blocks of 4096 bytes, between which a kill could
 /// interrupt the writing of an entry.
 const SLOT: usize = 128;
-/// Length of the text ahead of the first slot (space for an entry) in a `.pvd` file, bytes.
+/// Length of the text ahead of the first slot (space for an entry) in a `.pvd` file, bytes. The opening tags are filled
+/// with spaces to this length, a multiple of [`SLOT`], so that no slot lies in two blocks of 4096 bytes.
 const HEAD: usize = 256;
-/// Number of slots (spaces for entries) in a new `.pvd` file.
+/// Number of slots (spaces for entries) in a new `.pvd` file. It is doubled whenever no slot is free.
 const FIRST_SLOTS: usize = 32;
 
 const OPENING: &str = "<?xml version=\"1.0\"?>\n\
@@ -249,7 +250,7 @@ fn is_whole(path: &Path) -> bool {
 }
 
 /// Returns the two ends of the line that represents a contact, m. These are the present centres of the two discs, or
-/// the centre of the grain and the touched point of a boundary, which is the end of the branch vector.
+/// the centre of the grain and the touched point of a boundary. The branch vector leads from this point to the centre.
 fn line(moment: &Moment, contact: &ContactState) -> [DVec2; 2] {
     let from = moment.grains[contact.grain as usize].position;
     let periodic = moment.surroundings.periodic;
@@ -264,8 +265,8 @@ fn line(moment: &Moment, contact: &ContactState) -> [DVec2; 2] {
     [from, to]
 }
 
-/// Adds step, time, description and all columns of a table to a file. The vector with the name `placed_by` is left out,
-/// because it is the position of the file's points.
+/// Adds step, time, description and all columns of a table to a file. The vector whose name in [`VECTORS`] is
+/// `placed_by` is left out, because it is the position of the points, which the file already contains.
 fn file(
     mut file: VtkFile,
     frame: &Frame,
@@ -295,8 +296,8 @@ fn file(
     file
 }
 
-/// Adds the columns of a table whose rows are not points of the file, as arrays that belong to the whole file. The
-/// names of the arrays are the names of the columns after `prefix`.
+/// Adds the columns of a table whose rows are not points of the file, as arrays that belong to the whole file. The name
+/// of each array is `prefix` followed by the name of the column.
 fn with_arrays(mut file: VtkFile, prefix: &str, table: &Table) -> VtkFile {
     let columns = table.columns.iter().filter(|column| !OF_FRAME.contains(&column.name));
     for Column { name, values, .. } in columns {

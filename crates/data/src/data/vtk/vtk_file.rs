@@ -83,7 +83,8 @@ impl VtkFile {
         );
     }
 
-    /// Adds an array of numbers for the whole file. The array may be empty, so it is not written as text.
+    /// Adds an array of numbers for the whole file. The numbers are written in binary form, which can also represent an
+    /// empty array.
     pub(super) fn add_numbers<N: Scalar>(
         &mut self,
         name: &str,
