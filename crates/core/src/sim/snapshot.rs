@@ -1,5 +1,5 @@
-//! Copy of a simulation's state at one simulated time, for pictures and windows. It remains valid while the simulation
-//! continues.
+//! Copy of a simulation's state at one simulated time, from which Slump draws pictures and its interactive window. The
+//! copy does not change while the simulation continues.
 
 use std::sync::Arc;
 
@@ -18,13 +18,14 @@ use crate::world::Periodic;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Snapshot {
-    /// Measurements after the last step.
+    /// Measurements of the whole pile after the last step: one row of the CSV file of observables.
     pub observables: Observables,
     /// All grains.
     pub grains: Vec<GrainView>,
-    /// The contacts of the last step.
+    /// Contacts whose bodies touched or were bonded in the last step.
     pub contacts: Vec<ContactView>,
-    /// Boundaries and fixed discs.
+    /// All parts of the picture other than grains: boundaries (walls and other shapes), fixed discs, periodic borders,
+    /// gravity and materials.
     pub surroundings: Arc<Surroundings>,
 }
 
@@ -39,7 +40,8 @@ impl Snapshot {
     }
 }
 
-/// Returns the 64-bit FNV-1a hash (draft-eastlake-fnv, 5) of the bits of all numbers, as 16 hexadecimal digits.
+/// Returns the 64-bit FNV-1a hash (section 5 of the internet draft draft-eastlake-fnv) of the bits of all numbers, as
+/// 16 hexadecimal digits.
 pub fn hash_of_bits(numbers: impl IntoIterator<Item = f64>) -> String {
     let bytes = numbers.into_iter().flat_map(f64::to_le_bytes);
     let hash = bytes.fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
@@ -52,7 +54,7 @@ pub fn hash_of_bits(numbers: impl IntoIterator<Item = f64>) -> String {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GrainView {
-    /// Centre, m.
+    /// Centre of the grain, m.
     pub position: DVec2,
     /// Radius of the grain, m.
     pub radius: f64,
@@ -64,7 +66,7 @@ pub struct GrainView {
     pub angular_velocity: f64,
     /// Largest overlap over the contacts of the grain, m; 0 without contacts.
     pub overlap: f64,
-    /// Sum of the normal forces over the contacts of the grain, Σ|N|, N.
+    /// Sum of the absolute values of the normal forces at the contacts of the grain, in newtons.
     pub force: f64,
     /// Number of contacts of the grain.
     pub coordination: u32,
@@ -75,17 +77,17 @@ pub struct GrainView {
     pub material: u8,
 }
 
-/// A contact of the last step, for pictures.
+/// A contact of the last step, for pictures: its bodies touched or were bonded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactView {
-    /// Index of grain i of the contact.
+    /// Index of the contact's first body, which is always a grain.
     pub grain: u32,
-    /// Index of grain j of the contact; `None` if the other body is a fixed disc or a boundary.
+    /// Index of the contact's second body if it is a grain; `None` if it is a fixed disc or a boundary.
     pub other_grain: Option<u32>,
-    /// Centre of grain i, m.
+    /// Centre of the contact's first body, a grain, m.
     pub from: DVec2,
-    /// Centre of the other disc, or the touched point of a boundary, m.
+    /// Centre of the contact's second body if it is a grain or a fixed disc; the touched point if it is a boundary, m.
     pub to: DVec2,
     /// Normal force N, newton; negative if the contact pulls.
     pub normal_force: f64,
@@ -154,8 +156,9 @@ impl Simulation {
         Arc::new(Surroundings::of(world, self.parameters().time_step_secs))
     }
 
-    /// Returns the centre of a contact's other disc, or the nearest point of a boundary, m. With periodic borders, the
-    /// result belongs to the periodic image that is nearest to the grain.
+    /// Returns the centre of the second body of a contact, m, if that body is a grain or a fixed disc, or the nearest
+    /// point of a boundary. The first body is `grain`. With periodic borders, the result belongs to the periodic image
+    /// that is nearest to the grain.
     fn far_end(&self, grain: usize, other: Other) -> DVec2 {
         let State { world, candidates, .. } = &self.state;
         let centre = world.grains.positions[grain];

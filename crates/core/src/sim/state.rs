@@ -26,7 +26,8 @@ pub(crate) struct State {
     pub physics: Physics,
     pub candidates: Candidates,
     pub contacts: ContactList,
-    /// Moving walls with their velocities. Each step recomputes them at its beginning.
+    /// Moving walls with their velocities. At its beginning each step computes the list of walls and their velocities
+    /// again.
     #[serde(skip)]
     pub walls: Walls,
     /// Spring with which the user pulls one grain in the next steps; `None` if the user pulls no grain.
@@ -43,18 +44,20 @@ pub(crate) struct State {
 }
 
 impl State {
-    /// Returns the smallest compiled model (friction, rotation, rolling friction, …) that computes all physics of this
-    /// state.
+    /// Returns the smallest set of features (axes, friction, rotation, rolling resistance, sheared borders) that is
+    /// sufficient for this state. The solver is compiled once for each set of features.
     pub(crate) fn leanest_model(&self, parameters: &Parameters) -> ModelParts {
         ModelParts::leanest(self.physics, self.world.periodic, self.largest_friction(parameters))
     }
 
-    /// Returns the contact laws for pairs of materials; `None` if the parameters apply to all contacts.
+    /// Returns the coefficients of the contact law for each pair of materials; `None` if the scene gives none, so that
+    /// all contacts have the coefficients in `parameters`.
     pub(crate) fn pair_laws(&self, parameters: &Parameters) -> Option<PairLaws> {
         PairLaws::of(&self.world, parameters, self.physics)
     }
 
-    /// Returns the largest friction coefficient μ and the largest coefficient of rolling friction μ_r of any contact.
+    /// Returns two maxima over all contacts that are possible in this state: of the friction coefficient μ and of the
+    /// coefficient of rolling friction μ_r.
     pub(crate) fn largest_friction(&self, parameters: &Parameters) -> [f64; 2] {
         match self.pair_laws(parameters) {
             None => [parameters.friction, parameters.rolling_friction],
@@ -65,7 +68,7 @@ impl State {
         }
     }
 
-    /// Returns the number of substeps in which the stepper takes a step.
+    /// Returns the number of substeps into which the stepper divides a step.
     pub(crate) fn substeps(&self, settings: &Settings) -> u32 {
         (settings.stepper.info().substeps)(&self.world, self.physics, &settings.parameters)
     }
@@ -126,8 +129,9 @@ impl State {
     }
 
     /// Returns the speed of the fastest grain, or `fastest_wall` if that is larger, m/s. Periodic images of grains
-    /// beyond a sheared border slide with the border. Two grains that meet across the border share this sliding speed,
-    /// so half of the sliding speed is added to the result.
+    /// beyond a sheared border slide with the border. The relative velocity of two grains that meet across the border
+    /// contains this sliding speed once, so each of the two grains gets half of it: the result includes half of the
+    /// sliding speed.
     fn fastest_with(&self, fastest_wall: f64) -> f64 {
         let speeds = self.world.grains.velocities.iter().map(|velocity| velocity.length());
         speeds.fold(fastest_wall, f64::max) + 0.5 * self.speed_of_border()
@@ -168,7 +172,8 @@ impl State {
         }
     }
 
-    /// Returns the changes of the grains' velocities in the next `secs` (s) by the user's spring and by body forces.
+    /// Returns the changes of the grains' velocities in the next `secs` (s) by two forces: the spring with which the
+    /// user pulls a grain, and the forces in `body_forces`. `axes` is the number of space dimensions.
     pub(super) fn pushes(&self, axes: usize, secs: f64) -> Vec<Push> {
         let masses = &self.world.grains.masses;
         let spring = self.pull.and_then(|pull| pull.push(&self.world, axes, secs));
@@ -224,7 +229,7 @@ impl State {
         self.look_anew()
     }
 
-    /// Starts the neighbour search again from the present positions.
+    /// Starts the neighbour search again from the present positions: replaces the list of candidate pairs.
     pub(crate) fn look_anew(&mut self) -> Result<()> {
         let skin = SKIN_IN_DIAMETERS * self.world.mean_diameter;
         let gap_tolerance = self.candidates.gap_tolerance();

@@ -21,10 +21,11 @@ pub struct StepResult {
     pub gravity_work: f64,
     /// Work in the step of the forces that drive walls, minus the loss in the walls' damping, J.
     pub drive_work: f64,
-    /// Energies of bonds; `None` under a contact law without bonds.
+    /// Energies that bonds absorbed and released in the step; `None` under a contact law without bonds.
     pub bonds: Option<BondEnergies>,
-    /// Number of bonds that ended because their pairs of grains turned. Counted only under contact laws whose bonds
-    /// exist while the gap is negative.
+    /// Number of bonds that ended in the step because their pairs of grains circled each other, which opens the gap,
+    /// and not because of the pull on them. The steppers `moreau`, `tgs-soft` and `avbd` count such bonds; for other
+    /// steppers the number is 0.
     pub turned_bonds: u64,
 }
 
@@ -70,7 +71,7 @@ impl StepResult {
     }
 }
 
-/// A stepper: one from the registry, or a stepper of your own
+/// A stepper: one of Slump's own steppers (`moreau`, `range`, `tgs-soft`, `avbd`, `dem`), or a stepper that you write
 /// ([`Simulation::step_by`](crate::sim::Simulation::step_by)).
 pub trait Advance {
     /// Takes one step of length `settings.parameters.time_step_secs` and returns its result.
@@ -116,7 +117,8 @@ impl<'a, M: Model> Stage<'a, M> {
     }
 
     /// Begins a step: detects the touching pairs and sets up their contact problem. `rebound` returns the term (m/s)
-    /// that the contact law adds to the normal velocity v_n of a contact, such as ρ v_n^{n−1} for restitution ρ.
+    /// that the contact law adds to the normal velocity v_n of a contact at the end of the step. For the coefficient of
+    /// restitution ρ, this term is ρ v_n^{n−1}, with the normal velocity v_n^{n−1} at the beginning of the step.
     pub fn prepare(
         &mut self,
         settings: &Settings,
@@ -193,12 +195,14 @@ impl<'a, M: Model> Stage<'a, M> {
         }
     }
 
-    /// Solves the prepared problem with the solver of the settings, and returns the solver's report.
+    /// Solves the contact problem that [`Stage::prepare`] has set up, with the solver of the settings, and returns the
+    /// solver's report.
     pub fn solve(&mut self, settings: &Settings) -> SolveReport {
         self.timed(|stage| solve(stage.problem, stage.memory, &settings.solver))
     }
 
-    /// Calls `solving`, and adds its computing time to the computing time of the solver in this step.
+    /// Calls the closure `solving`, returns its result, and adds its computing time to the computing time of the solver
+    /// in this step.
     pub(super) fn timed<T>(&mut self, solving: impl FnOnce(&mut Self) -> T) -> T {
         let begun = self.state.stopwatch.now();
         let outcome = solving(self);
@@ -207,8 +211,8 @@ impl<'a, M: Model> Stage<'a, M> {
         outcome
     }
 
-    /// Moves the grains by Δt with the velocities of the solved problem, and stores the impulses in the contacts.
-    /// Returns the result of the step, which contains `report`.
+    /// Moves the grains by one time step Δt with the velocities of the solved problem, and stores the impulses in the
+    /// contacts. Returns the result of the step, which contains `report`, the report of the solver.
     pub fn move_by(&mut self, report: SolveReport, settings: &Settings) -> StepResult {
         let Self { state, problem, .. } = self;
         let measures = measure(problem);

@@ -1,4 +1,5 @@
-//! Copies of boundaries, fixed discs and their motions at one simulated time, for pictures and windows.
+//! Copies of boundaries, fixed discs and their motions at one simulated time, from which Slump draws pictures and its
+//! interactive window.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -19,14 +20,15 @@ pub struct Surroundings {
     /// Periodic borders; `None` if the scene has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<Periodic>,
-    /// Mean diameter d of the grains, m, the unit of length for relative quantities.
+    /// Mean diameter d of the grains, m: the unit of all lengths that are given in mean diameters.
     pub mean_diameter: f64,
     /// Gravitational acceleration g of the scene, m/s².
     pub gravity_magnitude: f64,
-    /// Materials of the scene.
+    /// Materials of the scene, in the order in which grains refer to them by index; empty if the scene names no
+    /// materials.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<Material>,
-    /// Motions of boundaries and fixed discs.
+    /// Motions of boundaries and fixed discs, each with the bodies that it moves; empty if nothing moves except grains.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub moving: Vec<MotionView>,
 }

@@ -1,8 +1,8 @@
-//! Counts bonds that end because their pair of grains turns, and not because of the pull on them.
+//! Counts the bonds of a step that end because their two grains circle each other, and not because of the pull on them.
 //!
 //! A step takes the contact normals from its beginning, and grains move along straight lines. Let two grains with the
 //! normal velocity v_n = 0 circle each other with the angular velocity ω, with their centres at the distance L. At the
-//! end of the step this distance is L √(1 + ω²Δt²): the gap has grown by ½ω²Δt²·L. If a bond exists only while the gap
+//! end of a step Δt this distance is L √(1 + ω²Δt²): the gap has grown by ½ω²Δt²·L. If a bond exists only while the gap
 //! is negative, turning ends the bond after some steps, although it could bear a much larger pull.
 //!
 //! A bond counts as ended by turning if its contact meets all these conditions:
@@ -21,8 +21,8 @@ use crate::sim::stepping::Stage;
 use crate::sim::touch_tolerance::touch_tolerance;
 use crate::solver::{Model, for_each_row};
 
-/// Returns the number of bonds that ended because their pairs of grains turned, in a solved step after the grains have
-/// moved.
+/// Returns the number of bonds that ended in a solved step because their two grains circled each other, which opened
+/// the gap. Call this after the grains have moved.
 pub(super) fn count<M: Model>(stage: &Stage<'_, M>, settings: &Settings) -> u64 {
     let Stage { state, problem, .. } = stage;
     let tolerance = touch_tolerance(state, settings).max(state.candidates.gap_tolerance());
@@ -42,14 +42,14 @@ pub(super) fn count<M: Model>(stage: &Stage<'_, M>, settings: &Settings) -> u64 
     ended
 }
 
-/// True if a contact pulls, but with less than its cohesion force. `reduced_impulse` is its normal impulse and
-/// `capture_speed` the impulse of cohesion in the step, both divided by the effective mass, m/s.
+/// True if a contact pulls, but with less than its cohesion force. `reduced_impulse` is its normal impulse, and
+/// `capture_speed` the cohesion force times the time step; both are divided by the effective mass, m/s.
 pub(super) fn is_within_bounds(reduced_impulse: f64, capture_speed: f64) -> bool {
     reduced_impulse < 0.0 && reduced_impulse > -capture_speed
 }
 
-/// True if the present gap of a pair is not below the touch tolerance `tolerance` (m), although the gap predicted from
-/// its normal velocity (`expected`, m) is below the touch tolerance.
+/// True if a pair of bodies has opened although its normal velocity did not open it: the present gap is at least
+/// `tolerance` (m), but the gap `expected` (m), predicted from the normal velocity, is below `tolerance`.
 pub(super) fn is_open_against(
     state: &State,
     contact: &Contact,

@@ -1,30 +1,31 @@
 //! Velocities of moving walls: boundaries and fixed discs with a motion (`world::motion`), and pistons.
 //!
-//! In a step each moving body has one rigid velocity: the mean velocity of its prescribed course over Δt or, in the
-//! last step of the course, the remaining travel divided by Δt. A body driven by a force begins with its present speed,
-//! and the step computes its new speed (`solver::problem::walls`). Contacts use this velocity at the touched point, and
-//! the body moves with it when the grains move.
+//! In a step each moving body has one rigid velocity: the mean velocity of its prescribed motion over the time step Δt
+//! or, in the last step of this motion, the remaining travel divided by Δt. A body driven by a force begins with its
+//! present speed, and the step computes its new speed (`solver::problem::walls`). Contacts use the rigid velocity at
+//! the touched point, and the body moves with it when the grains move.
 //!
 //! **Walls that turn.** A wall turns about the pivot p with the angular velocity ω, by the angle α = ωΔt in a step. Let
-//! R be this rotation. The point c of the wall has the mean velocity V(c) = (R − 1)(c − p)/Δt, of which the part
-//! −½ω²Δt(c − p) points inward. A step takes the normal n and the tangent t from its beginning, but the normal turns
-//! with the wall. Let c be the centre of a disc of radius r that slides along a flat wall with the speed u. The gap
-//! grows by Δt cos α (v_n − V_n) with
+//! R be this rotation. A point of the wall at the place c has the mean velocity V(c) = (R − 1)(c − p)/Δt, of which the
+//! part −½ω²Δt(c − p) points inward. A step takes the normal n and the tangent t from its beginning, but the normal
+//! turns with the wall. Let a disc of radius r, with the relative normal velocity v_n and tangential velocity v_t,
+//! slide along a flat wall with the speed u, and take for c the centre of the disc, as if the wall extended to it. The
+//! gap grows by Δt cos α (v_n − V_n) with
 //!
 //! > V_n = n·V(c) − u tan α,  V_t = t·V(c) − rω.
 //!
 //! So a disc that sticks (v_t = V_t, angular velocity ω) moves with the wall, and its gap stays constant at any Δt. The
 //! touched point of the wall would not be suitable as c: the gap of a disc that sticks would then grow by ½ω²Δt·r per
-//! second. The code uses sin α instead of tan α; the two differ by α³/2.
+//! second. The code uses sin α instead of tan α; the two differ by about α³/2.
 //!
 //! Around a fixed disc with the centre q the normal turns with the grain:
 //!
 //! > V_n = n·V(c) − u tan ½α.
 //!
 //! This V_n is the velocity of q along n if the grain does not move. If the grain moves, the error is as large as at a
-//! fixed disc that does not turn, because normals stay as they were at the beginning of the step. A surface speed also
-//! moves the grain around the disc. With the disc's radius ρ, the distance L = |c − q|, the angle β = (ω + surface
-//! speed/ρ)Δt, and the sliding speed relative to q, w = u + L sin α/Δt,
+//! fixed disc that does not turn, because normals stay as they were at the beginning of the step. A surface speed (as
+//! of a conveyor belt) also moves the grain around the disc. With the disc's radius ρ, the distance L = |c − q|, the
+//! angle β = (ω + surface speed/ρ)Δt, and the sliding speed relative to q, w = u + L sin α/Δt,
 //!
 //! > V_n = n·V(q) − w tan ½β = n·V(c) − u tan ½β − (tan ½β − tan ½α) L sin α/Δt.
 //!
@@ -41,7 +42,7 @@ use crate::contact::{Candidates, Contact, Numbering, Other};
 use crate::solver::{DrivenBy, DrivenWall, Surface};
 use crate::world::{Boundary, Carry, RigidVelocity, World};
 
-/// Entry for a body that does not belong to a moving wall.
+/// Value in `of_boundary`, `of_disc` and `of_feature` for a body that does not belong to a moving wall.
 const NONE: u32 = u32::MAX;
 
 /// Moving walls of the present step: boundaries and fixed discs with a motion, and pistons. The vectors keep their
@@ -49,7 +50,8 @@ const NONE: u32 = u32::MAX;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Walls {
     moving: Vec<Wall>,
-    /// Time step, s. If the stepper detects contacts in each substep, the length of a substep.
+    /// Time step for which the walls' velocities are means, s. For a stepper that detects contacts in each substep, the
+    /// length of a substep.
     secs: f64,
     /// For each boundary, the index of its wall in `moving`, or [`NONE`] if the boundary does not move.
     of_boundary: Vec<u32>,
@@ -80,7 +82,8 @@ struct Driver {
     /// Index of this wall among all walls that a force drives.
     number: u32,
     axis: DVec2,
-    /// Velocity of the wall's prescribed motion, m/s, to which its speed along the driving force is added.
+    /// Velocity of the wall's prescribed motion, m/s. The velocity of the wall is the sum of this velocity and its
+    /// speed along the driving force.
     course: DVec2,
 }
 
@@ -159,14 +162,14 @@ impl Walls {
         !self.moving.is_empty()
     }
 
-    /// Divides the time step of these walls by the number of substeps, for a stepper that detects contacts in each
-    /// substep.
+    /// Divides the stored time step of the walls (`secs`) by the number of substeps, for a stepper that detects
+    /// contacts in each substep.
     pub(crate) fn divide(&mut self, substeps: u32) {
         self.secs /= f64::from(substeps);
     }
 
-    /// Returns the speed of the fastest wall, m/s. A half-space is endless; if it turns, its speed at the farthest
-    /// grain counts.
+    /// Returns the speed of the fastest point of all moving walls, m/s. A half-space is endless; if it turns, its speed
+    /// at the farthest grain counts.
     pub(crate) fn fastest(&self, world: &World, candidates: &Candidates) -> f64 {
         let turns = |number: u32| {
             self.moving.get(number as usize).map(|wall| wall.velocity).filter(|it| it.spin != 0.0)
@@ -239,7 +242,8 @@ impl Walls {
         Some(Surface { velocity, before, round, spin, is_half_space, is_pushed, driven })
     }
 
-    /// Returns the walls driven by a force, with their speeds at the beginning of a step of length `time_step_secs`, s.
+    /// Returns the walls driven by a force, each with its speed at the beginning of a step of length `time_step_secs`
+    /// (s), and with the speed that it would reach in the step without contacts.
     pub(crate) fn driven<'a>(
         &'a self,
         world: &'a World,
@@ -255,9 +259,11 @@ impl Walls {
         })
     }
 
-    /// Stores the speeds V of driven walls at the end of a step. Returns the work of the driving forces F and of the
-    /// damping c V, J: Δt (F − cV) ½(V + V⁻), with the speed V⁻ at the beginning of the step, the wall's mass M, ΔtF =
-    /// V_free/r − MV⁻ and cΔt = 1/r − M (`solver::problem::walls` defines V_free and r).
+    /// Stores the speeds V (m/s) of walls driven by a force at the end of a step Δt. Returns the work, J, of the
+    /// driving forces F (N) minus the loss in the walls' damping c (kg/s): Δt (F − cV) ½(V + V⁻), with the speed V⁻ at
+    /// the beginning of the step. ΔtF and cΔt are computed from the wall's mass M, its response r = 1/(M + cΔt) and its
+    /// speed without contacts V_free = r(MV⁻ + ΔtF): ΔtF = V_free/r − MV⁻, and cΔt = 1/r − M
+    /// (`solver::problem::walls`).
     pub(crate) fn take_driven(&mut self, world: &mut World, driven: &[DrivenWall]) -> f64 {
         let mut work = 0.0;
         for found in driven {
@@ -285,7 +291,8 @@ impl Walls {
         surface.map_or([0.0; 2], |surface| surface.along(contact.normal))
     }
 
-    /// Moves the walls for `secs` (s), and advances the elapsed times of all prescribed motions.
+    /// Moves the walls with their velocities for the time `secs` (s), and advances the elapsed times of all prescribed
+    /// motions.
     pub(crate) fn advance(&self, world: &mut World, candidates: &mut Candidates, secs: f64) {
         let carries: Vec<Carry> =
             self.moving.iter().map(|wall| wall.velocity.carry(secs)).collect();
@@ -346,8 +353,9 @@ impl Wall {
         }
     }
 
-    /// Returns the velocities of a turning wall's surface at the contact, m/s: the mean over the step, and the velocity
-    /// just before the step. The comment at the top of this file derives them.
+    /// Returns the velocities of a turning wall's surface at the contact, m/s: the mean over the step of `secs` (s),
+    /// and the velocity just before the step. `spin` is the rate at which the contact normal turns, rad/s. The head of
+    /// the module `sim::walls` derives the formulas.
     fn velocities_at(&self, touching: &TouchedPlace<'_>, spin: f64, secs: f64) -> [DVec2; 2] {
         let TouchedPlace { centre, radius, velocity, contact, round_disc } = *touching;
         let (normal, tangent) = (contact.normal, contact.normal.perp());
