@@ -2,26 +2,30 @@
 //! ACM Transactions on Graphics 44, 2025). It minimises, body by body, penalties that become stiffer while a contact is
 //! violated. Multipliers gradually replace the penalty forces.
 //!
-//! The unknowns are the velocities V of the bodies at the end of a substep of length h. The positions at the end are
-//! x + hV, and normals are those of the beginning. A contact is violated by the velocity c = v − w + b, with the relative
-//! velocity v of its two bodies and the velocity w of its wall. The term b = gap/h keeps a gap from closing by more
-//! than its size. With the multipliers λ⁰, the stiffness k of the penalty, the friction coefficient μ, the Bond number
-//! Bond, the acceleration a that defines the cohesion force, and σ = λ_n + Bond·a·h, a contact pushes with the impulses
-//! (divided by the effective mass m_ij)
+//! The unknowns are the velocities V of the bodies at the end of a substep of length h. A body at x at the beginning of
+//! the substep is at x + hV at its end; contact normals are those of the beginning. A contact is violated by the
+//! velocity c = v − w + b (m/s; c_n along the normal, c_t along the tangent without b), with the relative velocity v of
+//! its two bodies and the velocity w of its wall. The term b = gap/h keeps a gap from closing by more than its size.
+//! Let λ_n⁰ and λ_t⁰ be the multipliers, k the stiffness of the penalty along normal or tangent, μ the friction
+//! coefficient, Bond the Bond number, a the acceleration in the cohesion force C₀ = Bond·m_ij·a, and σ = λ_n +
+//! Bond·a·h. A contact pushes with the impulses (divided by the effective mass m_ij)
 //!
 //! > λ_n = max(λ_n⁰ − κ_n c_n, −Bond·a·h),  λ_t = λ_t⁰ − κ_t c_t projected onto |λ_t| ≤ μσ,  κ = k h²/m_ij.
 //!
-//! One iteration has two parts. **For each body** in turn it takes a Newton step on the body's own energy, with all
-//! other bodies fixed,
+//! One iteration has two parts. **For each body** in turn it takes a Newton step ΔV that minimises the body's kinetic
+//! energy and the penalties of its contacts, with all other bodies fixed,
 //!
 //! > (D + Σ s κ ∇c ∇cᵀ) ΔV = D (V_free − V) + Σ s λ ∇c,  s = m_ij/m_i,
 //!
-//! with the inertia D divided by the mass m_i. Then, **for each contact**, it sets λ⁰ ← λ, and increases κ in
-//! proportion to |c| unless the bound has cut λ. The matrix on the left side includes all contacts, also those cut by
-//! their bounds, because these hold a body back; without them, collapsing piles explode. Bodies in contact start from
-//! their velocities before the substep, so the velocities of sliding bodies lag by 2⁻¹⁰ of their change in a step.
-//! Stiffnesses are kept from step to step, and reduced slightly in each substep. A last pass over the bodies, with b
-//! computed from the overlap beyond a margin, changes positions but not velocities.
+//! with the inertia D of body i divided by its mass m_i, the velocity V_free that the body would have without contacts,
+//! and sums Σ over the normals and tangents of the body's contacts. Then, **for each contact**, it replaces the
+//! multipliers λ⁰ by the impulses λ, and increases κ in proportion to |c| unless the contact law has limited λ. The
+//! matrix on the left side contains the penalties of all contacts, also of those with limited impulses, because also
+//! these contacts hold a body back; without them, collapsing piles explode. Bodies in contact start from their
+//! velocities before the substep. A contact that slides keeps the smallest κ, which is 1. If a body slides on a fixed
+//! body without turning, each iteration then halves the remaining change of its velocity, so after the ten iterations
+//! 2⁻¹⁰ of the change is missing. Stiffnesses are kept from step to step, and reduced slightly in each substep. A last
+//! pass over the bodies, with b computed from the overlap beyond a margin, changes positions but not velocities.
 //!
 //! **Momentum** is not conserved: each body uses λ before its partners have responded, so action and reaction differ by
 //! the error of the iteration. Work and energy have errors of the same size. There is no restitution.
@@ -37,7 +41,8 @@ use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{Model, Row, StepProblem};
 use crate::world::Parameters;
 
-/// Number of iterations per substep, as in the examples of the method's authors.
+/// Number of iterations per substep, as in the examples of the authors of augmented vertex block descent (Giles, Diaz
+/// and Yuksel, 2025).
 const ITERATIONS: u32 = 10;
 
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
@@ -92,21 +97,22 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
 }
 
 /// Dimensionless stiffness κ = k h²/m_ij of a new contact (stiffness k, substep h, effective mass m_ij), and smallest
-/// stiffness of any contact. With a smaller value new contacts sink in; with a larger value the descent body by body
-/// cannot transmit a force.
+/// stiffness of any contact. With a smaller value grains with new contacts overlap more; with a larger value iterations
+/// that change one body at a time cannot transmit a force from body to body.
 const SOFTEST: f64 = 1.0;
 /// Largest dimensionless stiffness κ = k h²/m_ij of a contact (stiffness k, substep h, effective mass m_ij). A stiffer
 /// contact would dominate all other forces on its two bodies.
 const STIFFEST: f64 = 1e6;
-/// Increase of a contact's dimensionless stiffness κ per iteration, if its violation equals the speed that gravity adds
-/// in a substep. With a larger value columns are more stable, but impacts make contacts so stiff that the descent body
-/// by body cannot transmit forces, and collapsing piles explode.
+/// Increase of a contact's dimensionless stiffness κ (stiffness times squared substep length, divided by effective
+/// mass) per iteration, if the velocity that violates the contact equals the speed that gravity adds in a substep. With
+/// a larger value columns are more stable, but impacts make contacts so stiff that iterations that change one body at a
+/// time cannot transmit forces, and collapsing piles explode.
 const GROWTH: f64 = 0.1;
-/// Factor that multiplies the stiffness κ of all contacts at the beginning of each substep. With a smaller value,
+/// Factor that multiplies the stiffnesses of all contacts at the beginning of each substep. With a smaller value,
 /// contacts of resting grains soften.
 const KEPT: f64 = 0.99;
-/// Overlap that the position correction at the end of a substep leaves, in mean diameters. Cohesive contacts need some
-/// overlap to pull.
+/// Overlap that remains after the correction of positions at the end of a substep, in mean diameters. Cohesive contacts
+/// need some overlap to pull.
 const MARGIN: f64 = 5e-4;
 
 /// One side of a contact: its effect on one of its two bodies.
@@ -117,13 +123,15 @@ struct Side {
     end: u8,
 }
 
-/// Data of the iterations in a step, in addition to the contact problem and the contacts.
+/// Data of the iterations of augmented vertex block descent in a step: stiffnesses of the contacts, and the contacts of
+/// each body. The contact problem and the contacts themselves are stored elsewhere.
 struct BlockDescent {
     substep_secs: f64,
     law: ContactLaw,
-    /// Speed that gravity adds in a substep, g·h, m/s. Violations of contacts are divided by this speed.
+    /// Speed that gravity adds in a substep, g·h (gravity g, substep h), m/s: the unit in which the velocities that
+    /// violate contacts are measured.
     speed_scale: f64,
-    /// Overlap that the position correction at the end of a substep leaves, m.
+    /// Overlap that remains after the correction of positions at the end of a substep, m.
     margin: f64,
     /// Dimensionless stiffnesses of each contact along normal and tangent: stiffness times squared substep length,
     /// divided by effective mass.
@@ -161,7 +169,7 @@ impl BlockDescent {
         }
     }
 
-    /// Reads the stiffnesses that contacts have stored in the previous step.
+    /// Reads the stiffnesses (N/m) that contacts have stored in the previous step, and makes them dimensionless.
     fn stiffen<M: Model>(&mut self, stage: &Stage<'_, M>) {
         let memories = stage.state.contacts.memories();
         let rows = stage.problem.rows().zip(&stage.problem.rows.contacts);
@@ -172,7 +180,7 @@ impl BlockDescent {
         }
     }
 
-    /// Stores the stiffnesses in the contacts, for the next step.
+    /// Stores the stiffnesses (N/m) in the contacts, for the next step.
     fn remember<M: Model>(&self, stage: &mut Stage<'_, M>) {
         let memories = stage.state.contacts.parts_mut().memories;
         let rows = stage.problem.rows().zip(&stage.problem.rows.contacts);
@@ -182,8 +190,9 @@ impl BlockDescent {
         }
     }
 
-    /// Begins a substep: reduces the stiffnesses slightly. Bodies in contact start from their velocities at the
-    /// beginning of the substep, without gravity, because the contacts that carried them before will carry them again.
+    /// Begins a substep: reduces the stiffnesses of all contacts slightly. Bodies in contact start from their
+    /// velocities at the beginning of the substep, without gravity, because the contacts that carried them before will
+    /// carry them again.
     fn begin<M: Model>(&mut self, problem: &mut StepProblem<M>, start: &[M::Body<f64>]) {
         for stiffness in self.stiffness.as_flattened_mut() {
             *stiffness = (KEPT * *stiffness).clamp(SOFTEST, STIFFEST);
@@ -197,9 +206,10 @@ impl BlockDescent {
         }
     }
 
-    /// Sets the velocity of each body to the velocity that minimises the body's own energy while the velocities of all
-    /// other bodies stay the same. `free` are the velocities without contacts, and the closure `bias` returns the
-    /// velocity term b (m/s) for a gap (m).
+    /// Sets the velocity of each body in turn to the velocity that minimises the sum of its kinetic energy and the
+    /// penalties of its contacts, while the velocities of all other bodies stay the same. `free` are the velocities
+    /// without contacts. The closure `bias` returns, for the gap of a contact (m), the closing speed that the contact
+    /// allows (m/s); a negative value requires the contact to open.
     fn minimise<M: Model>(
         &self,
         problem: &mut StepProblem<M>,
@@ -243,8 +253,9 @@ impl BlockDescent {
         }
     }
 
-    /// Sets the multipliers to the penalty forces, and makes violated contacts stiffer. The closure `bias` returns the
-    /// velocity term b (m/s) for a gap (m).
+    /// Sets the stored impulses of each contact (the multipliers) to its present penalty impulses, and makes violated
+    /// contacts stiffer. The closure `bias` returns, for the gap of a contact (m), the closing speed that the contact
+    /// allows (m/s).
     fn multiply<M: Model>(
         &mut self,
         problem: &StepProblem<M>,
@@ -265,7 +276,7 @@ impl BlockDescent {
     }
 
     /// Returns the impulses of a contact, divided by the effective mass (m/s), at the present velocities of its bodies.
-    /// `bias` is the velocity term b of its gap, m/s.
+    /// `bias` is the closing speed that the contact allows, m/s; a negative value requires the contact to open.
     #[inline(always)]
     fn push<M: Model>(
         &self,

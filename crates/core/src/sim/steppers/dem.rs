@@ -19,8 +19,8 @@ use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{DrivenWall, Model, cone_of};
 
 /// Takes one step, and detects the contacts in each substep. The contact problem of the step, from which its residual
-/// is computed, contains the contacts at the beginning of the step. At the end, each of them receives the total impulse
-/// of its pair.
+/// is computed, contains the contacts at the beginning of the step. At the end of the step, each of these contacts
+/// receives the impulse that its pair has transmitted in all substeps.
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
     let (world, physics) = (&stage.state.world, stage.state.physics);
     let parameters = &settings.parameters;
@@ -82,8 +82,8 @@ fn velocity<M: Model>(
 /// Contact law of a substep: springs, dashpots, cohesion and friction.
 struct Elements {
     springs: SpringDashpot,
-    /// Cohesion force divided by the effective mass, m/s²: the Bond number times the acceleration that defines the
-    /// cohesion force.
+    /// Cohesion force divided by the effective mass, m/s²: the Bond number times an acceleration (the parameter
+    /// `bond_acceleration`, or the gravity of the scene if this parameter is 0).
     cohesive_acceleration: f64,
     law: ContactLaw,
     substep_secs: f64,

@@ -1,6 +1,6 @@
-//! Steppers: the rules that advance the grains by one time step, each with its own contact law. Each stepper has a file
-//! or a folder here with a function `advance`, an arm of [`StepperMemory::advance`], and a row in the registry
-//! `sim::settings::stepper`.
+//! Steppers: the rules that advance the grains by one time step, each with its own contact law. For each stepper this
+//! folder has a file or a folder with a function `advance`. A stepper also has a match arm in
+//! [`StepperMemory::advance`], and a row in the list of steppers `sim::settings::stepper`.
 
 #![deny(dead_code, reason = "a stepper that no arm calls would not be missed")]
 

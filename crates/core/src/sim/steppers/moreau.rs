@@ -1,5 +1,5 @@
 //! Stepper `moreau`: one step of Contact Dynamics (detect, solve, integrate: Moreau's scheme, as in Abramian & Staron
-//! 2020, §2.1), with remedies.
+//! 2020, §2.1), with remedies, which are optional corrections for known failures (`sim::remedies`).
 
 use crate::contact::range::TOUCH_IN_DIAMETERS;
 use crate::sim::remedies;
@@ -58,8 +58,8 @@ pub(super) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     }
 }
 
-/// Returns the gap, m, up to which the contact law treats grains as touching. `tolerance` is the gap up to which
-/// contacts pull, m.
+/// Returns the gap, m, up to which a contact counts as closed, so that its grains may not approach each other any more.
+/// Contacts with larger gaps, up to `tolerance` (m), pull too, but their grains may close the gap.
 fn touching_within(state: &State, tolerance: f64) -> f64 {
     let rounding = (0.5 * tolerance).min(TOUCH_IN_DIAMETERS * state.world.mean_diameter);
     rounding.max(state.candidates.gap_tolerance())

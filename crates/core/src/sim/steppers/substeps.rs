@@ -1,5 +1,5 @@
 //! Code shared by the steppers `tgs-soft`, `avbd` and `dem`. They do not solve the contact problem of a step as a
-//! whole, but divide Δt into substeps of length h and move the grains in each substep.
+//! whole, but divide the time step Δt into substeps of length h and move the grains in each substep.
 //!
 //! The contact problem of the whole step is still set up. At the end of the step its residual is computed from the
 //! impulses summed over the step and the velocities at its end, so that all steppers are compared by the same measure.
@@ -24,7 +24,7 @@ pub(super) struct Substepping<M: Model> {
     pub start: Vec<M::Body<f64>>,
     /// Velocities that the grains would have at the end of the substep if no contact acted.
     pub free: Vec<M::Body<f64>>,
-    /// Sums of works since the beginning of the step.
+    /// Works of gravity, contacts, walls and borders, J, summed over the substeps since the beginning of the step.
     pub works: StepResult,
 }
 
@@ -44,9 +44,10 @@ impl<M: Model> Substepping<M> {
         }
     }
 
-    /// Ends the step of a stepper whose bonds exist while their gaps are below the touch tolerance. Returns the works
-    /// and the residual of the step, and the number of bonds that ended because their pairs turned. `contacts` are in
-    /// their state after the last substep, and `sweeps` is the number of passes over them in the step.
+    /// Ends the step of a stepper whose bonds exist while their gaps are below the scene's `gap_tolerance`. Returns the
+    /// works and the residual of the step, and the number of bonds that ended because their two grains circled each
+    /// other, which opened the gap. `contacts` are in their state after the last substep, and `sweeps` is the number of
+    /// passes over all contacts in the step.
     pub(super) fn end_step_of(
         &self,
         stage: &Stage<'_, M>,
@@ -65,7 +66,7 @@ impl<M: Model> Substepping<M> {
         StepResult { turned_bonds, ..self.end_step(stage, sweeps) }
     }
 
-    /// Ends the step, and returns its works and its residual. `sweeps` is the number of passes over the contacts in the
+    /// Ends the step, and returns its works and its residual. `sweeps` is the number of passes over all contacts in the
     /// step.
     pub(super) fn end_step(&self, stage: &Stage<'_, M>, sweeps: u32) -> StepResult {
         let Measures { normal_work, tangential_work, wall_work, border_work, .. } =
@@ -111,7 +112,7 @@ impl<M: Model> Substepping<M> {
     }
 
     /// Adds the work of gravity, body forces and the user's spring in a substep. `bodies` are the velocities of the
-    /// grains at its end.
+    /// grains at the end of the substep, and `masses` their masses, kg.
     pub(super) fn add_gravity_work(&mut self, bodies: &[M::Body<f64>], masses: &[f64]) {
         for (index, body) in bodies.iter().enumerate() {
             let (start, free) = (&self.start[index], &self.free[index]);
@@ -142,7 +143,8 @@ pub(super) fn add_work<M: Model>(
     }
 }
 
-/// Writes the final speeds of driven walls to the contact problem from which the residual of the step is computed.
+/// Writes the speeds of force-driven walls at the end of the step to the contact problem from which the residual of the
+/// step is computed.
 pub(super) fn set_drive_speeds<M: Model>(stage: &mut Stage<'_, M>) {
     let drives = stage.state.world.motions.iter().filter_map(|motion| motion.drive.as_ref());
     stage.problem.set_wall_velocities(drives.map(|drive| drive.speed));
@@ -156,13 +158,14 @@ pub(super) struct Touching {
     pub wall_speed: f64,
     /// Velocity of the wall's surface along the tangent, m/s.
     pub surface_speed: f64,
-    /// Data on the driven wall of the contact; `None` if the contact has no wall driven by a force.
+    /// Data on the contact's wall if a force drives this wall; otherwise `None`.
     pub driven: Option<DrivenRow>,
-    /// Change of the contact's normal and tangential velocity by a unit impulse, divided by the change at a wall that
-    /// does not yield: above 1 if a force drives the wall, otherwise 1.
+    /// Change of the contact's normal and tangential velocity by a unit impulse, divided by the change at a wall whose
+    /// velocity is prescribed: above 1 if a force drives the wall, because the impulse also changes the speed of such a
+    /// wall; otherwise 1.
     pub answers: [f64; 2],
-    /// Term that the contact law adds to the normal velocity relative to the wall because of restitution, m/s: minus
-    /// the separation speed, so below 0 if the contact was closing.
+    /// Restitution term, m/s, which the contact law adds to the normal velocity relative to the wall: minus the
+    /// separation speed that restitution requires, so below 0 if the contact was closing.
     pub rebound: f64,
     /// Capture speed: the opening speed that cohesion can stop in this substep, m/s; 0 without cohesion.
     pub capture_speed: f64,
@@ -179,8 +182,8 @@ impl Touching {
     }
 }
 
-/// Returns the contacts in the order of the rows of the contact problem. The impulses with which they start are the
-/// forces of the previous step times `warm_secs` (s); 0 s gives a cold start.
+/// Returns the contacts in the order of the rows of the contact problem (a row is the data of one contact). The
+/// impulses with which they start are the forces of the previous step times `warm_secs` (s); 0 s gives a cold start.
 pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<Touching> {
     let (contacts, problem) = (&stage.state.contacts, &stage.problem);
     let contact = |((number, row), &index): ((usize, &Row<M>), &u32)| {
@@ -202,7 +205,7 @@ pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<To
     problem.rows().zip(&problem.rows.contacts).map(contact).collect()
 }
 
-/// Changes the gaps of the contacts by the motion of the grains during one substep.
+/// Changes the gaps of the contacts by the motion of grains and walls during one substep.
 pub(super) fn follow_gaps<M: Model>(
     problem: &StepProblem<M>,
     contacts: &mut [Touching],
@@ -214,7 +217,7 @@ pub(super) fn follow_gaps<M: Model>(
     }
 }
 
-/// Adds the impulses and works of a substep to the sums of the step.
+/// Adds the impulses and works of all contacts in a substep to the sums of the step.
 pub(super) fn end_substep<M: Model>(
     problem: &StepProblem<M>,
     contacts: &mut [Touching],
@@ -252,7 +255,7 @@ pub(super) fn remember<M: Model>(
     }
 }
 
-/// Writes the impulses summed over the step to the contact problem of the step.
+/// Writes the impulses of all contacts, summed over the substeps, to the contact problem of the step.
 pub(super) fn hand_over<M: Model>(problem: &mut StepProblem<M>, contacts: &[Touching]) {
     let capture_speed = problem.law.capture_speed();
     for (row, contact) in problem.rows.iter_mut().zip(contacts) {

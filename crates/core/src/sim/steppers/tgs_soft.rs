@@ -1,10 +1,10 @@
-//! Stepper `tgs-soft`: substeps with soft contacts and a relaxing sweep, as in game engines (E. Catto, *Soft
-//! Constraints*, 2011, and *Solver2D*, 2024).
+//! Stepper `tgs-soft`: substeps with soft contacts, each followed by a sweep that removes the velocities of overlap
+//! correction, as in game engines (E. Catto, *Soft Constraints*, 2011, and *Solver2D*, 2024).
 //!
 //! All substeps use the contacts found at the beginning of the step; no contacts are added for pairs that may meet
-//! later. Impulses λ are divided by the effective mass, and σ = λ_n + Bond·a·h is the normal impulse shifted by the
-//! cohesion of a substep of length h (Bond is the Bond number, and a the acceleration that defines the cohesion force).
-//! Each substep has five parts:
+//! later. Impulses λ are divided by the effective mass m_ij, and σ = λ_n + Bond·a·h is the normal impulse shifted by
+//! the cohesion of a substep of length h (Bond is the Bond number, and a the acceleration in the cohesion force
+//! Bond·m_ij·a). Each substep has five parts:
 //!
 //! 1. Gravity accelerates the grains.
 //! 2. The impulses of the previous substep are applied (warm start).
@@ -15,11 +15,12 @@
 //!    pushed out, so that pushing out changes only positions and adds no energy.
 //!
 //! At the end of the step, contacts that pushed get the separation speed of restitution. As in the contact problem of
-//! the step, contacts do not bounce if they met at less than `restitution_threshold` g·Δt, or if they were opening.
+//! the step, contacts do not bounce if they met at less than `restitution_threshold` times g·Δt (gravity g, time step
+//! Δt), or if they were opening.
 //!
-//! **Cohesion** is the bound λ_n ≥ −Bond·a·h of a contact whose gap is negative when the substep begins. So it is a
-//! force that depends on neither Δt nor h. For a contact with a positive gap the bound is 0, and the contact only
-//! prevents the gap from closing by more than its size.
+//! **Cohesion** is the bound λ_n ≥ −Bond·a·h of a contact whose gap is below the scene's `gap_tolerance` (0 by default)
+//! when the substep begins. So it is a force that depends on neither Δt nor h. For other contacts the bound is 0, and
+//! the contact only prevents the gap from closing by more than its size.
 
 use crate::contact::{ContactLaw, law};
 use crate::number::Parts;
@@ -85,8 +86,8 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     substepping.end_step_of(stage, &contacts, 2 * substeps + 1)
 }
 
-/// Gives contacts that met and pushed in the step the separation speed of restitution, by an additional impulse at the
-/// end of the step.
+/// Gives contacts that closed before the step and pushed in it the separation speed of restitution, by an additional
+/// impulse at the end of the step.
 fn restitute<M: Model>(
     problem: &mut StepProblem<M>,
     walls: &mut [DrivenWall],
@@ -110,8 +111,9 @@ fn restitute<M: Model>(
     });
 }
 
-/// Calls `change` for every contact with the contact's relative velocities (m/s). `change` returns impulses divided by
-/// the effective mass (m/s), which are then applied to the two bodies.
+/// Calls the closure `change` for every contact with the contact's relative velocities (normal and tangential, m/s).
+/// The closure returns impulses divided by the effective mass (m/s), which are then applied to the contact's two
+/// bodies.
 #[inline(always)]
 fn update<M: Model>(
     problem: &mut StepProblem<M>,
@@ -144,18 +146,20 @@ const FREQUENCY: f64 = 10.0;
 /// Largest product of the frequency ω/2π of the contact springs and the length h of a substep. With a larger value
 /// contacts are nearly rigid, and one sweep no longer transmits forces through a pile.
 const FREQUENCY_PER_SUBSTEP: f64 = 0.25;
-/// Damping ratio ζ of the contact springs. With a smaller value overlap is removed too fast, and piles jitter.
+/// Damping ratio ζ of the contact springs, dimensionless; 1 is critical damping. With a smaller value overlap is
+/// removed too fast, and piles jitter.
 const DAMPING_RATIO: f64 = 10.0;
 /// Largest speed with which an overlap is pushed out, in units of √(g·d) with gravity g and the mean diameter d. With a
-/// larger value deep overlaps explode; with a smaller value they persist.
+/// larger value, grains with a deep overlap are thrown apart; with a smaller value, deep overlaps persist.
 const PUSH_OUT_SPEED: f64 = 1.0;
 
 /// Constants of soft contacts that are the same for all contacts of a step.
 ///
 /// **Softness.** At the gap s the spring's force is −k s − γ ṡ (stiffness k, damping γ), with ω² = k/m_ij and ζ = γ/(2
-/// m_ij ω). The force is evaluated at the end of a substep of length h, with s + h v and the normal velocity v. Then
-/// its impulse divided by m_ij is σ = −h(ω²(s + h v) + 2ζω v). With a = 2ζ + hω this is σ = −hωa (v + s ω/a). A
-/// Gauss–Seidel update requires the same for the new velocity v + Δσ:
+/// m_ij ω) for the effective mass m_ij. The force is evaluated at the end of a substep of length h, with the gap s + h
+/// v and the normal velocity v. Then its impulse divided by m_ij is σ = −h(ω²(s + h v) + 2ζω v). With a = 2ζ + hω this
+/// is σ = −hωa (v + s ω/a). A Gauss–Seidel update requires this equation for the new impulse σ + Δσ and the new
+/// velocity v + Δσ:
 ///
 /// > Δσ = −(1 − c)(v + s ω/a) − c σ,  c = 1/(1 + hωa).
 ///
@@ -164,8 +168,8 @@ const PUSH_OUT_SPEED: f64 = 1.0;
 /// break.
 struct Softness {
     substep_secs: f64,
-    /// Rate at which a spring closes an overlap, 1/s: closing speed divided by overlap, ω/a in the formulas of
-    /// [`Softness`].
+    /// Rate at which a contact spring closes an overlap, 1/s: closing speed divided by overlap. It is ω/(2ζ + hω), with
+    /// the spring's angular frequency ω, its damping ratio ζ and the length h of a substep.
     rate: f64,
     /// Softness c of a contact, dimensionless: 0 for a rigid contact, near 1 for a soft contact ([`Softness`]).
     compliance: f64,
@@ -241,13 +245,15 @@ impl Softness {
     }
 }
 
-/// Soft contacts with walls driven by a force. Such a wall is a body with a single speed V (`solver::problem::walls`).
+/// Soft contacts with walls driven by a force. Such a wall is a body with a single speed V, along its direction of
+/// motion (`solver::problem::walls`).
 ///
-/// In a substep a wall with the mass M, the driving force F and the damping c moves with V_free = r (M V⁻ + hF), r =
-/// 1/(M + ch), as long as no contact pushes it; V⁻ is its speed before the substep. The impulses λ of a contact with a
-/// grain of mass m_i change V at once by −r m_i (b_n λ_n + b_t λ_t), with the components b_n and b_t of the wall's
-/// direction of motion along normal and tangent. So the next contact of the sweep uses the new speed. With κ = r m_i an
-/// impulse changes v_n by d_n λ_n with d_n = 1 + κb_n², and v_t by 3 d_t λ_t with d_t = 1 + κb_t²/3. So the update of a
+/// In a substep of length h a wall with the mass M, the driving force F and the damping c moves with the speed V_free =
+/// r (M V⁻ + hF), r = 1/(M + ch), as long as no contact pushes it; V⁻ is its speed before the substep. Let λ_n and λ_t
+/// be the impulses of a contact with a grain of mass m_i, divided by m_i. They change V at once by −r m_i (b_n λ_n +
+/// b_t λ_t), with the components b_n and b_t of the wall's direction of motion along normal and tangent. So the next
+/// contact of the sweep uses the new speed. With κ = r m_i, λ_n changes the contact's normal velocity by d_n λ_n with
+/// d_n = 1 + κb_n², and λ_t changes its tangential velocity by 3 d_t λ_t with d_t = 1 + κb_t²/3. So the update of a
 /// contact is divided by d_n or d_t, and its spring belongs to the effective mass m_i/d_n.
 impl Touching {
     /// Copies the present velocity of the contact's wall into the contact, if a force drives the wall.
@@ -271,8 +277,9 @@ impl Touching {
     }
 }
 
-/// Returns the driven walls at the beginning of a substep. Sets `answers`, the changes of velocity by unit impulses, of
-/// the contacts with these walls. A substep of length 0 is an impact.
+/// Returns the walls driven by a force, with their speeds at the beginning of a substep. Sets `answers` (the changes of
+/// relative velocity by unit impulses) of the contacts with these walls. With `substep_secs` = 0 the walls are prepared
+/// for impulses that act in zero time.
 fn begin_walls<M: Model>(
     stage: &Stage<'_, M>,
     contacts: &mut [Touching],
@@ -291,8 +298,8 @@ fn begin_walls<M: Model>(
     driven
 }
 
-/// Stores the speeds of the driven walls after a sweep. Returns the work of the driving forces since the substep began,
-/// J.
+/// Stores the speeds of the walls driven by a force after a sweep. Returns the work of the driving forces since the
+/// substep began, minus the loss in the walls' damping, J.
 fn take_walls<M: Model>(
     stage: &mut Stage<'_, M>,
     contacts: &mut [Touching],
