@@ -15,13 +15,16 @@ use crate::number::Parts;
 use crate::world::World;
 
 /// Largest number of Newton's iterations for one time of impact. The iterations converge quadratically, except if the
-/// two bodies graze each other. In that case each of the first iterations only halves the error.
+/// two bodies graze each other. In that case each of the first iterations only halves the error, and 60 halvings reduce
+/// it to rounding errors.
 const MOST_STEPS: u32 = 60;
-/// Gap, in radii of the grain, below which two bodies touch. It allows for rounding.
+/// Gap, divided by the radius of the grain of the contact, below which the grain counts as touching the other body. It
+/// allows for rounding errors.
 const ROUNDING_IN_RADII: f64 = 1e-13;
 
 /// Returns the normal and the gap (m) between another body and a disc with the given centre and radius (m). `None` if
-/// the nearest point is a shared corner at which another feature (part of a boundary) reports the contact.
+/// the other body is a part of a wall, its nearest point is a corner where it meets another wall part, and the contact
+/// counts for that other part instead.
 #[inline(always)]
 pub(super) fn approach(
     world: &World,
@@ -60,8 +63,9 @@ fn disc_gap(offset: DVec2, radii: f64, axes: usize) -> (DVec2, f64) {
 }
 
 impl Contact {
-    /// Returns the gap of the contact at the present positions of its bodies, m. `None` if the grain now touches
-    /// another feature (part of a boundary) instead.
+    /// Returns the gap of the contact at the present positions of its bodies, m. `None` if the other body is a part of
+    /// a wall, its nearest point is now a corner where it meets another wall part, and the contact counts for that
+    /// other part instead.
     pub(crate) fn gap_now(&self, world: &World, near: &Candidates, axes: usize) -> Option<f64> {
         let (grain, other) = (self.grain as usize, Numbering::of(world).other(self.other));
         let (position, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
@@ -80,25 +84,27 @@ pub(crate) struct LookAhead {
     pub distance: f64,
     /// Largest gap, m. A pair of bodies with a larger gap is not added to the contact list, unless it is bonded.
     pub reach: f64,
-    /// Criterion by which a contact counts as in touch, so that cohesion can pull.
+    /// Criterion by which a pair of bodies in the contact list counts as in touch, so that cohesion acts between them.
     pub in_touch: InTouch,
 }
 
-/// Criterion by which a contact counts as in touch, so that cohesion can pull. The bodies of other contacts are only
-/// near each other.
+/// Criterion by which a pair of bodies in the contact list counts as in touch. Cohesion acts only between bodies that
+/// are in touch. All other pairs in the list may touch within the step, but do not touch yet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum InTouch {
-    /// A pair is in touch if it touches when the step begins.
+    /// Two bodies are in touch, so that cohesion acts between them, if their gap is closed when the step begins.
     Touching,
-    /// A pair is in touch if it has touched before. It remains bonded, and in the contact list, until the bond breaks.
+    /// Two bodies are in touch, so that cohesion acts between them, from the step in which they first touch until the
+    /// bond between them breaks. The gap may open in the meantime.
     Bonded,
-    /// A pair is in touch if its gap is at most this length (m) when the step begins.
+    /// Two bodies are in touch, so that cohesion acts between them, if their gap is at most this length (m) when the
+    /// step begins.
     Within(f64),
 }
 
 impl LookAhead {
-    /// Returns a copy of this criterion with another rule for cohesion: all pairs with a gap of at most `range` (m)
-    /// are in touch, so that cohesion can pull.
+    /// Returns a copy of this criterion in which cohesion acts between all pairs of bodies with a gap of at most
+    /// `range` (m). The search for contacts is extended to this gap if it was shorter.
     pub(crate) fn pulling_within(self, range: f64) -> Self {
         Self {
             distance: self.distance.max(range),
@@ -109,8 +115,9 @@ impl LookAhead {
     }
 
     /// Returns the search margin of a grain with this velocity (m/s), m: the gap that the grain may close by its own
-    /// speed within the step. If pairs stay bonded, it is half of `reach` (the largest gap of a contact), because
-    /// bonds may be open even if their grains are slow.
+    /// speed within the step. If the contact law has bonds that exist until they break ([`InTouch::Bonded`]), the
+    /// margin is half of `reach` (the largest gap of a contact) for every grain, because a bond may be open although
+    /// its grains are slow.
     pub(crate) fn way_of_grain(&self, velocity: DVec2) -> f64 {
         /// Factor that makes the margin slightly larger than the computed motion of the grain, because the speed is
         /// rounded.
@@ -124,8 +131,10 @@ impl LookAhead {
         }
     }
 
-    /// Returns the search margin of walls and fixed discs, m. `way_of_walls` is the distance by which the fastest of
-    /// them moves in the step, m.
+    /// Returns the search margin of walls and fixed discs, m: the distance by which a gap may be closed by their motion
+    /// within the step. `way_of_walls` is the distance by which the fastest of them moves in the step, m. If the
+    /// contact law has bonds that exist until they break, the margin is at least half of `reach` (the largest gap of a
+    /// contact).
     pub(crate) fn way_of_others(&self, way_of_walls: f64) -> f64 {
         let of_bonds =
             if matches!(self.in_touch, InTouch::Bonded) { 0.5 * self.reach } else { 0.0 };
@@ -133,31 +142,36 @@ impl LookAhead {
     }
 }
 
-/// Motion of a grain relative to the other body of a contact during a step.
+/// Motion of a grain relative to the other body of a contact during a step, with constant acceleration. Its time is 0
+/// at the beginning of the step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RelativeMotion {
-    /// Position of the grain relative to the other body at the time 0 of this motion, minus the present relative
-    /// position, m.
+    /// Position (m) that the grain would have had, relative to the other body, at the beginning of the step (time 0) if
+    /// its present velocity had been the same since then, minus its actual relative position at that time. It is 0
+    /// unless a shock has changed the velocity during the step.
     pub offset: DVec2,
-    /// Relative velocity v at the time 0 of this motion, m/s.
+    /// Velocity of the grain minus the velocity of the other body at the time 0 of this motion, m/s.
     pub velocity: DVec2,
-    /// Relative acceleration a, m/s², constant during the motion.
+    /// Acceleration of the grain relative to the other body of the contact, m/s². It is constant during the motion.
     pub acceleration: DVec2,
 }
 
 impl RelativeMotion {
-    /// Returns the relative displacement from the present relative position after `secs` seconds, m.
+    /// Returns the displacement (m) of the grain relative to the other body of the contact, `secs` seconds after the
+    /// time 0 of this motion, measured from their actual relative position at the beginning of the step.
     fn way(&self, secs: f64) -> DVec2 {
         self.offset + secs * (self.velocity + 0.5 * secs * self.acceleration)
     }
 
-    /// Returns the relative velocity after `secs` seconds, m/s.
+    /// Returns the velocity of the grain relative to the other body of the contact, `secs` seconds after the time 0 of
+    /// this motion, m/s.
     pub(crate) fn velocity_at(&self, secs: f64) -> DVec2 {
         self.velocity + secs * self.acceleration
     }
 
-    /// Returns the normal and the gap (m) of the two bodies after `secs` seconds. `None` if the nearest point is a
-    /// shared corner at which another feature (part of a boundary) reports the contact.
+    /// Returns the normal and the gap (m) of the two bodies of a contact, `secs` seconds after the time 0 of this
+    /// motion. `None` if the other body is a part of a wall, its nearest point is a corner where it meets another wall
+    /// part, and the contact counts for that other part instead.
     pub(crate) fn approach(
         &self,
         world: &World,

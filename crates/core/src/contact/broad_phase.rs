@@ -1,14 +1,15 @@
 //! Search for nearby discs, with a grid if the discs have similar sizes and with a tree otherwise.
 //!
 //! **The grid** is a cell list over a hashed uniform grid: points sorted by cell, in linear time and memory. The cells
-//! are squares, as wide as the largest distance at which pairs are searched. So the two points of a pair lie in the
-//! same cell or in neighbouring cells. Each point (the centre of a disc) is compared with the points of its own cell
-//! and of half of the 8 cells around it (on a line, of half of 2), so each pair is found once. The index of a cell is
-//! hashed into about as many buckets as there are points. So a grain that flies far away costs one bucket instead of a
-//! larger grid, and a scene far from the origin costs nothing. Points are sorted by bucket with a counting sort. The
-//! stored cell of each point distinguishes points of different cells in the same bucket.
+//! are squares. Their width is the largest distance between the centres of two discs at which a pair is searched: the
+//! diameter of the largest disc plus two search margins. So the two points of a pair lie in the same cell or in
+//! neighbouring cells. Each point (the centre of a disc) is compared with the points of its own cell and of half of the
+//! 8 cells around it (on a line, of half of 2), so each pair is found once. The index of a cell is hashed into about as
+//! many buckets as there are points. So a grain that flies far away costs one bucket instead of a larger grid, and a
+//! scene far from the origin costs nothing. Points are sorted by bucket with a counting sort. The stored cell of each
+//! point distinguishes points of different cells in the same bucket.
 //!
-//! **The tree** is parry's bounding volume hierarchy, for discs of very different sizes. Grid cells are as wide as the
+//! **The tree** is parry's bounding volume hierarchy, for discs of very different sizes. Grid cells are wider than the
 //! largest disc, so each small disc would be compared with very many others. A tree does not need a common cell width.
 //! The tree is built once. After that, its bounding boxes are adjusted to the moved discs, and its structure is
 //! improved a little in each search. According to `cargo bench --bench broad_phase`, building the tree again for each
@@ -19,9 +20,9 @@ use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 
 /// Ratio of the largest to the smallest disc above which the search uses the tree. Below it, the search uses the grid.
-/// The sizes that are compared are the radii of the discs, and also the radii plus search margins. At a ratio of 1.5
-/// both take about the same time. At 20 the grid takes 1.2 to 18 times as long as the tree (`cargo bench --bench
-/// broad_phase`).
+/// The sizes that are compared are the radii of the discs, and also the radii plus search margins. The value lies
+/// between two measured ratios: at 1.5 the grid and the tree take about the same time, and at 20 the grid takes 1.2 to
+/// 18 times as long as the tree (`cargo bench --bench broad_phase`).
 const SIZE_RATIO_OF_TREE: f64 = 4.0;
 
 /// Search for pairs of nearby discs, by a grid or a tree.
@@ -103,10 +104,12 @@ type GridCell = [i64; 2];
 #[derive(Clone, Debug, Default)]
 pub struct Grid {
     cells_per_metre: f64,
-    /// For each bucket, the index in `entries` at which its points start: the points of bucket b are `entries[starts[b]
-    /// .. starts[b + 1]]`. The number of buckets is a power of two.
+    /// For each bucket (the points whose grid cells have the same hash), the index in `entries` at which its points
+    /// start: the points of bucket b are `entries[starts[b] .. starts[b + 1]]`. The number of buckets is a power of
+    /// two.
     starts: Vec<u32>,
-    /// Indices of the points, bucket by bucket, in increasing order within a bucket.
+    /// Indices of all points, sorted by bucket (points whose grid cells have the same hash). Within a bucket the
+    /// indices increase.
     entries: Vec<u32>,
     /// Grid cell of the point at each position of `entries`.
     cells: Vec<GridCell>,
@@ -146,7 +149,8 @@ impl Grid {
     /// Calls `found` once for every pair of points that are in the same cell or in neighbouring cells. These include
     /// all pairs within one cell width.
     pub fn pairs<const AXES: usize>(&self, mut found: impl FnMut(u32, u32)) {
-        /// Offsets from a grid cell to half of its neighbouring cells. On a line only the first neighbour exists.
+        /// Offsets from a grid cell to half of its 8 neighbouring cells. The other half is not needed, because a search
+        /// from those cells finds the same pairs. On a line a cell has 2 neighbours, and only the first offset is used.
         const FORWARD: [GridCell; 4] = [[1, 0], [-1, 1], [0, 1], [1, 1]];
         let forward = if AXES == 1 { &FORWARD[..1] } else { &FORWARD };
         for (slot, (&point, &cell)) in self.entries.iter().zip(&self.cells).enumerate() {

@@ -3,10 +3,11 @@
 //!
 //! Each body has a search margin, its *skin* (m). A pair of bodies is a candidate if the gap is below the sum of the
 //! two skins. No pair outside the list can touch before one of its bodies has moved by its own skin, so the list is
-//! rebuilt only then. A skin is a fraction of the mean diameter, but not larger than the disc. So each disc has few
-//! candidates among discs of its size and larger discs, and the list grows in proportion to the number of discs,
-//! whatever their sizes are. Candidates are sorted by the numbers of their bodies (i, other), so the order of contacts
-//! depends only on positions and numbering and not on the time at which the list was built.
+//! rebuilt only then. A skin is a fraction of the mean diameter, but not larger than the diameter of the disc. For a
+//! fast body it is larger: twice the expected displacement in the next step. So each disc has few candidates among
+//! discs of its size and larger discs, and the list grows in proportion to the number of discs, whatever their sizes
+//! are. Candidates are sorted by the number of the grain, and then by the number of the other body. So the order of
+//! contacts depends only on positions and numbering and not on the time at which the list was built.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -23,8 +24,9 @@ use crate::world::{Carry, World};
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reach {
-    /// Search distance, m: pairs of bodies with a smaller gap are candidates, because they may touch soon. Pairs with
-    /// a disc that is smaller than this distance are candidates only up to a smaller gap.
+    /// Search distance, m: pairs of bodies with a smaller gap are candidates, because they may touch soon. Each of the
+    /// two bodies contributes half of this distance, but a disc contributes at most its diameter. So a pair with a
+    /// small disc is a candidate only up to a smaller gap.
     pub skin: f64,
     /// Largest gap of a touching pair, m. It is 0 or a small tolerance for rounding.
     pub gap_tolerance: f64,
@@ -48,8 +50,9 @@ pub struct Candidates {
     way_of_features: f64,
     /// Largest displacement, since the list was last built, of a fixed disc with a prescribed or driven motion, m.
     way_of_discs: f64,
-    /// Displacement along x, since the list was last built, of the periodic images beyond a sheared border, relative
-    /// to the discs themselves, m.
+    /// Distance along x, m, by which the copies of the discs above and below the periodic cell have moved relative to
+    /// the discs themselves since the list was last built. It is 0 unless the periodic borders are sheared, so that
+    /// these copies slide along x.
     way_of_images: f64,
     #[serde(skip)]
     broad_phase: BroadPhase,
@@ -162,7 +165,8 @@ impl Candidates {
         &self.features
     }
 
-    /// Searches again for the corners that boundaries share, after the motion of a boundary has changed.
+    /// Searches again for the corners that boundaries share. This is necessary after the motion of a boundary has
+    /// changed, because boundaries that move differently do not share corners.
     pub(crate) fn find_seams(&mut self, world: &World) {
         seam_search::find(&mut self.features, &self.boundary_of, world);
     }
@@ -199,8 +203,9 @@ impl Candidates {
         self.way_of_discs += way_of_discs;
     }
 
-    /// Adds `way` (m) to the displacement of the periodic images beyond a sheared border relative to the discs
-    /// themselves.
+    /// Adds the length of `way` (m) to the distance by which the copies of the discs above and below the periodic cell
+    /// have moved along x, relative to the discs themselves. Such copies slide only if the periodic borders are
+    /// sheared.
     pub(crate) fn slide(&mut self, way: f64) {
         self.way_of_images += way.abs();
     }
@@ -295,7 +300,9 @@ impl Candidates {
         self.add_features(world);
     }
 
-    /// Sorts the pairs by the index of their first grain into `others`, with a counting sort.
+    /// Sorts the candidate pairs by the index of their first grain, with a counting sort, and writes the second bodies
+    /// of the sorted pairs to the list `others`. `starts` receives the index at which each grain's part of this list
+    /// begins.
     fn sort_pairs(&mut self, grain_count: usize) {
         self.starts.clear();
         self.starts.resize(grain_count + 1, 0);
@@ -321,8 +328,8 @@ impl Candidates {
         }
     }
 
-    /// Adds the features (half-spaces, segments, polygons) near each grain, within the two search margins, to the
-    /// candidates of that grain.
+    /// Adds to the candidates of each grain the features (half-spaces, segments, polygons) whose gap to the grain is
+    /// below the sum of two search margins: the margin of the grain and the margin of all features.
     fn add_features(&mut self, world: &World) {
         if self.features.is_empty() {
             return;

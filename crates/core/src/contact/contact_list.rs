@@ -17,8 +17,8 @@ use crate::number::Parts;
 use crate::threads;
 use crate::world::World;
 
-/// Number of grains whose contacts one thread finds at a time. The search takes about a hundred microseconds for this
-/// many grains.
+/// Number of grains whose contacts one thread finds at a time, in about a hundred microseconds. With fewer grains, the
+/// distribution of the work costs more; with more, threads are idle at the end.
 const GRAINS_IN_PART: usize = 2048;
 
 /// The columns (arrays with one entry per contact) of a [`ContactList`] that a stepper reads or changes.
@@ -30,9 +30,9 @@ pub(crate) struct ContactParts<'a> {
     pub sums: &'a mut StepSums,
 }
 
-/// The contacts of a step, sorted by the indices of their two bodies (i, other), with their impulses and other data.
-/// Each quantity has its own array (column) with one entry per contact. The list keeps its allocated memory from step
-/// to step.
+/// The contacts of a step, sorted by the index of the grain and then of the other body, with their impulses and other
+/// data. Each quantity has its own array (column) with one entry per contact. The list keeps its allocated memory from
+/// step to step.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactList {
@@ -137,7 +137,7 @@ impl ContactList {
         all
     }
 
-    /// The contacts, sorted by the indices of their two bodies (i, other).
+    /// The contacts, sorted by the index of the grain and then by the index of the other body.
     pub fn contacts(&self) -> &[Contact] {
         &self.now.contacts
     }
@@ -147,8 +147,8 @@ impl ContactList {
         &self.now.impulses
     }
 
-    /// Rolling impulse of the contact with this index, N·m·s: the time integral over the step of the moment on grain i
-    /// that resists rolling.
+    /// Rolling impulse of the contact with this index, N·m·s: the time integral over the step of the moment that
+    /// resists rolling, as it acts on the first body of the contact.
     pub fn rolling(&self, index: usize) -> f64 {
         self.now.rolling.get(index).copied().unwrap_or(0.0)
     }
@@ -181,8 +181,8 @@ impl ContactList {
         &self.now.found_in
     }
 
-    /// State of the bond of each contact. It has a meaning only under the law `range`, or if the list also contains
-    /// pairs that do not touch yet.
+    /// State of the bond of each contact: if it exists, and its stretch. Valid only if the list also contains pairs
+    /// that do not touch yet, which it always does under the law `range`.
     pub(crate) fn bonds(&self) -> &[Bond] {
         &self.now.bonds
     }
@@ -350,10 +350,10 @@ impl ContactList {
         now.take_all(parts);
     }
 
-    /// Separates bodies that overlap by more than `allowed` (m), one pair after the other. Each of the two grains of a
-    /// pair moves in proportion to the mass of the other grain. Velocities, and so the kinetic energy, stay the same.
-    /// Returns true if any overlap was larger than `allowed`. Then another pass may be needed, because separating one
-    /// pair may push others together.
+    /// Separates bodies that overlap by more than `allowed` (m), one pair after the other. Of two grains each moves in
+    /// proportion to the mass of the other; a wall or fixed disc does not move. Velocities, and so the kinetic energy,
+    /// stay the same. Returns true if any overlap was larger than `allowed`. Then another pass may be needed, because
+    /// separating one pair may push others together.
     pub(crate) fn separate(
         &self,
         world: &mut World,
@@ -396,8 +396,8 @@ struct ContactColumns {
     bonds: Vec<Bond>,
     /// For each contact, the index of the step in which it was first found.
     found_in: Vec<u64>,
-    /// Rolling impulses, N·m·s: time integrals over the step of the moments on grain i that resist rolling. Empty
-    /// without rolling friction.
+    /// Rolling impulses, N·m·s: time integrals over the step of the moments that resist rolling, as they act on the
+    /// first body of each contact. Empty without rolling friction.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     rolling: Vec<f64>,
 }

@@ -14,7 +14,7 @@ use crate::world::{Boundary, Carry};
 pub(crate) enum Feature {
     /// A half-space.
     HalfSpace {
-        /// A point of the surface, m.
+        /// A point of the straight surface of the half-space, m.
         point: DVec2,
         /// A copy of this half-space that is moved so that its surface passes through the origin.
         shape: HalfSpace,
@@ -145,7 +145,8 @@ impl Feature {
         }
     }
 
-    /// The corners that this feature shares with other boundaries. `None` for a half-space.
+    /// The corners that this feature (segment or polygon) shares with features of other boundaries. `None` for a
+    /// half-space, which has no corners.
     pub(super) fn seams_mut(&mut self) -> Option<&mut Seams> {
         match self {
             Feature::HalfSpace { .. } => None,
@@ -153,7 +154,8 @@ impl Feature {
         }
     }
 
-    /// The corners of the feature, m. Empty for a half-space.
+    /// The corners of this part of a boundary: the ends of a segment or the corners of a polygon, m. Empty for a
+    /// half-space.
     pub(crate) fn corners(&self) -> impl Iterator<Item = DVec2> + '_ {
         let (segment, sides): (_, &[Segment]) = match self {
             Feature::HalfSpace { .. } => (None, &[]),
@@ -168,9 +170,10 @@ impl Feature {
         matches!(self, Feature::HalfSpace { .. })
     }
 
-    /// Returns the distance of `centre` from the surface, m, negative inside solids. Unlike [`Self::distance`], this
-    /// includes corners at which another feature (part of a boundary) reports the contact at present, because this
-    /// feature may have to report it after a small motion of the disc.
+    /// Returns the distance (m) of `centre` from the surface of this part of a boundary (half-space, segment or
+    /// polygon), negative inside solids. A corner that two parts share counts for both, while [`Self::distance`] counts
+    /// it for one of them only. The search for pairs that may touch needs both parts, because a small motion of the
+    /// disc may change the part for which the corner counts.
     pub(crate) fn distance_to_any_point(&self, centre: DVec2) -> f64 {
         match self {
             Feature::Segment { shape, .. } => shape.distance_to_local_point(centre, false),
@@ -184,9 +187,9 @@ impl Feature {
         }
     }
 
-    /// Returns the unit normal towards `centre`, and the distance of `centre` from the surface (m, negative inside
-    /// solids). `None` if the nearest point is a shared corner at which another feature (part of a boundary) reports
-    /// the contact.
+    /// Returns the unit normal towards `centre`, and the distance of `centre` from the surface of this part of a
+    /// boundary (half-space, segment or polygon), m, negative inside solids. `None` if the nearest point is a corner
+    /// where this part meets another part, and the contact counts for that other part instead.
     pub(crate) fn distance(&self, centre: DVec2) -> Option<(DVec2, f64)> {
         match self {
             Feature::HalfSpace { point, shape } => {

@@ -5,8 +5,8 @@
 //! reported only for the two nearest images of its discs, so that each pair is reported once, however large the search
 //! distance is.
 //!
-//! With sheared borders, images above the cell are shifted sideways. They are wrapped into the cell along x before
-//! images beside the cell are searched for.
+//! If the lower and the upper border are sheared (they slide along x relative to each other), images above the cell are
+//! shifted sideways. They are wrapped into the cell along x before images beside the cell are searched for.
 //!
 //! **Shapes** of finite length lie in the cell. A disc near a border may be nearest to an image of a shape. So the
 //! distance is computed for the disc at its own position and for positions one period to each side.

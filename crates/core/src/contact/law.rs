@@ -1,11 +1,13 @@
 //! The contact laws, written as projections of the impulse of one contact.
 //!
-//! Signorini's law with cohesion (Abramian & Staron 2020, eq. 3 and 8, Fig. 2b) requires 0 ≤ N + C₀ ⟂ v̄_n ≥ 0, with
-//! the normal force N, the cohesion force C₀ (N) and the formal velocity v̄ = (v^n + ρ v^{n−1}) / (1 + ρ). Here v^{n−1}
-//! and v^n are the relative velocities before and after the step, and ρ is the restitution. Over one step N = P/Δt,
-//! with the impulse P (N·s) and the time step Δt (s). A positive factor does not change a complementarity condition, so
-//! the law can be divided by the effective mass m_ij. With the reduced impulse λ = P/m_ij (m/s), the shifted reduced
-//! impulse σ = λ_n + C₀Δt/m_ij and u = v_n^n + ρ v_n^{n−1}, the law is
+//! Signorini's law with cohesion (Abramian & Staron 2020, eq. 3 and 8, Fig. 2b) requires 0 ≤ N + C₀ ⟂ v̄_n ≥ 0 (both
+//! sides are at least 0, and at least one of them is 0), with the normal force N and the cohesion force C₀ (both in
+//! newton) and the formal velocity v̄ = (v^n + ρ v^{n−1}) / (1 + ρ). Here v^{n−1} and v^n are the relative velocities
+//! (m/s) of the two bodies before and after step number n, and ρ is the restitution. The subscripts n and t denote the
+//! normal and the tangential component. Over one step N = P/Δt, with the impulse P (N·s) and the time step Δt (s). A
+//! positive factor does not change a complementarity condition, so the law can be divided by the effective mass m_ij.
+//! The reduced impulse is λ = P/m_ij (m/s), with a normal component λ_n and a tangential component λ_t. The shifted
+//! normal impulse is σ = λ_n + C₀Δt/m_ij (m/s). With u = v_n^n + ρ v_n^{n−1} (m/s) the law is
 //!
 //! > 0 ≤ σ ⟂ u ≥ 0   ⇔   σ = max(σ − u, 0).
 //!
@@ -73,15 +75,16 @@ impl ContactLaw {
         self.tip == 0.0
     }
 
-    /// Returns the part σ − c of the shifted normal impulse σ that bounds friction, m/s (c: tip of the friction cone).
-    /// If it is negative, friction is not possible.
+    /// Returns σ − c, m/s: the part of the shifted normal impulse σ that bounds friction. σ is the normal impulse per
+    /// effective mass plus the capture speed, and c is its value at the tip of the friction cone. If σ − c is negative,
+    /// friction is not possible.
     #[inline(always)]
     pub(crate) fn rubbing<T: Lanes>(&self, shifted_impulse: T) -> T {
         shifted_impulse - shifted_impulse.same(self.tip)
     }
 
-    /// Returns the largest tangential reduced impulse |λ_t| (m/s) that the friction cone allows at a shifted normal
-    /// impulse σ (m/s).
+    /// Returns the largest tangential impulse per effective mass (m/s) that the friction cone allows. The argument is
+    /// the shifted normal impulse: the normal impulse per effective mass plus the capture speed, m/s.
     #[inline(always)]
     pub fn friction_bound<T: Lanes>(&self, shifted_impulse: T) -> T {
         shifted_impulse.same(self.friction) * signorini(self.rubbing(shifted_impulse))
@@ -94,7 +97,8 @@ pub(crate) fn cohesion_force(bond: f64, effective_mass: f64, acceleration: f64) 
     bond * effective_mass * acceleration
 }
 
-/// Projects a shifted normal impulse σ (m/s) onto the allowed values σ ≥ 0.
+/// Projects a shifted normal impulse σ onto the allowed values σ ≥ 0. σ is the normal impulse per effective mass plus
+/// the capture speed, m/s.
 #[inline(always)]
 pub(crate) fn signorini<T: Lanes>(shifted_impulse: T) -> T {
     shifted_impulse.larger(shifted_impulse.same(0.0))
@@ -106,10 +110,11 @@ pub(crate) fn coulomb<T: Lanes>(tangential_impulse: T, bound: T) -> T {
     tangential_impulse.larger(-bound).smaller(bound)
 }
 
-/// Returns the point of the friction cone |λ_t| ≤ μσ that is nearest to `trial`, in the metric diag(1, c) with the
-/// tangential compliance c = m_n/m_t (ratio of the effective masses). For a trial point (σ, λ_t) = (a, b) the result
-/// is the trial point itself if |b| ≤ μa, the apex of the cone if a + μc|b| ≤ 0, and otherwise the point of the
-/// nearer edge that
+/// Returns the point (σ, λ_t) of the friction cone |λ_t| ≤ μσ that is nearest to the trial point `trial` = (a, b). Both
+/// points consist of a shifted normal and a tangential impulse, per effective mass, m/s. μ is the friction coefficient.
+/// Distances are measured in the metric diag(1, c) with the tangential compliance c = m_n/m_t: the effective mass m_n
+/// along the normal, divided by the effective mass m_t along the tangent. The result is the trial point itself if |b| ≤
+/// μa, the apex (0, 0) of the cone if a + μc|b| ≤ 0, and otherwise the point of the nearer edge that
 ///
 /// > minimises ½(σ − a)² + ½c(μσ − |b|)²:  σ = (a + μc|b|)/(1 + μ²c),  λ_t = ±μσ.
 #[inline(always)]

@@ -19,7 +19,7 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Returns the indices of the two bodies (i, other), by which contacts are sorted.
+    /// Returns the index of the grain and the index of the other body, by which contacts are sorted.
     pub(crate) fn pair(&self) -> (u32, u32) {
         (self.grain, self.other)
     }

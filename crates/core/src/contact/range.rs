@@ -22,8 +22,9 @@
 //!
 //! **The time τ in a step.** Let the bond be stretched by s (m) and open with the speed v (m/s) at the beginning of the
 //! step, after the collisions of the step, which are solved first (`sim::steppers::range::bonds`). Let the forces on
-//! the two grains, other than the bond itself, change this speed evenly by J (m/s) during the step. With C = C₀Δt/m_ij
-//! (m/s), the pair opens in the time t by
+//! the two grains, other than the bond itself, change this speed evenly by J (m/s) during the step. The bond changes it
+//! by −C, with C = C₀Δt/m_ij (m/s). With the resulting acceleration a (m/s²), the bond is stretched at the time t (s)
+//! after the beginning of the step by
 //!
 //! > s(t) = s + v t + ½ a t²,  a = (J − C)/Δt,
 //!
@@ -47,16 +48,18 @@ use serde::{Deserialize, Serialize};
 use super::law;
 
 /// Gap or overlap, in mean diameters, below which a contact counts as exactly closed, because rounding and the
-/// tolerance of the solver cause gaps of this size. The solver does not close such a gap or push out such an overlap,
-/// and the contact bounces. Without this allowance each contact of a bonded network would demand a gap of exactly zero.
-/// This is impossible, because a bonded network has more contacts than its grains have degrees of freedom.
+/// tolerance of the solver cause gaps of this size. The solver does not close such a gap or push out such an overlap:
+/// it applies the law of a touching contact. Without this allowance each contact of a bonded network would demand a gap
+/// of exactly zero. This is impossible, because a bonded network has more contacts than its grains have degrees of
+/// freedom.
 pub(crate) const TOUCH_IN_DIAMETERS: f64 = 1e-4;
 
 /// State of the bond of one contact under the law `range`: whether it exists, and how far it is stretched.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Bond {
-    /// True if the pair has touched since it last separated, so that the bond exists.
+    /// True if the bond exists: under the law `range`, if the two bodies have touched and their bond has not broken
+    /// since. Under other laws, true if the pair is in touch, so that cohesion acts.
     pub alive: bool,
     /// Stretch s of the bond, m: the distance by which the pair has been pulled apart. 0 if the pair touches.
     pub stretch: f64,
@@ -92,15 +95,16 @@ impl OpeningMotion {
     }
 }
 
-/// Returns the escape speed √(2C₀δ_c/m_ij), m/s, from the cohesion force per effective mass C₀/m_ij = `bond` ·
-/// `acceleration` (m/s²) and the debonding distance δ_c (m). Two bonded grains that are thrown apart faster than this
-/// speed separate.
+/// Returns the escape speed √(2C₀δ_c/m_ij), m/s. Two bonded grains that are thrown apart faster than this speed
+/// separate. The cohesion force per effective mass, C₀/m_ij (m/s²), is the Bond number `bond` times the acceleration of
+/// cohesion `acceleration` (m/s²), and δ_c is the debonding distance `debonding_distance` (m).
 pub fn escape_speed(bond: f64, acceleration: f64, debonding_distance: f64) -> f64 {
     (2.0 * law::cohesion_force(bond, 1.0, acceleration) * debonding_distance).sqrt()
 }
 
 /// Returns the time √(2δ_c m_ij/C₀), s, in which the pull of a bond alone would open or close it by the debonding
-/// distance δ_c (m), with C₀/m_ij = `bond` · `acceleration` (m/s²). Infinite without cohesion.
+/// distance δ_c (m). The cohesion force per effective mass, C₀/m_ij (m/s²), is the Bond number `bond` times the
+/// acceleration of cohesion `acceleration` (m/s²). Infinite without cohesion.
 pub(crate) fn bond_time_secs(bond: f64, acceleration: f64, debonding_distance: f64) -> f64 {
     (2.0 * debonding_distance / law::cohesion_force(bond, 1.0, acceleration)).sqrt()
 }

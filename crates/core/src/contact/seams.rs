@@ -6,10 +6,10 @@
 //! than r if the distance x to the corner is short. If the disc overlaps the floor a little, it touches that corner
 //! before it reaches the next piece, and the corner slows the disc down.
 //!
-//! A point that several pieces share is the nearest point of their union only if it is the nearest point of each
-//! piece. Otherwise one of the pieces has a point that is nearer. So a disc touches a shared corner only if the corner
-//! is the nearest point of every piece to which it belongs. The last of these pieces reports the contact, so that the
-//! contact exists once. Within a polyline, `Feature::distance` follows the same rule.
+//! A point that several pieces share is the nearest point of their union only if it is the nearest point of each piece.
+//! Otherwise one of the pieces has a point that is nearer. So a disc touches a shared corner only if the corner is the
+//! nearest point of every piece to which it belongs. Only the last of these pieces in the list of pieces counts the
+//! contact, so that the contact exists once. Within a polyline, `Feature::distance` follows the same rule.
 //!
 //! A corner may also lie on a side of another piece, or on a half-space. Such a corner is never the nearest point of
 //! the union.
@@ -32,16 +32,16 @@ pub(super) struct Seam {
     pub corner: usize,
     /// The feature (half-space, segment or polygon) of another boundary on which the corner lies.
     pub other: Piece,
-    /// Index of the corner among the corners of the other feature that shares it. `None` if the corner lies on a side
-    /// of the other feature.
+    /// Index of the shared corner among the corners of the feature of another boundary on which it lies. `None` if the
+    /// corner lies on a side of that feature, not at one of its corners.
     pub other_corner: Option<usize>,
     /// True if the wall piece with this corner comes before the other wall piece that shares the corner, in the list of
-    /// all wall pieces. A grain that touches the corner would touch both pieces, so only the later piece reports the
-    /// contact.
+    /// all wall pieces. A grain that touches the corner would touch both pieces, so the contact is counted for the
+    /// later piece only.
     pub is_earlier: bool,
 }
 
-/// Shape of the other feature on which a shared corner lies.
+/// Shape of a feature (half-space, segment or polygon) of one boundary, on which a corner of another boundary lies.
 #[derive(Clone, Debug)]
 pub(super) enum Piece {
     HalfSpace,
@@ -50,14 +50,14 @@ pub(super) enum Piece {
 }
 
 impl Seams {
-    /// True if the feature does not share corners: none of its corners lies on a feature of another boundary.
+    /// True if none of the corners of a segment or polygon lies on another boundary, so that it shares no corner.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Returns true if this feature (segment or polygon) reports the contact between a disc and corner number `corner`
-    /// of this feature. The disc has its centre at `centre` (m), and the corner is the point of this feature that is
-    /// nearest to the disc.
+    /// Returns true if the contact between a disc and corner number `corner` of this feature (segment or polygon) is
+    /// counted for this feature, and not for another feature that shares the corner. The disc has its centre at
+    /// `centre` (m), and the corner is the point of this feature that is nearest to the disc.
     pub(super) fn reports(&self, corner: usize, centre: DVec2) -> bool {
         self.0.iter().filter(|seam| seam.corner == corner).all(|seam| {
             let nearest = match &seam.other {

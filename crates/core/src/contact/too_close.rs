@@ -4,9 +4,10 @@
 //! contacts and the computing time grow in proportion to n. If all n discs are at one point, all n²/2 pairs touch. So
 //! discs count as too close if their centres are nearer than half the smaller radius.
 //!
-//! The search handles one range of radii after the other, from 2^e to 2^(e + 1) for an integer e, on a grid with cells
-//! of width 2^e. Such a cell is so wide that all discs that are too close to a disc are in its own cell and in the 8
-//! cells around it. The discs are sorted by cell, so these nine cells are three ranges of the list.
+//! The search handles one range of radii after the other, from 2^e to 2^(e + 1) metres for an integer e, on a grid with
+//! cells 2^e metres wide. Half of such a radius is less than the width of a cell, so all discs that are too close to a
+//! disc are in its own cell and in the 8 cells around it. The discs are sorted by column of cells and then by row. So
+//! the three cells of each column are next to each other in the list, and the nine cells are three ranges of it.
 
 use glam::DVec2;
 
@@ -22,11 +23,13 @@ const LEAST_DISTANCE_IN_RADII: f64 = 0.5;
 /// once.
 const MOST_FIXED_TOO_CLOSE: usize = 1000;
 
-/// Checks that no grain is too close to another disc, and that not too many fixed discs are close together. Computing
-/// time and memory are proportional to the number of discs.
+/// Checks that no grain is too close to another disc (nearer than half the smaller radius, between the centres), and
+/// that no fixed disc has more than [`MOST_FIXED_TOO_CLOSE`] fixed discs that are so close to it. Computing time and
+/// memory are proportional to the number of discs.
 ///
 /// # Errors
-/// If two discs are too close. The error names both discs.
+/// If a grain is too close to another disc, or too many fixed discs are too close to one fixed disc. The error names
+/// two of these discs.
 pub(crate) fn check_distances(world: &World) -> Result<()> {
     let grains = &world.grains;
     let fixed = world.fixed_discs.iter().map(|disc| (disc.position, disc.radius));
@@ -56,8 +59,9 @@ pub(crate) fn check_distances(world: &World) -> Result<()> {
     Err(Error::value(format!("{}.position", name(one)), found, allowed))
 }
 
-/// Returns the indices of two discs that are too close, if there are any. A disc is a centre and a radius (m), and
-/// the first `grain_count` discs are grains.
+/// Returns the indices of two discs that are too close (nearer than half the smaller radius, between the centres), if
+/// there are any. Up to [`MOST_FIXED_TOO_CLOSE`] fixed discs may be so close to a fixed disc. A disc is a centre and a
+/// radius (m). The first `grain_count` discs are grains, and the others are fixed.
 fn first_too_close(discs: &[(DVec2, f64)], grain_count: usize) -> Option<(usize, usize)> {
     let level = |radius: f64| radius.to_bits() >> 52;
     let mut levels: Vec<u64> = discs.iter().map(|&(_, radius)| level(radius)).collect();
@@ -108,7 +112,8 @@ fn first_too_close(discs: &[(DVec2, f64)], grain_count: usize) -> Option<(usize,
 mod tests {
     use super::*;
 
-    /// Returns `count` discs of seven sizes on a lattice, none of which is too close to another.
+    /// Returns `count` discs of seven sizes on a lattice. The centres of any two discs are farther apart than half the
+    /// smaller radius, as the check requires.
     fn apart(count: usize) -> Vec<(DVec2, f64)> {
         let place = |k: usize| DVec2::new((k % 100) as f64, (k / 100) as f64);
         (0..count).map(|k| (place(k), 0.5 / (1 + k % 7) as f64)).collect()

@@ -18,20 +18,21 @@ pub(crate) struct Transmitted {
     /// Sums of the normal and of the tangential impulses, N·s. Each impulse is measured along the normal or tangent
     /// that the contact had when the impulse acted.
     pub sums: Impulse,
-    /// Sum of the impulse vectors on grain i, N·s.
+    /// Sum of the impulse vectors that act on the first body of the contact, which is a grain, N·s.
     pub vector: DVec2,
 }
 
 impl Transmitted {
-    /// Returns the entry of one contact, with its impulse (N·s) as normal and tangential component, and as a vector
-    /// for the given unit normal.
+    /// Returns the impulse sums of a pair of bodies with a single impulse (N·s) of their contact: its normal and
+    /// tangential component, and its vector for the given unit normal.
     pub(crate) fn of(contact: Contact, found_in: u64, normal: DVec2, impulse: Impulse) -> Self {
         let vector = impulse.normal * normal + impulse.tangential * normal.perp();
         Self { contact, found_in, sums: impulse, vector }
     }
 }
 
-/// The impulse sums of a step, with one entry per pair of bodies, sorted like the contacts.
+/// The sums of the contact impulses over a step, with one entry per pair of bodies, sorted by the index of the grain
+/// and then of the other body.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct StepSums {
