@@ -11,11 +11,12 @@ use crate::solver::settings::FrictionModel;
 /// Errors, contact counts and works of a solved step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measures {
-    /// Residual of the natural map under Coulomb's law, dimensionless; the same measure for all methods and friction
-    /// models.
+    /// Residual under Coulomb's law, dimensionless: the error of the impulses in the contact laws, divided by the
+    /// impulses that would stop the relative motion at the contacts ([`residual`](fn@super::residual)). It is the same
+    /// measure for all methods and friction models.
     pub residual: f64,
-    /// Residual of the convex friction model under which the step was solved, dimensionless; `None` under Coulomb's
-    /// law, for which it would equal `residual`.
+    /// Residual of the convex friction model under which the step was solved, dimensionless; `None` if the step was
+    /// solved under Coulomb's law, because it would then equal `residual`.
     pub model_residual: Option<f64>,
     /// Estimated distance of the velocities from velocities that satisfy Coulomb's law, whichever friction model the
     /// step was solved under, m/s: the root mean square over the grains with contacts, weighted by mass
@@ -32,19 +33,21 @@ pub struct Measures {
     /// Work that moving walls and other moving bodies that are not grains do on the grains, J; contained in the normal
     /// and tangential work.
     pub wall_work: f64,
-    /// Work that the periodic images of grains beyond a sheared border do on the grains that touch them, J; not
-    /// contained in the other works.
+    /// Work that periodic images of grains do on the grains that touch them across a sheared border, J; not contained
+    /// in the other works. A sheared border is a periodic border beyond which the images move along the border.
     pub border_work: f64,
 }
 
 impl Measures {
-    /// Sets `model_residual` to `residual`, unless the step was solved under another friction model than Coulomb's law
-    /// and has a model residual already. In a run that uses both kinds of solve, all steps then have a model residual.
+    /// Sets `model_residual`, the residual of the friction model that the step was solved under, to `residual` if the
+    /// step was solved under Coulomb's law and so has no model residual. In a run with a convex friction model, every
+    /// step then has a model residual, also the steps that were solved under Coulomb's law.
     pub(crate) fn measure_as_a_model(&mut self) {
         self.model_residual = self.model_residual.or(Some(self.residual));
     }
 
-    /// Adds the contact counts and works in `rows`, the measures of further contacts of the same problem.
+    /// Adds the contact counts and works of `rows`, the measures of further contacts of the same problem, to the counts
+    /// and works of these measures.
     fn add_rows(&mut self, rows: Self) {
         self.compressive_contacts += rows.compressive_contacts;
         self.tensile_contacts += rows.tensile_contacts;
@@ -53,8 +56,8 @@ impl Measures {
         self.border_work += rows.border_work;
     }
 
-    /// Adds `piece`, the measures of the next of the shorter steps into which a step is divided. Works are added, of
-    /// two errors the larger is kept, and the contact counts are replaced by the counts of `piece`.
+    /// Adds the measures `piece` of the next substep, if a step is divided into shorter steps. Works are added. Of each
+    /// kind of error the larger value is kept. The contact counts become those of the last substep.
     pub fn add(&mut self, piece: Self) {
         let Self { residual, model_residual, velocity_error, .. } = piece;
         let Self { compressive_contacts, tensile_contacts, .. } = piece;
@@ -71,8 +74,9 @@ impl Measures {
     }
 }
 
-/// Returns the residual of a problem under its own friction model, dimensionless; `None` under Coulomb's law.
-/// `common_residual` is the residual under Coulomb's law, which is the result if contacts have no friction.
+/// Returns the residual of a problem under its own friction model, dimensionless; `None` if this model is Coulomb's
+/// law. `common_residual` is the residual under Coulomb's law. It is the result for a convex model if contacts have no
+/// friction, because all friction models are then the same.
 fn model_residual<M: Model>(problem: &StepProblem<M>, common_residual: f64) -> Option<f64> {
     match problem.friction.model {
         FrictionModel::Coulomb => None,
@@ -101,8 +105,8 @@ pub fn worst(one: f64, other: f64) -> f64 {
 /// as impulses on the bodies) the kinetic energy changes by ½(v^n + v^{n−1})·(ΔtF + HP). So a contact impulse P does
 /// the work P·½(u^n + u^{n−1}), with u^{n−1} and u^n the relative velocities of the contact before and after the step.
 /// Together with the work of gravity this closes the energy balance to rounding, however large the solver's error is.
-/// If body j is a periodic image beyond a sheared border, these velocities are relative to the image, and P times the
-/// velocity of the image relative to j is the work of the border.
+/// If i touches a periodic image of body j across a sheared border (beyond which images move along the border), u^{n−1}
+/// and u^n are relative to the image, and P times the velocity of the image relative to j is the work of the border.
 // Without inlining, the function is compiled once per model, in this crate.
 #[inline(never)]
 pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {

@@ -2,8 +2,9 @@
 //! measures of its solution.
 //!
 //! [`StepProblem::prepare`] sets up a problem in this order: bodies, rows (the data of one contact each) in the order
-//! of the sweep, moving surfaces, the velocities due to the initial impulses, and last the friction bounds or opening
-//! speeds of a convex friction model.
+//! of the sweep, moving surfaces, the velocities due to the initial impulses, and last, for a convex friction model,
+//! the number that it keeps fixed at each contact: a friction bound, or an opening speed (an estimate of the speed at
+//! which the model would otherwise let a sliding contact open).
 
 mod friction;
 mod measures;
@@ -62,8 +63,8 @@ pub struct StepProblem<M: Model> {
     pub law: ContactLaw,
     /// Moving surfaces of walls and other bodies that are not grains, and walls that a force drives.
     pub(crate) walls: MovingWalls,
-    /// The friction model, and the friction bound or opening speed of each contact that the model keeps fixed during a
-    /// solve.
+    /// The friction model, and for each contact the number, m/s, that the model keeps fixed during a solve: a friction
+    /// bound, or an opening speed that is added to the normal velocity.
     pub(crate) friction: LaggedFriction,
     /// Scale of velocity errors, m/s: √(g d), the speed after a fall by half a mean diameter d. Without gravity the
     /// acceleration by cohesion, C₀/m_ij (cohesion force divided by effective mass), replaces g.
@@ -72,13 +73,15 @@ pub struct StepProblem<M: Model> {
     pub(super) touches: Vec<bool>,
     /// Total mass of the grains that have contacts, kg.
     pub(super) touching_mass: f64,
-    /// Longest side of the bounding box of the grains with contacts, in mean diameters; 0 if positions are not known.
+    /// Longest side of the bounding box of the grains with contacts, in mean diameters; 0 if the problem was not set up
+    /// by [`StepProblem::prepare`], so that positions are not known.
     pub(super) extent: f64,
     /// Unit vector along the sum of the normals of all contacts with fixed bodies: the mean direction away from these
     /// bodies; 0 if the sum is 0.
     pub(super) way_out: DVec2,
     pub(super) order: RowOrder,
-    /// √m_ij, the square root of each contact's effective mass, kg^½, for methods with scaled variables.
+    /// √m_ij, the square root of each contact's effective mass, kg^½, for methods whose unknowns are impulses divided
+    /// by √m_ij and velocities multiplied by √m_ij ([`BodySystem`](crate::solver::BodySystem)).
     pub(super) root_masses: Vec<f64>,
 }
 
@@ -97,8 +100,8 @@ pub struct ProblemNumbers {
     /// contacts have their own coefficients ([`RowNumbers`]), the largest capture speed of all pairs of materials for
     /// grains of the mean mass.
     pub capture_speed: f64,
-    /// Friction cone, which determines the part of the normal force that bounds friction; the shifted cone if there is
-    /// no cohesion.
+    /// Friction cone, which determines the part of the normal force that bounds friction. Without cohesion both cones
+    /// are the same, and this is the shifted cone.
     pub cone: FrictionCone,
 }
 
@@ -314,15 +317,16 @@ impl<M: Model> StepProblem<M> {
     }
 
     /// Estimates the number of grains in the longest chain of touching grains: the size `extent` of the region of the
-    /// grains with contacts in mean diameters, or the square root of the number of grains if positions are not known.
+    /// grains with contacts in mean diameters, or the square root of the number of grains if `extent` is 0 because the
+    /// problem was set up without positions.
     fn grains_in_a_row(&self) -> f64 {
         let grains = self.bodies.masses.len() as f64;
         if self.extent > 0.0 { self.extent.min(grains) } else { grains.sqrt() }
     }
 
-    /// Copies the data of a whole pile that its velocity error depends on (speed scale, grains with contacts, their
-    /// mass and extent, direction away from fixed bodies) from the complete problem `whole`. This problem has only some
-    /// of its contacts. So the velocity errors of both problems can be compared.
+    /// Takes from the complete problem `whole` of a step the data on which its velocity error depends: the speed scale,
+    /// the grains with contacts, their mass and extent, and the direction away from fixed bodies. `self` is a problem
+    /// with some of the contacts of `whole`. Afterwards the velocity errors of `self` and `whole` can be compared.
     pub(crate) fn hold_errors_against(&mut self, whole: &Self) {
         self.fall_speed = whole.fall_speed;
         self.touches.clone_from(&whole.touches);
@@ -408,7 +412,8 @@ impl<M: Model> StepProblem<M> {
     }
 
     /// Returns the normal and the tangential impulse of the contact in row `number`, divided by its effective mass,
-    /// m/s. The normal impulse does not include the cohesion impulse, which the row stores as part of it.
+    /// m/s. The row stores the sum of the normal and the cohesion impulse; the returned normal impulse is without the
+    /// cohesion impulse.
     #[inline(always)]
     pub fn reduced_impulse(&self, number: usize, row: &Row<M>) -> [f64; 2] {
         [row.shifted_impulse - self.capture(number), row.tangential_impulse]
@@ -460,9 +465,10 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the impulses of all contacts, divided by the effective masses, m/s, and recomputes the velocities.
-    /// `impulses` has a pair for each contact: normal impulse plus cohesion impulse, and tangential impulse. If the
-    /// problem has rolling resistance, a second pair for each contact follows: the rolling impulse and 0.
+    /// Sets the impulses of all contacts and recomputes the velocities. `impulses` contains a pair for each contact:
+    /// normal impulse plus cohesion impulse, and tangential impulse, both divided by the effective mass, m/s. If the
+    /// problem has rolling resistance, a second pair for each contact follows: the reduced rolling impulse (rolling
+    /// moment times time step, divided by reduced radius and effective mass, m/s) and 0.
     pub(crate) fn write_impulses(&mut self, impulses: impl IntoIterator<Item = [f64; 2]>) {
         let mut impulses = impulses.into_iter();
         for (row, impulse) in self.rows.iter_mut().zip(&mut impulses) {

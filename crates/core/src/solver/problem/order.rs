@@ -16,17 +16,20 @@ use crate::world::World;
 /// colours (groups of contacts that share no grain).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RowGroups {
-    /// For each colour of each tile, the number of the row after the last row of the colour. Rows are counted among the
-    /// contacts of one kind (with fixed bodies, or between grains). Rows of one colour share no grain.
+    /// Ends of the colours, in the order of the tiles: the number of the row after the last row of each colour. A
+    /// colour is a group of contacts of one tile that share no grain, and a tile is a square region of the plane. Rows
+    /// are counted among the contacts of one kind (with fixed bodies, or between grains).
     pub colour_ends: Vec<usize>,
-    /// For each tile, the number of the colour after the last colour of the tile. Rows of two different tiles share no
-    /// grain. The colours after the last tile contain the contacts between tiles.
+    /// Ends of the tiles in `colour_ends`: for each tile (square region of the plane), the index after its last colour
+    /// (group of contacts that share no grain). Rows of two different tiles share no grain. The colours after the last
+    /// tile contain the contacts between grains of different tiles.
     pub tile_ends: Vec<usize>,
 }
 
 impl RowGroups {
-    /// Iterates over the colours of tile number `tile`: returns the range of the rows of each colour. If `tile` is past
-    /// the last tile, returns the colours of the contacts between tiles.
+    /// Iterates over the colours (groups of contacts that share no grain) of tile number `tile`, a square region of the
+    /// plane: returns the range of the rows of each colour. If `tile` is past the last tile, returns the colours of the
+    /// contacts between grains of different tiles.
     pub(crate) fn colours_of(&self, tile: usize) -> impl Iterator<Item = Range<usize>> {
         let start_of = |ends: &[usize], at: usize| at.checked_sub(1).map_or(0, |at| ends[at]);
         let (ends, tiles) = (&self.colour_ends, &self.tile_ends);
@@ -56,29 +59,33 @@ const COLOURS: u32 = u128::BITS;
 /// Sorts the contacts of a step into the order of the sweep. The memory is reused for the next step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RowOrder {
-    /// Groups of the contacts with fixed bodies, then groups of the contacts between grains; empty if the order of the
-    /// sweep does not use colours.
+    /// Groups of contacts that can be solved at the same time: first the groups of the contacts with fixed bodies, then
+    /// the groups of the contacts between grains. Empty if the order of the sweep does not form such groups.
     pub groups: [RowGroups; 2],
     detected: Vec<u32>,
     keys: Vec<(f64, u32)>,
     tiles: Tiles,
-    /// For each contact that has a colour, a group number (tile · [`COLOURS`] + colour) and the number of the contact.
+    /// A pair for each contact that has a colour (group of contacts of one tile that share no grain): the group number
+    /// tile · [`COLOURS`] + colour, from the numbers of its tile (square region of the plane) and colour, and the
+    /// number of the contact.
     coloured: Vec<(u32, u32)>,
     /// Numbers of the contacts whose two grains are in different tiles (square regions of the plane).
     between: Vec<u32>,
-    /// Numbers of the contacts for which no colour was free at both of their grains. Each of these contacts forms a
-    /// colour by itself.
+    /// Numbers of the contacts for which no colour (group of contacts that share no grain) was free at both of their
+    /// grains, because these grains have too many contacts. Each of these contacts forms a colour by itself.
     of_their_own: Vec<u32>,
-    /// First the number of contacts of each colour of each tile; then, while contacts are placed in the sorted list,
-    /// the next free index of each colour.
+    /// Two uses, one after the other: first the number of contacts in each colour (group of contacts that share no
+    /// grain) of each tile (square region of the plane); then, while contacts are placed in the sorted list, the next
+    /// free index of each colour.
     counts: Vec<usize>,
-    /// For each grain, a bit set of the colours that its contacts have so far.
+    /// For each grain, a bit set with the colours of its contacts so far. A colour is a group of contacts that share no
+    /// grain, so a further contact of the grain must get another colour.
     taken: Vec<u128>,
 }
 
 impl RowOrder {
-    /// Fills `rows` with the numbers of the contacts in the order `ordering`. Returns the number of contacts with fixed
-    /// bodies, which come first.
+    /// Fills `rows` with the numbers of the contacts in the order `ordering` of the sweep. Returns the number of
+    /// contacts with fixed bodies, which come first.
     pub(super) fn sort(
         &mut self,
         ordering: Ordering,
@@ -107,8 +114,9 @@ impl RowOrder {
         fixed
     }
 
-    /// Returns the contacts sorted by tiles and colours, for a problem in which the positions of the grains are not
-    /// known. The first `fixed` contacts are with fixed bodies.
+    /// Returns the contacts sorted by tiles (here sets of grains with consecutive numbers, because the positions of the
+    /// grains are not known), and within a tile by colours (groups of contacts that share no grain). The first `fixed`
+    /// contacts are with fixed bodies.
     pub(super) fn sort_by_colours(
         &mut self,
         grains: usize,
@@ -125,8 +133,8 @@ impl RowOrder {
         rows
     }
 
-    /// Selects the contacts that are sorted next, all of one kind (0: with fixed bodies, 1: between grains), by their
-    /// numbers.
+    /// Stores the numbers of the contacts that are to be sorted next, and clears the groups of their kind. All of them
+    /// are of one kind (0: with fixed bodies, 1: between grains).
     fn take(&mut self, numbers: impl Iterator<Item = u32>, kind: usize) {
         self.detected.clear();
         self.detected.extend(numbers);
@@ -155,9 +163,10 @@ impl RowOrder {
         rows.extend(self.keys.iter().map(|&(_, number)| number));
     }
 
-    /// Sorts contacts by tiles, with the contacts between tiles last, and within a tile by colours. Each contact gets
-    /// the first colour that is not yet used at either of its grains. If no grain has more than k contacts, there are
-    /// at most 2k − 1 colours.
+    /// Sorts contacts by the tiles (square regions of the plane) of their grains, and within a tile by colours (groups
+    /// of contacts that share no grain). Contacts between grains of different tiles come last. Each contact gets the
+    /// first colour that is not yet used at either of its grains. If no grain has more than k contacts, there are at
+    /// most 2k − 1 colours.
     fn colour(&mut self, grains: usize, contacts: &[Contact], rows: &mut Vec<u32>, kind: usize) {
         self.coloured.clear();
         self.of_their_own.clear();
@@ -197,8 +206,9 @@ impl RowOrder {
         self.coloured.push((tile as u32 * COLOURS + colour, number));
     }
 
-    /// Counts the contacts of each colour of each tile, and adds them to `rows` colour by colour, within a colour in
-    /// the order of detection.
+    /// Counts the contacts of each colour (group of contacts that share no grain) of each tile (square region of the
+    /// plane), and appends their numbers to `rows` tile by tile and colour by colour, within a colour in the order of
+    /// detection.
     fn group(&mut self, rows: &mut Vec<u32>, kind: usize) {
         let tiles = self.tiles.count;
         let (counts, groups) = (&mut self.counts, &mut self.groups[kind]);
@@ -240,17 +250,18 @@ const GRAINS_IN_TILE: usize = 512;
 /// Maximum number of grains of a scene that is not divided into tiles: the data of the contacts of this number of
 /// grains fit in the second-level cache, and waking a second thread would cost more than it gains.
 const GRAINS_IN_ONE: usize = 2048;
-/// Minimum number of grains per tile, on average, in a scene with large gaps between grains. It limits the number of
-/// empty tiles.
+/// Minimum number of grains per tile (square region whose contacts one thread solves), on average, in a scene with
+/// large gaps between grains: an eighth of the number in a dense pile. With a smaller number, more tiles may be empty;
+/// with a larger number, tiles are larger and contain more of the dense regions.
 const LEAST_GRAINS_A_TILE: usize = 64;
 
 /// The tile of each grain. Tiles are squares of the plane, so small that the velocities of one tile's grains stay in
-/// the first-level cache while its contacts are solved. Tiles share no grain, so several tiles can be solved at the
+/// the first-level cache while its contacts are solved. Two tiles share no grain, so several tiles can be solved at the
 /// same time.
 #[derive(Clone, Debug, Default)]
 struct Tiles {
     of_grain: Vec<u32>,
-    /// Number of square tiles.
+    /// Number of tiles, the square regions into which the plane is divided.
     count: usize,
 }
 
@@ -283,7 +294,8 @@ impl Tiles {
         }));
     }
 
-    /// Divides grains whose positions are not known into tiles: grains with consecutive numbers form a tile.
+    /// Divides grains into tiles (sets of grains whose contacts one thread solves) if their positions are not known:
+    /// grains with consecutive numbers form a tile.
     fn lay_by_number(&mut self, grains: usize) {
         if grains <= GRAINS_IN_ONE {
             return self.lay_one(grains);
@@ -299,8 +311,8 @@ impl Tiles {
         self.of_grain.resize(grains, 0);
     }
 
-    /// Returns the number of the tile that contains all of these grains; `None` if the grains are in different tiles.
-    /// Entries of `grains` that are `None` are ignored.
+    /// Returns the number of the tile (square region of the plane) that contains both grains; `None` if they are in
+    /// different tiles. An entry of `grains` that is `None` is ignored.
     fn of(&self, grains: [Option<usize>; 2]) -> Option<usize> {
         let mut tiles = grains.into_iter().flatten().map(|grain| self.of_grain[grain] as usize);
         let first = tiles.next()?;

@@ -1,5 +1,6 @@
-//! The natural map of a contact problem, the change that an update of all contacts would make to the impulses: the
-//! residual that all methods share, and the residuals of the friction models.
+//! The residual, the measure of error that all methods share, and the residuals of the convex friction models. Each is
+//! the relative size of the *natural map* of a contact problem: the change that a Gauss–Seidel update of every contact
+//! would make to the present impulses, divided by a norm of impulses.
 
 use super::friction::{FrictionProjection, with_projection};
 use super::row_velocities::{RowVelocities, sum_of_rows};
@@ -8,10 +9,12 @@ use crate::contact::{ContactLaw, Lanes, law};
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
-/// Returns the residual of a problem under Coulomb's law, dimensionless: the size of the natural map, in units of
-/// impulse. A contact's impulses satisfy its law exactly if a Gauss–Seidel update, which projects them, would not
-/// change them. So with the normal and tangential impulses P_n and P_t (N·s), the cohesion impulse C₀Δt (cohesion force
-/// times time step) and p = P_n + C₀Δt, the normal and tangential errors e_n and e_t of a contact are
+/// Returns the residual of a problem under Coulomb's law, dimensionless: the norm of the natural map (the change that a
+/// Gauss–Seidel update of every contact would make to the impulses), divided by the norm of the impulses that would
+/// stop the motion of every contact by itself. A contact's impulses satisfy its law exactly if a Gauss–Seidel update,
+/// which projects them, would not change them. With the normal and tangential impulses P_n and P_t (N·s), the cohesion
+/// impulse C₀Δt (cohesion force times time step) and p = P_n + C₀Δt, the normal and tangential errors e_n and e_t of a
+/// contact are
 ///
 /// > e_n = p − max(0, p − m_n (v_n + ρ v_n^{n−1})),  e_t = P_t − clamp(P_t − m_t v_t, ±bound(p)),
 ///
@@ -19,16 +22,17 @@ use crate::solver::settings::FrictionModel;
 ///
 /// with v_n and v_t the relative velocities after the step, v_n^{n−1} the normal velocity before the step, ρ the
 /// restitution, bound(p) the largest friction impulse, v^free the relative velocity without any contact impulse,
-/// including the restitution term, and m_n and m_t the effective masses of a contact along normal and tangent. If the
-/// denominator is 0 because no contact moves without contact impulses, the residual is 0 if the error is only rounding,
-/// and infinite otherwise. The problem stores p/m_n and P_t/m_n, so the terms of each contact are computed in m/s and
-/// weighted by m_n. Rolling moments add their own errors (`problem::rolling`).
+/// including the restitution term, and m_n and m_t (kg) the effective masses of a contact along normal and tangent. If
+/// the denominator is 0 because no contact moves without contact impulses, the residual is 0 if the error is only
+/// rounding, and infinite otherwise. The problem stores p/m_n and P_t/m_n, so the terms of each contact are computed in
+/// m/s and weighted by m_n. Rolling moments add their own errors (`problem::rolling`).
 #[inline(never)]
 pub fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
     common_map(problem).residual::<M>(problem)
 }
 
-/// Computes the squared numerator and denominator of [`residual`] as sums over all contacts.
+/// Computes the squared numerator and denominator of [`residual`], the relative error of the impulses under Coulomb's
+/// law, as sums over all contacts.
 fn common_map<M: Model>(problem: &StepProblem<M>) -> Sums {
     let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
         sums.add_error(problem, number, row, &motion);
@@ -53,13 +57,14 @@ fn projection_map<M: Model, P: FrictionProjection>(problem: &StepProblem<M>) -> 
     sum_of_rows(problem, add_error, Sums::add_all)
 }
 
-/// Computes the squared numerator and denominator of the residual under the projection `P`, of Coulomb's law or another
-/// friction model.
+/// Computes the squared numerator and denominator, (N·s)², of the residual under the friction model of `P`, the
+/// projection of impulses onto the impulses that the model allows. The model may be Coulomb's law.
 fn map_of<M: Model, P: FrictionProjection>(problem: &StepProblem<M>) -> Sums {
     if P::LAGS { projection_map::<M, P>(problem) } else { common_map(problem) }
 }
 
-/// Returns the residual under the projection `P`, of Coulomb's law or another friction model, dimensionless.
+/// Returns the residual under the friction model of `P`, the projection of impulses onto the impulses that the model
+/// allows; dimensionless. The model may be Coulomb's law.
 pub(crate) fn projection_residual<M: Model, P: FrictionProjection>(
     problem: &StepProblem<M>,
 ) -> f64 {
@@ -77,9 +82,10 @@ pub(crate) fn natural_map<M: Model>(problem: &StepProblem<M>) -> f64 {
     natural_map_sums(problem).residual(problem)
 }
 
-/// Returns the normal and tangential errors of contacts in the natural map, divided by the effective masses, m/s. The
-/// arguments, in m/s, are the contacts' shifted normal impulses (normal impulse plus cohesion) and tangential impulses,
-/// restitution terms, and normal and tangential relative velocities.
+/// Returns the normal and tangential errors of contacts, divided by the effective masses, m/s: the differences between
+/// the present impulses and the impulses that an update of each contact by its law would give. The arguments, in m/s,
+/// are the contacts' shifted normal impulses (normal impulse plus cohesion) and tangential impulses, restitution terms,
+/// and normal and tangential relative velocities.
 #[inline(always)]
 pub(crate) fn errors<M: Model, T: Lanes>(
     law: &ContactLaw,
@@ -148,8 +154,9 @@ impl Sums {
         }
     }
 
-    /// Adds a contact's normal and tangential errors in the natural map, divided by the contact's effective mass, m/s,
-    /// to the squared numerator. Also adds the contact's contribution to the denominator.
+    /// Adds a contact's errors to the squared numerator of the residual. The errors, normal and tangential, are the
+    /// differences between the present impulses and the impulses that an update by the contact law would give, divided
+    /// by the contact's effective mass, m/s. Also adds the contact's contribution to the squared denominator.
     #[inline(always)]
     fn add<M: Model>(
         &mut self,
@@ -187,9 +194,10 @@ impl Sums {
     }
 }
 
-/// Relative rounding error of impulses. The residual divides by the impulses that would stop the relative motion at the
-/// contacts without contact impulses. If there is no such motion, errors of at most this fraction of the impulses count
-/// as 0. With a smaller value, methods that scale impulses would not solve a step in which nothing moves; with a larger
+/// Relative rounding error of impulses. The residual is an error of impulses divided by the impulses that would stop
+/// the motion which the contacts would have without contact impulses. If there is no such motion, this quotient is not
+/// defined, and errors of at most this fraction of the impulses count as 0. With a smaller value, methods whose
+/// unknowns are scaled impulses would not solve a step in which nothing moves, because scaling rounds; with a larger
 /// value, real errors would count as 0.
 pub(super) const ROUNDING: f64 = 1e-14;
 
@@ -200,8 +208,9 @@ pub(super) fn rounding<M: Model>(problem: &StepProblem<M>) -> f64 {
     ROUNDING * (squares + squared_rolling(problem)).sqrt()
 }
 
-/// Returns the sum of the squared rolling impulses, Σ (MΔt/R)², with M the rolling moment and R the reduced radius,
-/// (N·s)².
+/// Returns the sum over the contacts of the squared rolling impulses, Σ (MΔt/R)², (N·s)², with the rolling moment M
+/// (N·m), the time step Δt (s), and the reduced radius R (m) from 1/R = 1/r_i + 1/r_j, where r_i and r_j are the radii
+/// of the two bodies.
 pub(super) fn squared_rolling<M: Model>(problem: &StepProblem<M>) -> f64 {
     let rolling = problem.rows.iter().zip(&problem.rows.rolling);
     rolling.map(|(row, rolling)| (row.effective_mass * rolling.impulse).powi(2)).sum()

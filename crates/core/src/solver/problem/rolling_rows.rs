@@ -1,5 +1,6 @@
-//! Rolling resistance of the contacts of a problem: sets its coefficients, computes rolling velocities, and stores the
-//! rolling impulses (moment times time step, N·m·s) for the next step.
+//! Rolling resistance of the contacts of a problem: sets its coefficients, computes rolling velocities (reduced radius
+//! times relative angular velocity of the two bodies, m/s), and stores the rolling impulses (moment times time step,
+//! N·m·s) for the next step.
 
 use super::{MovingSurfaces, NumbersOfContact, Rolling, Row, StepProblem};
 use crate::contact::{Contact, ContactList, Numbering, Other, law};
@@ -51,8 +52,9 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the term of the rolling velocity that is due to the rotation of a body that is not a grain: reduced radius
-    /// times angular velocity, m/s.
+    /// Sets `surface_speed` of each contact, m/s: the angular velocity of the body that is not a grain, times the
+    /// contact's reduced radius (1/R = 1/r_i + 1/r_j, with the radii of the two bodies). It is part of the rolling
+    /// velocity.
     pub(super) fn turn_surfaces(&mut self, contacts: &[Contact], surfaces: &MovingSurfaces<'_>) {
         for (rolling, &index) in self.rows.rolling.iter_mut().zip(&self.rows.contacts) {
             let surface = (surfaces.of)(&contacts[index as usize]);
@@ -74,8 +76,9 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Returns the rolling resistance of the contact in row `number`, and the rolling velocity v_r, m/s, that follows
-    /// from the body velocities `bodies`. Returns `None` without rolling resistance.
+    /// Returns the rolling resistance of the contact in row `number`, and its rolling velocity (reduced radius times
+    /// relative angular velocity of the two bodies, m/s), which follows from the body velocities `bodies`. Returns
+    /// `None` if the problem has no rolling resistance.
     #[inline(always)]
     pub(crate) fn rolling(
         &self,

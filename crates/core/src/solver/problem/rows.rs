@@ -10,11 +10,14 @@ use crate::solver::kinematics::Model;
 /// Velocities and masses of the bodies of a step's contact problem, one body per grain.
 #[derive(Clone, Debug)]
 pub struct Bodies<M: Model> {
-    /// Velocities of the grains that follow from the present contact impulses.
+    /// Velocities of the grains that follow from the present contact impulses, m/s. A rotation counts as the spin,
+    /// radius times angular velocity.
     pub now: Vec<M::Body<f64>>,
-    /// Velocities of the grains at the beginning of the step.
+    /// Velocities of the grains at the beginning of the step, m/s. A rotation counts as the spin, radius times angular
+    /// velocity.
     pub before: Vec<M::Body<f64>>,
-    /// Velocities of the grains at the end of the step if no contact acted.
+    /// Velocities of the grains at the end of the step if no contact acted, m/s. A rotation counts as the spin, radius
+    /// times angular velocity.
     pub free: Vec<M::Body<f64>>,
     /// Masses of the grains, kg.
     pub masses: Vec<f64>,
@@ -55,9 +58,9 @@ pub struct Row<M: Model> {
     pub effective_mass: f64,
 }
 
-/// The data of a contact with a fixed body: exactly one cache line in the plane.
+/// The data of a contact with a fixed body: exactly one cache line (64 bytes) if the model has two axes.
 ///
-/// A structure of arrays made sweeps 1.1 to 1.2 times slower (`assets/reports/parts.md`).
+/// A separate array for each field made sweeps 1.1 to 1.2 times slower (`assets/reports/parts.md`).
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct FixedRow<M: Model> {
@@ -68,7 +71,7 @@ pub struct FixedRow<M: Model> {
     pub surface_speed: f64,
 }
 
-/// The data of a contact between two grains: exactly one cache line in the plane.
+/// The data of a contact between two grains: exactly one cache line (64 bytes) if the model has two axes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct PairRow<M: Model> {
@@ -140,9 +143,9 @@ pub struct ContactRows<M: Model> {
     pub pairs: Vec<PairRow<M>>,
     /// Index of each row's contact in the list of detected contacts.
     pub contacts: Vec<u32>,
-    /// Capture speed of each contact, m/s, if contacts have different capture speeds (contact law `range`, pairs of
-    /// materials); else empty. Sweeps with the shifted friction cone do not need it because they use the shifted
-    /// impulse σ only.
+    /// Capture speed of each contact (cohesion force times time step, divided by effective mass), m/s, if contacts have
+    /// different capture speeds (contact law `range`, pairs of materials); else empty. Sweeps with the shifted friction
+    /// cone do not need it, because the sum of normal impulse and cohesion impulse is stored and bounds friction.
     pub captures: Vec<f64>,
     /// Friction coefficient μ of each contact, if pairs of materials have their own coefficients; else empty.
     pub frictions: Vec<f64>,
@@ -235,8 +238,8 @@ impl<M: Model> ContactRows<M> {
         law_of_row([&self.frictions, &self.captures], number, law)
     }
 
-    /// Adds a copy of row `number` of `others`, modified by `change`. The list `contacts` gets the row number `number`
-    /// for this copy, instead of the index of a detected contact.
+    /// Adds a copy of the contact data in row `number` of `others`, modified by `change`. The entry of the list
+    /// `contacts` for this copy is `number`, instead of the index of a detected contact.
     pub(crate) fn push_copy(
         &mut self,
         others: &Self,
@@ -257,8 +260,10 @@ impl<M: Model> ContactRows<M> {
         self.contacts.push(number as u32);
     }
 
-    /// Copies the shifted normal and the tangential impulses of all contacts, m/s, then a pair (ψ, 0) per contact if
-    /// the problem has rolling resistance, with ψ the reduced rolling impulse, m/s. Clears `impulses` first.
+    /// Copies the impulses of all contacts, m/s, to `impulses`, which is cleared first: a pair per contact with the
+    /// shifted normal impulse (normal impulse plus cohesion) and the tangential impulse, both divided by the effective
+    /// mass. If the problem has rolling resistance, a second pair (ψ, 0) per contact follows, with the reduced rolling
+    /// impulse ψ (rolling moment times time step, divided by reduced radius and effective mass).
     pub(crate) fn read_impulses(&self, impulses: &mut Vec<[f64; 2]>) {
         impulses.clear();
         impulses.extend(self.iter().map(Row::impulse));

@@ -1,46 +1,51 @@
 //! Estimated distance of the velocities of a step from the velocities of its solution.
 //!
-//! **The duality gap.** Let p be allowed impulses and V the velocities of the bodies that they cause. H maps velocities
-//! of bodies to velocities w (normal, with restitution term) and v (tangential) of contacts, as in `problem::friction`;
-//! σ and λ are the shifted normal and the tangential impulse of a contact. Let z ≥ 0 be the shortfall of w, the least
-//! value with w + z ≥ 0 for a friction model with bounds g, or w + s + z ≥ μ|v| for a model with a friction cone (μ:
-//! friction coefficient, s: opening speed). V solves the dual of a problem in which z is added to w. The two energies
-//! of that problem differ, with the effective masses m_ij of the contacts, by
+//! **The duality gap.** Let p be impulses of all contacts (N·s) that the friction model allows, and V the velocities of
+//! the bodies that these impulses cause. The matrix H maps velocities of bodies to velocities w (normal, with
+//! restitution term) and v (tangential) of contacts (m/s), as in `problem::friction`. σ and λ are the shifted normal
+//! impulse (normal impulse plus cohesion) and the tangential impulse of a contact, divided by its effective mass m_ij
+//! (m/s). The shortfall z of a contact (m/s) is the increase of w that it needs to satisfy its law: the least z ≥ 0
+//! with w + z ≥ 0 for a friction model with fixed friction bounds g (m/s), or with w + s + z ≥ μ|v| for a model with a
+//! friction cone (μ: friction coefficient, s: opening speed, m/s). A step of a convex model is a minimisation over
+//! impulses, which has a dual problem for velocities. In the problem in which z is added to w, p and V satisfy all
+//! constraints, and its energy at p and the energy of its dual at V differ by
 //!
 //! > Σ m_ij (σ (w + z) + g|v| + λv) within bounds,  Σ m_ij (σ (w + s + z) + λv) on the cone,
 //!
-//! each term ≥ 0. Let p* and V* be the impulses and velocities of the solution, at which no contact has a shortfall.
-//! Let ‖·‖²_M be a sum of squares weighted by mass. Since (p − p*)·H(V − V*) = ‖V − V*‖²_M, ‖V − V*‖²_M is at most that
-//! difference plus Σ m_ij z(σ* − σ). σ* is not known. It is assumed to be at most 2σ + z: twice the present impulse
-//! plus the impulse that would end the contact's shortfall by itself. With this assumption the gap is
+//! each term ≥ 0. Let p* and V* be the impulses and velocities of the solution, at which no contact has a shortfall,
+//! and σ* the shifted normal impulse of a contact in p*. Let ‖·‖²_M be a sum of squares weighted by mass. Since (p −
+//! p*)·H(V − V*) = ‖V − V*‖²_M, ‖V − V*‖²_M is at most the difference of the energies plus Σ m_ij z(σ* − σ). σ* is not
+//! known. It is assumed to be at most 2σ + z: twice the present impulse plus the impulse that would end the contact's
+//! shortfall by itself. With this assumption the bound is the duality gap S (J), for a model with fixed friction bounds
 //!
 //! > S = Σ m_ij (σ(w + 2z) + z² + g|v| + λv)
 //!
-//! within bounds. √S divided by the root of the mass of the grains with contacts is an error in m/s.
+//! √S divided by the root of the mass of the grains with contacts is an error in m/s.
 //!
 //! **Grains that rest on a contact with a shortfall** have to move as well, and impulses that are still 0 do not show
 //! this: when a column has just begun to fall, only its lowest disc approaches another body. So consider one motion of
-//! all grains that ends such shortfalls: a translation by b along the mean normal u of the contacts with fixed bodies,
-//! where b is the root mean square of their z/(n·u), and an expansion from the grains' centre at the rate a/d, where a
-//! is the root mean square of z among grains and d the mean diameter. The end of a pile that is L diameters long then
-//! moves by
+//! all grains that ends such shortfalls. Its first part is a translation with the speed b along the unit vector u, the
+//! mean normal of the contacts with fixed bodies; b is the root mean square of z/(n·u) of these contacts, with the
+//! normal n of each. The second part is an expansion from the grains' centre at the rate a/d, with the root mean square
+//! a of z at the contacts between grains and the mean diameter d. The end of a pile that is L diameters long then moves
+//! with the speed
 //!
 //! > f = b + L a.
 //!
-//! **The reported error** is the larger of √S (in m/s) and f. If no contact has a shortfall, √S is a bound for a convex
-//! friction model. Otherwise it is an estimate, which was tested (`scene::law_errors`) on 574 solves of all kinds, good
-//! and bad solves, whose velocities were off by more than 1e-6 √(g d), with gravity g. For 3.5 % of them the true error
-//! was larger than the estimate; in the median the estimate was 4.3 times the true error. Smaller errors are
-//! overestimated because S is a product of an error of impulses and an error of velocities: for a pile at rest the
-//! estimate can be 1e-4 if the true error is 1e-6.
+//! **The reported error** is the larger of f and the error from √S, both in m/s. If no contact has a shortfall, √S is a
+//! bound for a convex friction model. Otherwise the reported error is an estimate. It was tested (`scene::law_errors`)
+//! on 574 solves, accurate and inaccurate, whose velocities had a true error of more than 1e-6 √(g d), with gravity g.
+//! For 3.5 % of them the true error was larger than the estimate; in the median the estimate was 4.3 times the true
+//! error. True errors below 1e-6 √(g d) are overestimated because S is a product of an error of impulses and an error
+//! of velocities: for a pile at rest the estimate can be 1e-4 √(g d) if the true error is 1e-6 √(g d).
 //!
-//! **Coulomb's law** has no dual. For Coulomb's law g is the friction bound μσ of the present impulses: S is 0 if and
-//! only if the law is satisfied. An impulse λ outside its cone adds its distance from the nearest allowed λ_c, namely
-//! |λ − λ_c||v| + (λ − λ_c)².
+//! **Coulomb's law** has no dual problem, because it is not convex. S is then computed with the friction bound of the
+//! present impulses as g, which is μσ in the shifted cone, and is 0 if and only if the law is satisfied. An impulse λ
+//! outside the friction cone counts as the nearest allowed impulse λ_c, and adds |λ − λ_c||v| + (λ − λ_c)² to the sum.
 //!
-//! A wall that a force drives is one more body. Its mass counts in ‖V − V*‖²_M but not in the mean. w and v are
-//! relative to the wall's present velocity, without the scaling by compliances that the natural map uses
-//! (`problem::walls`).
+//! A wall that a force drives is one more body. Its mass counts in ‖V − V*‖²_M but not in the mass by which S is
+//! divided. At its contacts, w and v are relative to the wall's present velocity, without the division by ratios of
+//! compliances that the residual uses (`problem::walls`).
 
 use glam::DVec2;
 
@@ -52,9 +57,10 @@ use crate::number::Parts;
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
-/// Minimum cosine between the normal of a contact with a fixed body and the mean normal of all such contacts. A contact
-/// with a smaller cosine is not opened by a motion along the mean normal: to end the shortfall of its normal velocity,
-/// the motion might have to be more than ten times as fast as the shortfall.
+/// Minimum cosine between the normal of a contact with a fixed body and the mean normal of all such contacts, for
+/// contacts that a motion of all grains along the mean normal is assumed to open. To open a contact with a smaller
+/// cosine, which lacks some normal velocity, the motion might have to be more than ten times as fast as the lacking
+/// velocity, and the estimated error would be too large.
 const LEAST_ALONG: f64 = 0.1;
 
 /// Estimated error of the velocities of a step, and the speed by which it is divided for the comparison with the
@@ -63,8 +69,9 @@ const LEAST_ALONG: f64 = 0.1;
 pub struct VelocityError {
     /// Estimated error of the velocities, m/s: root mean square over the grains with contacts, weighted by mass.
     pub told: f64,
-    /// Scale of the error, m/s: √(g d + mean square of the velocities that contacts cancel), with gravity g and the
-    /// mean diameter d.
+    /// Speed, m/s, by which the error is divided for the comparison with the tolerance: √(g d + q), with gravity g
+    /// (m/s²) and the mean diameter d (m). q (m²/s²) is the sum, over the contacts, of effective mass times squared
+    /// relative velocity without contact impulses, divided by the mass of the grains with contacts.
     pub scale: f64,
 }
 
@@ -89,7 +96,7 @@ pub fn velocity_error<M: Model>(problem: &StepProblem<M>) -> VelocityError {
     VelocityError { told: sums.error(problem), scale }
 }
 
-/// Sums over the contacts of a problem, from which its velocity error is computed.
+/// Sums over the contacts of a problem, from which the estimated error of its velocities is computed.
 #[derive(Default)]
 pub(super) struct ErrorSums {
     /// The duality gap S, J: a sum over the contacts that is 0 at the solution. S estimates the squared velocity error
@@ -98,8 +105,7 @@ pub(super) struct ErrorSums {
     /// Sum over the contacts, J: effective mass times the square of the relative velocity that the contact would have
     /// without contact impulses, restitution term included.
     undone: f64,
-    /// Sum over the contacts, J: effective mass times the square of the impulse (cohesion included) divided by the
-    /// effective mass.
+    /// Sum over the contacts, J: squared impulse (cohesion included) of each contact, divided by its effective mass.
     impulses: f64,
     /// Two sums of squared shortfalls, (m/s)². A shortfall is the increase of normal velocity that a contact needs to
     /// satisfy its law. The first sum is over the contacts with fixed bodies, each shortfall divided by the cosine
@@ -121,7 +127,8 @@ impl ErrorSums {
         }
     }
 
-    /// Adds a contact's contribution to the sums, under the friction model that the problem is solved under.
+    /// Adds a contact's contribution to the sums from which the velocity error is computed, under the friction model
+    /// that the problem is solved under.
     #[inline(always)]
     fn add_by_model<M: Model>(
         &mut self,
@@ -158,7 +165,7 @@ impl ErrorSums {
         self.add(problem, number, row, of_normal + rubbing + tangential * across, lacking);
     }
 
-    /// Adds a contact's contribution to the sums, under Coulomb's law.
+    /// Adds a contact's contribution to the sums from which the velocity error is computed, under Coulomb's law.
     #[inline(always)]
     pub(super) fn add_by_law<M: Model>(
         &mut self,
@@ -189,9 +196,11 @@ impl ErrorSums {
         self.add(problem, number, row, of_contact, lacking);
     }
 
-    /// Adds a contact's contributions to the sums. The duality gap S increases by the effective mass times
-    /// `of_contact`, (m/s)². The sums of squared shortfalls increase due to `lacking`, the shortfall z of the contact's
-    /// normal velocity, m/s.
+    /// Adds a contact's contribution to the sums from which the velocity error is computed. The sum S, which is 0 at
+    /// the solution, increases by the effective mass times `of_contact`, (m/s)². The sums of squared shortfalls
+    /// increase by the square of `lacking`, m/s: the increase of normal velocity that the contact needs to satisfy its
+    /// law. For a contact that a motion of all grains along `way_out` opens, `lacking` is first divided by the cosine
+    /// between this direction and the normal.
     #[inline(always)]
     fn add<M: Model>(
         &mut self,
@@ -211,9 +220,10 @@ impl ErrorSums {
         self.counts[kind] += 1.0;
     }
 
-    /// Returns the estimated velocity error, m/s: the larger of √(S/m), with the duality gap S and the mass m of the
-    /// grains with contacts, and the speed f of a motion of all grains that ends the shortfalls of the normal
-    /// velocities. Returns NaN if S is NaN.
+    /// Returns the estimated velocity error, m/s, the larger of two numbers; NaN if S is NaN. The first is √(S/m), with
+    /// the mass m of the grains with contacts, kg, and the sum S over the contacts, J, which is 0 at the solution. The
+    /// second is the speed of a motion of all grains that gives each contact the normal velocity that it lacks to
+    /// satisfy its law.
     pub(super) fn error<M: Model>(&self, problem: &StepProblem<M>) -> f64 {
         // A gap S within the rounding of the impulses counts as 0.
         let is_rounding = self.gap.abs() <= ROUNDING * ROUNDING * self.impulses;

@@ -1,33 +1,39 @@
 //! Contacts of a step with moving surfaces, and with walls that a force drives.
 //!
-//! **Along the normal.** Relative to a surface that moves with the speed V along the normal a grain has the normal
-//! velocity v_n − V. So the expression v_n + ρ v_n^{n−1} of the contact law becomes v_n − V + ρ (v_n^{n−1} − V⁻): only
-//! the term added to v_n changes, and methods need no change. V⁻ is the speed of the surface at the beginning of the
-//! step. A grain that rests on an accelerating surface has v_n^{n−1} = V⁻, so it does not bounce.
+//! **Along the normal.** Let v_n and v_t be the normal and tangential velocity of a grain at the contact (m/s),
+//! v_n^{n−1} its v_n at the beginning of the step and ρ the restitution. Relative to a surface that moves with the
+//! speed V along the normal the grain has the normal velocity v_n − V. So the expression v_n + ρ v_n^{n−1} of the
+//! contact law becomes v_n − V + ρ (v_n^{n−1} − V⁻): only the term added to v_n changes, and methods need no change. V⁻
+//! is the speed of the surface at the beginning of the step. A grain that rests on an accelerating surface has
+//! v_n^{n−1} = V⁻, so it does not bounce.
 //!
-//! **Along the tangent.** The law's v_t becomes v_t − V_t, which the added term cannot express. A row (the data of a
-//! contact) against a fixed body stores the surface speed V_t at the address where a pair of grains stores its mass
-//! ratio g_i, which is 1 against a fixed body. A sweep subtracts V_t, which is in the row's own cache line and changes
-//! no bit if it is 0.
+//! **Along the tangent.** With the speed V_t of the surface along the tangent, the law's v_t becomes v_t − V_t. The
+//! term that is added to v_n cannot express this. A row (the data of a contact) against a fixed body stores the surface
+//! speed V_t at the address where a pair of grains stores its mass ratio g_i, which is 1 against a fixed body. A sweep
+//! always subtracts V_t: V_t is in the row's own cache line, and subtracting 0 changes no bit of the result.
 //!
-//! **Work.** The work of a contact is computed with the grain's own velocity (`problem::measures`), so it contains the
-//! work of the surface on the grain, P_n V + P_t V_t. The rest is dissipated in the contact.
+//! **Work.** The work of a contact with the normal and tangential impulses P_n and P_t (N·s) is computed with the
+//! grain's own velocity (`problem::measures`). So it contains the work of the surface on the grain, P_n V + P_t V_t;
+//! the rest of it is the work that the contact dissipates.
 //!
-//! **Driven walls.** A wall of mass M moves along the unit vector a with speed V under a force F and a damping force c
-//! V. Each contact pushes the wall back by P·b with b = (a·n, a·t). With the damping force taken at the end of the step
+//! **Driven walls.** A wall of mass M (kg) moves along the unit vector a with the speed V under a force F (N) and a
+//! damping force c V (c: kg/s). The impulse P = (P_n, P_t) of each contact pushes the wall back by P·b with b = (b_n,
+//! b_t) = (a·n, a·t), where n and t are the contact's normal and tangent. With the damping force taken at the end of
+//! the step
 //!
 //! > M (V − V⁻) = Δt (F − c V) − Σ P·b,  V = V_free − r Σ P·b,
 //! > r = 1/(M + cΔt),  V_free = r (M V⁻ + ΔtF).
 //!
 //! V is an unknown like the velocities of grains, so a wall that is lighter than its load does not begin to oscillate.
-//! But sweeps then pass the load of the wall only slowly from contact to contact, by M/m_i per sweep. Let m_i be the
-//! mass of the contact's grain, κ = r m_i, u_n and u_t the velocities relative to the wall, and m_n and m_t the
-//! effective masses along normal and tangent. In reduced impulses λ = P/m_i, the contact has
+//! Let m_i be the mass of the contact's grain, κ = r m_i, u_n and u_t the velocities relative to the wall, and m_n and
+//! m_t the effective masses along normal and tangent. In reduced impulses λ = P/m_i, the contact has
 //!
 //! > u_n = v_n − b_n V,  ∂u_n/∂λ_n = 1 + κ b_n²,  ∂u_t/∂λ_t = m_n/m_t + κ b_t²,
 //!
-//! and its impulses change the V of the wall's other contacts by −κ (b_n λ_n + b_t λ_t). V is copied into the rows once
-//! per sweep, so that every reader of the rows gets velocities relative to the present motion of the wall.
+//! and its impulses change V, the speed of the wall at all of its contacts, by −κ (b_n λ_n + b_t λ_t). So sweeps
+//! converge slowly if the wall is light: the update of a contact changes λ_n only by the fraction 1/(1 + κ b_n²), about
+//! M/m_i, of the change that it would make at a fixed wall. V is copied into the rows once per sweep, so that every
+//! reader of the rows gets velocities relative to the present motion of the wall.
 
 use glam::DVec2;
 
@@ -41,18 +47,22 @@ const NONE: u32 = u32::MAX;
 /// Motion of the surface of a body that is not a grain (wall or disc), at a contact.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
-    /// Velocity of the body at the contact in the step, m/s: for a prescribed motion, the mean over the step.
+    /// Velocity of the body at the contact, m/s: the mean velocity of its prescribed motion over the step, plus, if a
+    /// force drives the body, the speed due to this force at the beginning of the step.
     pub velocity: DVec2,
     /// Velocity of the body at the contact at the beginning of the step, m/s.
     pub before: DVec2,
     /// Additional speed of the surface along the tangent, m/s, if the surface runs around a body that does not move, as
     /// a conveyor belt does.
     pub round: f64,
-    /// Angular velocity of the body, or of the surface of a disc that runs around the disc, rad/s.
+    /// Angular velocity at which the surface turns, rad/s: the angular velocity of the body, plus, for a disc whose
+    /// surface runs around it like a belt, the surface speed divided by the disc's radius.
     pub spin: f64,
-    /// True if the body is a half-space. If a half-space moves along its surface, gaps do not change.
+    /// True if the body is a half-space. A motion of a half-space along its own surface does not change the gaps of its
+    /// contacts.
     pub is_half_space: bool,
-    /// True if the body moves only along its normal.
+    /// True if the body moves only along the normal of its surface, so that this motion has no component along the
+    /// tangent.
     pub is_pushed: bool,
     /// The driven wall and its direction at the contact, if a force drives the body.
     pub driven: Option<DrivenBy>,
@@ -78,8 +88,8 @@ impl Surface {
 pub struct DrivenWall {
     /// Index of the wall's motion in the scene's list of motions.
     pub motion: usize,
-    /// Response r = 1/(M + cΔt) of the wall's speed to an impulse on the wall, 1/kg, with the wall's mass M and damping
-    /// coefficient c.
+    /// Response r = 1/(M + cΔt) of the wall's speed to an impulse on the wall, 1/kg, with the wall's mass M (kg), its
+    /// damping coefficient c (kg/s) and the time step Δt (s).
     pub response: f64,
     /// Speed V⁻ of the wall at the beginning of the step, m/s.
     pub before: f64,
@@ -114,10 +124,11 @@ pub struct DrivenRow {
     pub number: u32,
     /// The wall, and its direction of motion at the contact.
     pub by: DrivenBy,
-    /// Values that the fields `restitution_velocity` and `surface_speed` of the contact's row would have if the wall's
-    /// speed V was 0, m/s.
+    /// The fields `restitution_velocity` and `surface_speed` of the contact's data (its row), m/s, as they would be if
+    /// the force-driven speed V of the wall was 0.
     pub still: [f64; 2],
-    /// Part of the speed of the wall's surface along the contact's normal that is not due to the wall's speed V, m/s.
+    /// Speed of the wall along the contact's normal that is due to a prescribed motion, m/s. The force-driven speed V
+    /// of the wall is not part of it.
     pub speed: f64,
 }
 
@@ -164,9 +175,10 @@ impl MovingWalls {
         self.driven_rows.get(*self.driven_row_of.get(number)? as usize)
     }
 
-    /// Records the next contact with a body that is not a grain. `by` is the driven wall of the contact, if it has one.
-    /// For the wall's speed at the beginning of the step, `wall_speed` is the speed along the normal, and `added` and
-    /// `slide` are the fields `restitution_velocity` and `surface_speed` of the contact's row, all in m/s.
+    /// Records the next contact with a body that is not a grain. `by` is the driven wall of the contact, or `None`. The
+    /// other arguments, m/s, are values for the wall's speed at the beginning of the step: `wall_speed`, the speed of
+    /// the wall along the contact's normal, and `added` and `slide`, the fields `restitution_velocity` and
+    /// `surface_speed` of the contact's data.
     fn add_row(&mut self, by: Option<DrivenBy>, wall_speed: f64, [added, slide]: [f64; 2]) {
         if self.driven.is_empty() {
             return;
@@ -182,8 +194,9 @@ impl MovingWalls {
 }
 
 impl<M: Model> StepProblem<M> {
-    /// Sets the terms of moving surfaces in the rows of all contacts with fixed bodies, which have just been created
-    /// without these terms.
+    /// Includes the motion of surfaces in the data (rows) of all contacts with fixed bodies: their speeds along the
+    /// tangent, and along the normal as part of the term that the contact law adds to the normal velocity. Must be
+    /// called once, directly after the rows have been created.
     pub(super) fn add_surfaces(
         &mut self,
         contacts: &ContactList,
@@ -358,14 +371,14 @@ impl<M: Model> StepProblem<M> {
     }
 
     /// Scales the normal and tangential relative velocity (v_n, v_t) of a contact with a driven wall, m/s, for the
-    /// error in the natural map; `None` if the contact is not with a driven wall.
+    /// residual (relative error of the impulses in the contact laws); `None` if the contact is not with a driven wall.
     ///
     /// A contact with a driven wall has larger compliances than a contact with a fixed wall, because the wall gives
     /// way. v_n, with its restitution term, is divided by the ratio of these compliances 1 + κ b_n², and v_t by 1 + κ
-    /// b_t² m_t/m_n (κ is the response of the wall's speed to an impulse times the effective mass; m_n and m_t are the
-    /// effective masses along normal and tangent; b_n and b_t are the components of the wall's direction of motion
-    /// along the normal and the tangent). So an impulse changes the scaled velocity as much as it would change the
-    /// velocity at a fixed wall.
+    /// b_t² m_t/m_n (κ is the product of the contact's effective mass and the response of the wall's speed to an
+    /// impulse, 1/kg; m_n and m_t are the effective masses along normal and tangent; b_n and b_t are the components of
+    /// the wall's direction of motion along the normal and the tangent). So an impulse changes the scaled velocity as
+    /// much as it would change the velocity at a fixed wall.
     #[inline(always)]
     pub(super) fn own_part(
         &self,
@@ -381,9 +394,10 @@ impl<M: Model> StepProblem<M> {
         Some([(normal + added) / of_normal - added, tangential / of_tangential])
     }
 
-    /// Computes the normal and tangential relative velocity, m/s, of a contact with a driven wall for the wall's speed
-    /// without contact impulses, and scales it like [`Self::own_part`]. The given velocity is relative to the wall's
-    /// present speed.
+    /// Computes the normal and tangential relative velocity, m/s, of a contact with a driven wall, as it would be if
+    /// the wall had the speed that it has without contact impulses. The given velocity is relative to the wall's
+    /// present speed. The result is divided by ratios of compliances, as [`Self::own_part`] does; it is `None` if the
+    /// contact is not with a driven wall.
     #[inline(always)]
     pub(super) fn free_part(
         &self,
@@ -433,11 +447,12 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Iterates over the contacts with bodies that are not grains. Returns for each contact κ (b_n² + b_t² m_t/m_n)
-    /// times the number of contacts of its driven wall, or `None` if the body is not a driven wall. κ is the response
-    /// of the wall's speed to an impulse times the contact's effective mass; m_n and m_t are the effective masses along
-    /// normal and tangent; b_n and b_t are the components of the wall's direction of motion along the normal and the
-    /// tangent. Methods that update all contacts at once need this bound on the wall's compliance.
+    /// Iterates over the contacts with bodies that are not grains. Returns for each contact an upper bound for the
+    /// compliance of its driven wall, dimensionless, or `None` if the body is not a driven wall. Methods that update
+    /// all contacts at once need this bound. It is κ (b_n² + b_t² m_t/m_n) times the number of contacts of the wall. κ
+    /// is the product of the contact's effective mass and the response of the wall's speed to an impulse, 1/kg; m_n and
+    /// m_t are the effective masses along normal and tangent; b_n and b_t are the components of the wall's direction of
+    /// motion along the normal and the tangent.
     pub(crate) fn wall_compliances(&self) -> impl Iterator<Item = Option<f64>> {
         let MovingWalls { driven, driven_rows, .. } = &self.walls;
         let mut counts = vec![0.0; driven.len()];
