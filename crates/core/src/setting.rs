@@ -1,10 +1,11 @@
 //! Settings. Each setting is declared once, with its name, default, allowed values and explanation.
 //!
-//! From a list of declarations the macro `settings!` generates the structure with a value for each setting that the
-//! physics reads, the structure of changes that the command line, scene files and study files fill in
-//! ([`Group::Changes`]: some settings with new values), the range checks, and a table ([`About`]) for options,
-//! controls of the window and error messages. The macro `words!` declares the type of a setting whose value is one of
-//! a few words.
+//! From a list of declarations the macro `settings!` generates four items. The first is a structure with the values of
+//! all settings, which the simulation reads. The second is a structure of changes ([`Group::Changes`]), which contains
+//! new values for some settings and which the command line, scene files and study files fill in. The third is the check
+//! that each value is allowed. The fourth is a list of descriptions ([`About`]), from which command-line options,
+//! controls of the window and error messages are made. The macro `words!` declares the type of a setting whose value is
+//! one of a few words.
 
 use std::fmt;
 
@@ -129,7 +130,7 @@ impl<T: Settable> Declaration<T> {
     }
 }
 
-/// Value of a setting.
+/// Value of a setting: a real number, a count, a switch or a word.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
     /// A real number.
@@ -246,7 +247,8 @@ pub trait Changes: Default {
     /// # Errors
     /// If the value in the file has the wrong type, such as a word instead of a number.
     fn read<'de, A: MapAccess<'de>>(&mut self, name: &str, map: &mut A) -> Result<bool, A::Error>;
-    /// Writes the settings for which these changes have a value as entries of `map`, a table of a file.
+    /// Writes the settings for which these changes have a value. Each setting becomes an entry of `map`, the part of
+    /// the file that is being written, with the name of the setting as its key.
     ///
     /// # Errors
     /// If the file cannot be written.

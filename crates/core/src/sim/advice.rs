@@ -7,8 +7,9 @@ use crate::sim::state::State;
 use crate::solver::{FrictionModel, Method, SolverSettings};
 use crate::world::{FrictionCone, Periodic, Physics, World};
 
-/// Solver tolerance, in the unit of the stop criterion, that no step of a pile reaches because of rounding. If the
-/// tolerance of the settings is smaller, the advice on an unsolved step is a larger tolerance.
+/// Solver tolerance that is too small for any step of a pile, because rounding errors are larger. It has the unit of
+/// the stop criterion: dimensionless, or m/s if the solver stops at a change of impulses per mass. If the tolerance in
+/// the settings is smaller than this value, the advice for unsolved steps is a larger tolerance.
 const BELOW_ROUNDING: f64 = 1e-15;
 
 words! {
@@ -41,8 +42,9 @@ words! {
     }
 }
 
-/// Returns the advice if grains were placed in overlap: under `moreau`, the remedy `push-out`, which moves the grains
-/// apart; under other steppers, which do not support this remedy, to place the grains apart.
+/// Returns the advice for grains that were placed in overlap. Under the stepper `moreau` it is the remedy `push-out`,
+/// which moves the grains apart. Other steppers do not support this remedy, so the advice under them is to place the
+/// grains without overlap.
 pub(super) fn on_placed(settings: &Settings) -> Advice {
     match settings.stepper {
         Stepper::Moreau => Advice::PushOut,
@@ -50,7 +52,8 @@ pub(super) fn on_placed(settings: &Settings) -> Advice {
     }
 }
 
-/// Returns the advice if the cohesion force is 0 although the Bond number is above 0; `None` if this is not the case.
+/// Returns the advice for a Bond number above 0 that has no effect, because cohesion is off, or gravity and the
+/// parameter `bond_acceleration` are 0. Returns `None` if the Bond number is 0, or if it causes a cohesion force.
 pub(super) fn on_no_cohesion(
     settings: &Settings,
     world: &World,
@@ -65,8 +68,9 @@ pub(super) fn on_no_cohesion(
     }
 }
 
-/// Returns the advice if bonds ended because their pairs of grains turned: a stepper whose bonds do not depend on
-/// turning. This is `dem` with the compressive friction cone, which `range` does not support, and `range` otherwise.
+/// Returns the advice for bonds that ended because the line between their two grains turned: a stepper whose bonds do
+/// not depend on turning. If the friction cone is shifted, the advice is the stepper `range`. If the cone is
+/// compressive, which `range` does not support, the advice is the stepper `dem`.
 pub(super) fn on_turned_bonds(settings: &Settings) -> Advice {
     match settings.parameters.cone {
         FrictionCone::Compressive => Advice::BondsOfDem,
@@ -74,7 +78,8 @@ pub(super) fn on_turned_bonds(settings: &Settings) -> Advice {
     }
 }
 
-/// Returns the advice if a position, a velocity or the kinetic energy is no longer finite.
+/// Returns the advice for a position, a velocity or a kinetic energy that is no longer finite: more substeps if the
+/// stepper `dem` has too few for stable springs, otherwise a shorter time step.
 pub(super) fn on_overflow(state: &State, settings: &Settings) -> Advice {
     match has_too_few_substeps(state, settings) {
         true => Advice::StableSubsteps,
@@ -82,9 +87,11 @@ pub(super) fn on_overflow(state: &State, settings: &Settings) -> Advice {
     }
 }
 
-/// Returns the advice if bodies overlap too deeply. If the springs of `dem` are too soft, also returns their present
-/// stiffness, N/m. Springs yield at any time step. Under all other steppers the overlap is deep because the contact was
-/// detected too late, so the advice is a shorter time step.
+/// Returns the advice for bodies that overlap too deeply, and the present stiffness of the contact springs, N/m, if the
+/// advice is a larger stiffness. Only the stepper `dem` has contact springs. Under it the advice is more substeps if
+/// there are too few for stable springs. Otherwise the springs are too soft, which no shorter time step mends, so the
+/// advice is a larger stiffness. Under all other steppers the overlap is deep because the contact was detected too
+/// late, so the advice is a shorter time step.
 pub(super) fn on_depth(state: &State, settings: &Settings) -> (Advice, Option<f64>) {
     if settings.stepper != Stepper::Dem {
         return (Advice::TimeStep, None);
@@ -105,8 +112,8 @@ fn has_too_few_substeps(state: &State, settings: &Settings) -> bool {
     settings.stepper == Stepper::Dem && asked > 0 && f64::from(asked) < stable
 }
 
-/// Returns the advice if contacts created energy in a solved step: a restitution of 0 or, if it is 0 already, a shorter
-/// time step. Under `moreau` and `range` contacts can create energy only with friction.
+/// Returns the advice for contacts that created energy in a solved step: a restitution of 0 or, if the restitution is 0
+/// already, a shorter time step.
 pub(super) fn on_created_energy(settings: &Settings) -> Advice {
     match settings.parameters.restitution > 0.0 {
         true => Advice::NoRestitution,
@@ -114,8 +121,8 @@ pub(super) fn on_created_energy(settings: &Settings) -> Advice {
     }
 }
 
-/// Returns the advice if steps are unsolved. `stalled` is true if the residual of the last unsolved step had stopped
-/// decreasing.
+/// Returns the advice for unsolved steps, which miss the tolerance of the solver. `stalled` is true if the residual of
+/// the last unsolved step had stopped decreasing.
 pub(super) fn on_unsolved(state: &State, settings: &Settings, stalled: bool) -> Advice {
     let Settings { stepper, parameters, solver, .. } = settings;
     if !stalled && solver.max_sweeps < SolverSettings::DEFAULT.max_sweeps {

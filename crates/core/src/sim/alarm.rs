@@ -12,17 +12,18 @@ use crate::sim::losses::{Losses, NewLosses};
 use crate::sim::state::State;
 use crate::sim::{Observables, Settings};
 
-/// Number of consecutive unsolved steps that raises an alarm. With a smaller number, a few steps that are hard to
-/// solve, and do no harm, would raise the alarm.
+/// Number of consecutive unsolved steps (steps that miss the solver's tolerance) that raises an alarm. With a smaller
+/// number, a few steps that are hard to solve, and do no harm, would raise the alarm.
 const STEPS_AT_LIMIT: u32 = 100;
 /// Overlap that raises an alarm, in diameters of the smaller disc. The distance that the two grains travel in one step
 /// is subtracted from the overlap first. With a smaller value, errors within a solver's tolerance would raise the
 /// alarm. With a larger value, the alarm comes later if discs sink into each other because steps are not solved.
 const LARGEST_OVERLAP: f64 = 0.05;
-/// Upper limit for the distance that is subtracted from an overlap, because the two grains travel it in one step, in
-/// diameters of the smaller disc. A contact is detected up to one step late, so contacts of a falling pile overlap by
-/// up to this distance (0.43 to 0.56 mean diameters in simulations of 138 grains without cohesion, Δt = 5 ms, six
-/// initial states). With a larger value, grains pass through each other without an alarm.
+/// Upper limit for the part of an overlap that raises no alarm because it may be the distance that the two grains
+/// travelled in one step, in diameters of the smaller disc. A contact is detected up to one step late, so in a falling
+/// pile contacts overlap by up to this distance (measured: 0.43 to 0.56 mean diameters in simulations of 138 grains
+/// without cohesion, Δt = 5 ms, six initial states). With a larger value, grains pass through each other without an
+/// alarm.
 const LARGEST_TRAVEL: f64 = 0.75;
 /// Growth of the overlap that raises an alarm if grains were placed in overlap, in diameters of the smaller disc. With
 /// a smaller value, errors that a solver's tolerance allows would raise the alarm.
@@ -138,8 +139,9 @@ pub(super) struct Watch {
     pub losses: Losses,
     /// True if grains were placed (at the start, or moved by the user) and no step has been taken since.
     are_placed: bool,
-    /// Overlap of the deepest contact ([`DeepestContact`]), in diameters of the smaller disc: the smallest value since
-    /// grains were last placed.
+    /// Smallest value that the overlap of the deepest contact ([`DeepestContact`]) has had since grains were last
+    /// placed, in diameters of the smaller disc. If it is large, grains were placed in overlap, and only a growth of
+    /// their overlap raises an alarm.
     placed_overlap: f64,
     /// Longest distance that each grain has moved in a single step so far, m.
     travels: Vec<f64>,
@@ -197,8 +199,8 @@ impl Watch {
             .then(|| Alarm::new(kind, observables, advice::on_placed(settings)))
     }
 
-    /// Checks the state before a step: raises an alarm if grains were placed in overlap, because the step cannot undo
-    /// this.
+    /// Raises an alarm before the first step after grains were placed, if they were placed in overlap. After this step
+    /// the overlap may be a result of the step, and [`Self::look`] checks it.
     pub(super) fn look_ahead(&mut self, observables: &Observables, settings: &Settings) {
         if let Some(alarm) = self.of_placed(observables, settings) {
             self.add(alarm);
@@ -259,7 +261,8 @@ impl Watch {
     }
 
     /// Adds the work of the contacts in the last step to the total of the run, and raises an alarm if contacts have
-    /// created energy. May be called only under contact laws whose contacts store no energy.
+    /// created energy. May be called only for steppers whose works of contacts balance the energy, and whose contacts
+    /// return no stored energy: not for `avbd` or `dem`.
     pub(super) fn count_work(
         &mut self,
         state: &State,
@@ -321,8 +324,9 @@ impl Watch {
         }
     }
 
-    /// Raises an alarm of this kind because bodies overlap too deeply. `sinks` is true if they overlap because steps
-    /// are not solved.
+    /// Raises an alarm of the kind `kind`, whose cause is an overlap of bodies that is too deep. `sinks` is true if the
+    /// overlap is deep because steps are unsolved, and false if it has another cause, such as a time step that is too
+    /// long.
     fn raise_on_depth(
         &mut self,
         kind: AlarmKind,
@@ -342,8 +346,8 @@ impl Watch {
         self.add(Alarm::new(kind, observables, advice));
     }
 
-    /// Raises an alarm whose advice is a shorter time step. `longest_time_step_secs` is the longest time step that
-    /// would help, s, or `None` if it is unknown.
+    /// Raises an alarm of the kind `kind`, whose advice is a shorter time step. `longest_time_step_secs` is the longest
+    /// time step that would help, s, or `None` if it is unknown.
     pub(super) fn raise(
         &mut self,
         kind: AlarmKind,
@@ -374,7 +378,7 @@ impl Watch {
         }
     }
 
-    /// Adds an alarm unless an alarm of this kind exists.
+    /// Adds `alarm` to the alarms of the run, unless they already contain an alarm of the same kind.
     fn add(&mut self, alarm: Alarm) {
         if !self.has(alarm.kind) {
             self.alarms.push(alarm);

@@ -40,7 +40,8 @@ pub enum Edit {
     LetGo,
 }
 
-/// Returns the point at which the user drags a boundary, m.
+/// Returns the point of a boundary that follows the user's pointer if the user drags the boundary, m: the first corner
+/// or end, or for a half-space the point by which it is given.
 pub fn place_of(boundary: &Boundary) -> DVec2 {
     match boundary.edges().first() {
         Some(Edge::Endless { point, .. }) => *point,
@@ -122,7 +123,7 @@ impl Simulation {
     }
 
     /// Copies `vectors`, one vector per grain, into `there`. The error names `name` if the number of vectors is wrong,
-    /// a vector is not finite, or a vector differs from the old vector along y in a scene with one axis.
+    /// a vector is not finite, or a vector differs along y from the vector that it replaces in a scene with one axis.
     pub(super) fn replace(&self, name: &str, there: &mut [DVec2], vectors: &[DVec2]) -> Result<()> {
         let (count, on_line) = (there.len(), self.state.physics.axes == 1);
         error::check(vectors.len() == count, name, vectors.len(), format!("{count}, one a grain"))?;
@@ -186,7 +187,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Returns the name of a body that a disc would overlap; `None` if there is room for the disc.
+    /// Returns the kind of body that a new disc would overlap, such as `a wall`; `None` if there is room for the disc.
     fn in_the_way(&self, disc: Disc) -> Option<&'static str> {
         let (world, candidates) = (&self.state.world, &self.state.candidates);
         let reach = disc.radius - ROUNDING * world.mean_diameter;

@@ -1,11 +1,12 @@
 //! Finds lost grains: grains that passed through a wall, or left the world.
 //!
-//! A wall may be thin, so the path of a grain's centre decides, not its position. A centre that moves from one side of
-//! a segment to the other, or through a polygon, was at points that the centre of no disc can reach. Half-spaces and
-//! polygons push grains out again, so there only a grain deep inside counts as lost. A path is examined when its length
-//! has reached a quarter of the grain's radius. A disc that moves around the end of a wall keeps one radius away from
-//! that end, so such a short path does not cut the wall. If walls move, paths are measured relative to the walls and
-//! are examined in every step.
+//! A wall may be thin, so a grain is lost if the path of its centre crosses the wall, wherever the grain is afterwards.
+//! The centre of a disc cannot cross a segment or a polygon unless the disc overlaps it by at least its radius.
+//! Half-spaces and polygons push grains out again, so a grain inside them counts as lost only if it is deep inside. A
+//! path is the straight line from the last examined position to the present position. It is examined when its length
+//! has reached a quarter of the grain's radius. A disc that moves around the end of a wall keeps its centre at least
+//! one radius away from that end, so a path of a quarter of the radius cannot cut the wall. If walls move, paths are
+//! measured relative to the walls and are examined in every step.
 
 use glam::DVec2;
 use parry2d_f64::shape::Segment;
@@ -22,8 +23,8 @@ const ROOM_IN_SIDES: f64 = 3.0;
 /// stays lost, because it was outside the scene.
 const LOST_DEPTH: f64 = 1.0;
 /// Length of the path of a grain at which the path is examined, in radii of the grain. A longer path around the end of
-/// a wall might cut the wall although the grain does not. With a shorter length, paths are examined so often that every
-/// step costs as much as a step of a collapse, in which grains move fast.
+/// a wall might cut the wall although the grain does not. With a shorter length, slow grains are examined as often as
+/// fast grains: in nearly every step. Then every step costs as much as a step of a collapsing pile.
 const WAY_IN_RADII: f64 = 0.25;
 
 /// Data to find grains that pass through a wall or leave the world: the path of each grain since its last examination,
@@ -67,8 +68,9 @@ pub(super) struct NewLosses {
     pub through_wall: bool,
     /// True if a grain left the world.
     pub left: bool,
-    /// Largest speed among the grains that left the world below a fixed disc, in diameters of the grain per second; 0
-    /// without such grains.
+    /// Largest speed of a grain that left the world below a fixed disc, through which it may have passed in a single
+    /// step, in diameters of the grain per second. The alarm derives the longest time step without such a passage from
+    /// it. 0 if no grain left the world below a fixed disc.
     pub diameters_per_second: f64,
     /// True if a grain was placed inside a wall.
     pub placed: bool,
@@ -94,8 +96,9 @@ impl Losses {
         }
     }
 
-    /// Examines the paths of the grains, and returns the losses since the last examination. `features` are the parts of
-    /// boundaries at their present positions; `walls_move` is true if they may have moved.
+    /// Examines the paths of the grains, and returns the kinds of loss (through a wall, out of the world) since the
+    /// last examination. `features` are the parts of boundaries at their present positions; `walls_move` is true if
+    /// they may have moved.
     pub(super) fn look(
         &mut self,
         world: &World,
@@ -199,7 +202,9 @@ impl Losses {
         self.lost.push(false);
     }
 
-    /// Prepares for walls that move from now on: records their positions, and makes the edges of the world unknown.
+    /// Prepares the search for lost grains for walls that move from now on. Records the positions of the walls,
+    /// relative to which paths are then measured, and removes the edges of the world, because moving walls may carry
+    /// grains anywhere.
     pub(super) fn let_walls_move(&mut self, features: &[Feature]) {
         self.world = Edges::default();
         if self.frames.is_empty() {
@@ -286,9 +291,9 @@ fn frame(feature: &Feature) -> [DVec2; 2] {
     }
 }
 
-/// Returns the point (m) that `place` (m) would have become if it had moved with a wall. `before` and `now` are two
-/// points of the wall before and after its motion. From this point, the path of a grain is measured relative to the
-/// wall.
+/// Returns the present position, m, of a point that is fixed to a moving wall and that was at `place` (m) before the
+/// motion. `before` and `now` are two points of the wall before and after the motion, m. The path of a grain relative
+/// to the wall begins at the returned position.
 fn carried(place: DVec2, before: [DVec2; 2], now: [DVec2; 2]) -> DVec2 {
     let [then, along_now] = [before, now].map(|[from, to]| to - from);
     if before == now || then == DVec2::ZERO {
@@ -326,8 +331,9 @@ fn outward(side: &Segment) -> DVec2 {
     -(side.b - side.a).perp().normalize_or_zero()
 }
 
-/// True if the path from `from` to `to` crosses a segment. A point shared by two consecutive segments is assigned to
-/// one side of the path, so that no path passes between the segments.
+/// True if the straight path from `from` to `to` (m) crosses a segment. An end of a segment that is exactly on the path
+/// counts as left of the path. So a path through the point that two consecutive segments share crosses one of them, and
+/// cannot pass between them.
 fn crosses(from: DVec2, to: DVec2, wall: &Segment) -> bool {
     let is_left = |a: DVec2, b: DVec2, place: DVec2| (b - a).perp_dot(place - a) >= 0.0;
     // Quick test of bounding boxes first, because most walls are far from most paths.
@@ -338,7 +344,7 @@ fn crosses(from: DVec2, to: DVec2, wall: &Segment) -> bool {
         && is_left(from, to, wall.a) != is_left(from, to, wall.b)
 }
 
-/// True if the path from `from` to `to`, two points outside a convex polygon, passes through the polygon.
+/// True if the straight path from `from` to `to` (m), two points outside a convex polygon, passes through the polygon.
 fn cuts(from: DVec2, to: DVec2, sides: &[Segment]) -> bool {
     let (mut enters, mut leaves) = (0f64, 1f64);
     for side in sides {

@@ -228,7 +228,8 @@ struct Laws<'a> {
     world: &'a World,
     candidates: &'a Candidates,
     parameters: &'a Parameters,
-    /// Contact laws for pairs of materials; `None` if the parameters apply to all contacts.
+    /// Contact laws for pairs of materials; `None` if all contacts have the coefficients of `parameters`, whatever
+    /// their materials are.
     pairs: Option<PairLaws>,
     has_cohesion: bool,
     has_bonds: bool,
@@ -251,7 +252,8 @@ impl<'a> Laws<'a> {
         }
     }
 
-    /// True unless the contact law has bonds that cannot pull, because the Bond number is 0 or cohesion is off.
+    /// False if the contact law has bonds that cannot pull, because the Bond number is 0 or cohesion is off. True if
+    /// bonds can pull, or if the contact law has no bonds.
     fn has_strength(&self) -> bool {
         !self.has_bonds || (self.has_cohesion && self.parameters.bond > 0.0)
     }

@@ -10,8 +10,8 @@ use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{Measures, Model, SolveReport};
 use crate::world::{Drive, Periodic};
 
-/// Measurements after a step: one row of the CSV file of observables. In files, the fields have the names of the
-/// columns of recordings.
+/// Measurements after a step: one row of the table of observables that a run can write to a file. The names of its
+/// columns are the names that serde gives these fields.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Observables {
     /// Number of steps taken so far.
@@ -336,7 +336,7 @@ pub const QUANTITIES: &[Quantity<Observables>] = &[
 mod tests {
     use super::*;
 
-    /// Names of the observables that the window does not plot.
+    /// Names of the observables that the window does not plot, separated by spaces.
     const NOT_PLOTTED: &str = "step time time_step sweeps factorisations converged stalled residual \
         model_residual contacts compressive_contacts tensile_contacts potential_energy normal_work \
         tangential_work wall_work drive_work border_work gravity_work bond_work drive_energy lost_grains";

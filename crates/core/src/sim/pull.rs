@@ -19,8 +19,9 @@ pub(super) fn gravity_that_scales(world: &World) -> f64 {
 }
 
 /// Returns the acceleration that scales the stiffness of contact springs, m/s²: the gravity of the scene or, without
-/// gravity, the acceleration that defines the cohesion force. With a smaller acceleration, springs would be so soft
-/// that a bond could stretch by more than a diameter.
+/// gravity, the parameter `bond_acceleration`, which then sets the cohesion force. If both are 0, returns
+/// [`GRAVITY_IF_NONE`]. With a smaller acceleration, springs would be so soft that a bond could stretch by more than a
+/// diameter.
 pub(super) fn acceleration_of_springs(world: &World, parameters: &Parameters) -> f64 {
     or_if_none(parameters.accelerating(world.gravity.magnitude()))
 }
@@ -57,7 +58,7 @@ impl Pull {
     }
 
     /// Returns the change of velocity that the spring gives the grain in the next `time_step_secs` (s); `None` if it is
-    /// zero.
+    /// zero. In a scene with one axis (`axes` = 1) the change has no component along y.
     pub(super) fn push(self, world: &World, axes: usize, time_step_secs: f64) -> Option<Push> {
         let mut change = self.added_velocity(world, time_step_secs);
         if axes == 1 {

@@ -38,7 +38,7 @@ pub struct Simulation {
     observables: Observables,
     /// Sum of the initial heights of all grains, Σ y_i(0), m (Abramian & Staron 2020, eq. 11).
     pub(super) initial_heights: f64,
-    /// Stepper of the last step, whose data contacts keep; `None` at the start and after a step with your own stepper.
+    /// Stepper of the last step; contacts keep its data. `None` at the start and after a step with your own stepper.
     last_stepper: Option<Stepper>,
     pub(super) watch: Watch,
     pub(super) surroundings: Arc<Surroundings>,
@@ -51,7 +51,7 @@ impl Simulation {
     /// this tolerance only allows for rounding.
     ///
     /// # Errors
-    /// The error names the first field that is outside its range or incompatible with other fields.
+    /// The error names the first part of the arguments that is outside its range or incompatible with another part.
     pub fn new(
         mut world: World,
         physics: Physics,
@@ -158,7 +158,7 @@ impl Simulation {
         self.look()
     }
 
-    /// Clears the data that contacts keep if the last step was not taken by `stepper`: steppers keep different data.
+    /// Clears the data that contacts keep from the last step, unless `stepper` took it: steppers keep different data.
     fn become_of(&mut self, stepper: Option<Stepper>) {
         if self.last_stepper != stepper {
             self.state.contacts.forget();
@@ -252,8 +252,8 @@ impl Simulation {
         with_model!(parts, M => visitor.visit::<M>(&mut M::slot(&mut slots).problem, &contacts))
     }
 
-    /// Prepares the next step in a copy. Returns the compiled model of its physics, the memory with its contact
-    /// problem, and its contacts. This function is not generic, so that it is compiled only in this crate.
+    /// Prepares the next step in a copy. Returns the mechanics that the step computes (such as friction), its contact
+    /// problem and its contacts. Not generic, so that it is compiled only in this crate.
     fn prepared(&self) -> (ModelParts, Slots, ContactList) {
         let Self { mut state, settings, mut slots, mut memory, .. } = self.clone();
         let parts = state.leanest_model(&settings.parameters);

@@ -14,9 +14,9 @@ use crate::world::{Disc, direction};
 /// diameters along x and y.
 const FALLING: [f64; 2] = [0.3, 1.5];
 
-/// Returns the scene of a triangular heap over a rough base, with slopes of 60°. It has `rows` rows, and its lowest
-/// row has `rows` discs. Each disc is in the notch between two discs below it, and the load on a disc at the edge
-/// passes straight on to the disc below. So the heap stays at rest even without friction.
+/// Returns the scene of a triangular heap on a base of fixed discs, with slopes of 60°. It has `rows` rows, and its
+/// lowest row has `rows` discs. Each disc is in the notch between two discs below it, and the load on a disc at the
+/// edge passes straight on to the disc below. So the heap stays at rest even without friction.
 pub fn heap(rows: usize) -> Scene {
     let height = 0.75f64.sqrt() * (1.0 - 3.0 * TOUCH);
     let mut grains = Vec::new();
@@ -148,9 +148,9 @@ pub fn arch() -> Scene {
     scene
 }
 
-/// Overlap of neighbouring discs in the lattice before the discs are displaced, in units of the largest displacement
-/// of a disc. The displacements can move two neighbours apart by two units, and one more unit is a margin, so that all
-/// contacts touch.
+/// Overlap of neighbouring discs of the scene [`lattice`] before its discs are displaced at random, in units of the
+/// largest displacement of a disc along an axis. The displacements can move two neighbours apart by two units, and one
+/// more unit is a margin, so that all contacts touch.
 const SPARE: f64 = 3.0;
 
 /// Returns the scene of a box full of discs in a triangular lattice. Each disc is displaced at random by up to
@@ -159,10 +159,11 @@ const SPARE: f64 = 3.0;
 /// An inner disc touches six other discs. So there are three contacts per disc, but only one and a half would be
 /// needed for the degrees of freedom of a disc. The displacements turn every normal by a small angle.
 ///
-/// The lattice is in equilibrium. In the regular lattice the horizontal contacts may be without force. Then the load on
-/// a disc rests on two contacts below the disc, or on one contact and a wall. All of these contacts push, with forces
-/// inside their friction cones. These contacts have four impulse components per disc, for the three equations of
-/// equilibrium of a disc. So a small rotation of the normals needs only a small change of the impulses, and no motion.
+/// The lattice is in equilibrium. In the regular lattice the horizontal contacts may be without force. Then two
+/// contacts carry the load on a disc: two contacts with discs below it, or one contact with such a disc and one with a
+/// wall. Both contacts push, with forces inside their friction cones. Their impulses have four components, normal and
+/// tangential, for the three equations of equilibrium of a disc. So a small rotation of the normals needs only a small
+/// change of the impulses, and no motion.
 ///
 /// The overlap of neighbouring discs is three times the displacement, so that no contact opens.
 pub fn lattice(columns: usize, rows: usize, perturbation: f64) -> Scene {

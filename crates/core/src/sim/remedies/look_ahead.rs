@@ -1,14 +1,17 @@
-//! Remedy `speculative`: pairs that would meet within a step become contacts of the step.
+//! Remedy `speculative`: adds pairs of bodies that would meet within a step to the contact problem of this step.
 
 use crate::contact::{InTouch, LookAhead};
 use crate::sim::state::State;
 
-/// Largest search distance, in mean diameters. Without this limit the search would cover nearly all pairs if all grains
-/// are fast.
+/// Largest gap at which the remedy `speculative` searches for pairs that may meet within a step, in mean diameters.
+/// Without this limit the search would cover nearly all pairs if all grains are fast.
 const FARTHEST_IN_DIAMETERS: f64 = 8.0;
 
-/// Returns the distances within which a step searches for contacts: two bodies that both move at the highest speed of
-/// any body approach each other by at most this distance in the step.
+/// Returns the distances (m) by which a step selects the pairs that may meet within it. Pairs with a gap above `reach`
+/// are not examined: `reach` is the distance by which two bodies that both move at the highest speed of any body
+/// approach each other in the step, including the effect of gravity and body forces, and at most
+/// [`FARTHEST_IN_DIAMETERS`]. A pair is selected if its gap would shrink below `distance`, the part of this approach
+/// that is due to these forces.
 ///
 /// Contacts are found at the beginning of a step, so a pair that meets later in the step is missed. A fast disc may
 /// then end up inside a wall or behind it. So this remedy adds the pairs whose gap would close within the step to the
@@ -21,11 +24,11 @@ const FARTHEST_IN_DIAMETERS: f64 = 8.0;
 /// (`contact::range`) to their gap. The compressive cone bounds friction by μ max(N, 0) with the normal force N. For
 /// these pairs only the part of N counts that exceeds the cohesion force that the pair will have after it touches.
 ///
-/// **Drawbacks.** The pair is slowed down to the speed gap/Δt before it meets, and in the next step it bounces with ρ
-/// times this speed. So it bounces with any fraction between 0 and 1 of the correct speed, on average with half of it.
-/// The normal belongs to the beginning of the step, so a pair that would pass by at an angle may be stopped without
-/// touching. A fast grain has to search its whole path. The remedy `max-travel`, which divides the step into pieces
-/// (`remedies::pieces`), has none of these drawbacks.
+/// **Drawbacks.** The pair is slowed down to the speed gap/Δt before it meets, and in the next step it bounces with
+/// this speed times the restitution ρ. So its speed after the bounce is between 0 and the correct speed, on average
+/// half of the correct speed. The normal belongs to the beginning of the step, so a pair that would pass by at an angle
+/// may be stopped without touching. A fast grain has to search its whole path. The remedy `max-travel`, which divides
+/// the step into pieces (`remedies::pieces`), has none of these drawbacks.
 pub(in crate::sim) fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     let world = &state.world;
     let by_forces = 2.0 * state.largest_acceleration() * time_step_secs * time_step_secs;

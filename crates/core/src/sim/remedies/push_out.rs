@@ -31,10 +31,10 @@ struct PushedContact {
 /// Moves overlapping grains apart after a step with the time step `time_step_secs` (s). The contacts of `state` are
 /// still those of the beginning of the step.
 ///
-/// The displacements δ of the grains after a step make the gap of each contact grow by a fraction of its excess
-/// overlap, and let no contact be pushed into overlap by its neighbours. Let `want` be the required increase of the
-/// gap, n the normal, λ ≥ 0 the push of a contact, and m the mass of a grain. Then δ_i = Σ n λ/m_i over the contacts of
-/// grain i, and each contact has
+/// The displacements δ of the grains after a step make the gap of each contact grow by a fraction ([`SHARE`]) of its
+/// overlap beyond [`LEFT`]. They let no contact be pushed to an overlap above [`LEFT`] by its neighbours. Let `want` be
+/// the required increase of the gap, n the normal, λ ≥ 0 the push of a contact, and m the mass of a grain. Then δ_i = Σ
+/// n λ/m_i over the contacts of grain i, and each contact has
 ///
 /// > 0 ≤ λ ⟂ n·(δ_i − δ_j) − want ≥ 0.
 ///

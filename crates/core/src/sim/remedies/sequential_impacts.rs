@@ -1,10 +1,10 @@
 //! Remedy `sequential-impacts`: lets shocks travel through touching grains one after the other, within one step.
 //!
 //! **Problem.** The term ρ v_n^{n−1} of the contact law of Abramian & Staron (2020) (restitution ρ, normal velocity
-//! v_n^{n−1} before the step) treats all shocks of a step at once, and depends only on a contact's velocity before the
-//! step. If a ball hits a row of balls at rest, all of these balls fly off together, at any ρ: contacts within the row
-//! do not close before the step, so the law does not let them open after it. In reality the shock travels through the
-//! row, and only the last ball flies off.
+//! v_n^{n−1} before step number n) treats all shocks of a step at once, and depends only on a contact's velocity before
+//! the step. If a ball hits a row of balls at rest, all of these balls fly off together, at any ρ: contacts within the
+//! row do not close before the step, so the law does not let them open after it. In reality the shock travels through
+//! the row, and only the last ball flies off.
 //!
 //! **Remedy.** First the shocks are computed, without friction, and without gravity because it has no effect in zero
 //! time. A pass takes only the contacts k that close, with their normal velocities u_k⁻ before and u_k⁺ after the pass,
@@ -28,10 +28,10 @@
 //! momentum is conserved.
 //!
 //! **The step itself** then requires each struck contact k to open with the speed û_k ≥ 0 that the shocks have given
-//! it: in its law, u_k^n − û_k replaces u_k^n + ρ u_k^{n−1}. Without gravity and friction the impulses of the shocks
-//! already solve this step: they are ≥ 0, and u_k^n = û_k if an impulse is not 0. With friction, the friction bound
-//! depends on the whole normal impulse, including shocks. A single contact has û = −ρ u^{n−1}, so the law of a single
-//! contact does not change.
+//! it: in its law, u_k^n − û_k replaces u_k^n + ρ u_k^{n−1} (normal velocities u_k^{n−1} before and u_k^n after step
+//! number n). Without gravity and friction the impulses of the shocks already solve this step: they are ≥ 0, and u_k^n
+//! = û_k if an impulse is not 0. With friction, the friction bound depends on the whole normal impulse, including
+//! shocks. A single contact has û = −ρ u^{n−1}, so the law of a single contact does not change.
 //!
 //! **Friction.** With friction, bounces may create energy, here as in the scheme of Abramian & Staron (T. R. Kane,
 //! 1984). If the contacts of a step have done positive work, in addition to the work of moving walls, all û_k of the
@@ -62,8 +62,8 @@ const LEAST_IN_FASTEST: f64 = 1e-6;
 /// time. A shock through a row of n balls needs n − 1 passes.
 const MOST_PASSES: u32 = 2000;
 
-/// Work of all contacts in a step above which they count as creating energy, divided by the sum of the absolute works
-/// of the normal impulses. Rounding and the tolerance of a step cause smaller values.
+/// Ratio of two works in a step above which contacts count as creating energy: the total work of all contacts, divided
+/// by the sum of the absolute works of the normal impulses. Rounding and the tolerance of a step cause smaller values.
 const LEAST_GAIN: f64 = 1e-6;
 
 /// Largest number of times that the opening speeds after shocks are reduced in a step because bounces create energy:
@@ -74,8 +74,9 @@ const HALVINGS: u32 = 5;
 /// of the step, because only few contacts close at the same time.
 const PASS: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-12, 1000);
 
-/// Computes the shocks of a prepared step, and solves the step so that its contacts open with the speeds that the
-/// shocks have given them. As long as bounces create energy, reduces these speeds and solves the step again.
+/// Computes the shocks of a step whose contact problem has been set up, and solves the step so that its contacts open
+/// with the speeds that the shocks have given them. As long as bounces create energy, reduces these speeds and solves
+/// the step again.
 pub(in crate::sim) fn solve<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -99,9 +100,9 @@ pub(in crate::sim) fn solve<M: Model>(
     report.after(earlier)
 }
 
-/// Computes the shocks of a prepared step, and changes the contact problem so that its contacts open with the resulting
-/// speeds. Returns a report with the sweeps for the shocks; the report of the step itself shows if the step is solved.
-/// With cohesion, or without shocks that bounce, returns `None` and does not change the problem.
+/// Computes the shocks of a step whose contact problem has been set up, and changes this problem so that its contacts
+/// open with the resulting speeds. Returns a report with the sweeps for the shocks; the report of the step itself shows
+/// if the step is solved. With cohesion, or without shocks that bounce, returns `None` and does not change the problem.
 pub(in crate::sim) fn follow<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -155,13 +156,14 @@ fn gains_energy<M: Model>(problem: &StepProblem<M>) -> bool {
     gain > LEAST_GAIN * scale
 }
 
-/// State of the calculation of a step's shocks, between two passes.
+/// State of the calculation of a step's shocks, between two passes. A pass solves all contacts that close at the same
+/// time.
 struct ImpactSequence<M: Model> {
-    /// Velocities of the grains after the passes so far.
+    /// Velocities of the grains after the shocks computed so far.
     bodies: Vec<M::Body<f64>>,
-    /// Normal velocity u of each contact after the passes so far, m/s.
+    /// Normal velocity u of each contact after the shocks computed so far, m/s.
     speeds: Vec<f64>,
-    /// Sum of each contact's normal impulses in the passes so far, divided by the effective mass, m/s.
+    /// Normal impulse of each contact, summed over the shocks computed so far and divided by the effective mass, m/s.
     impulses: Vec<f64>,
     /// True for each contact whose pair touches. A pair that will only touch later in the step takes no part in shocks.
     touching: Vec<bool>,
@@ -185,8 +187,8 @@ impl<M: Model> ImpactSequence<M> {
             .fold(0.0, |fastest, (speed, _)| fastest.max((-speed).positive_part()))
     }
 
-    /// Fills `pass`, the contact problem of the next pass, with the contacts that close faster than `least` (m/s).
-    /// Returns false if no contact does.
+    /// Fills `pass`, the contact problem of the next pass of shocks, with the contacts that close faster than `least`
+    /// (m/s). Returns false if no contact closes faster.
     fn select(
         &self,
         problem: &StepProblem<M>,
@@ -212,7 +214,8 @@ impl<M: Model> ImpactSequence<M> {
         !pass.rows.is_empty()
     }
 
-    /// Adds the impulses of a solved pass to the impulses so far, and updates the velocities.
+    /// Adds the impulses of `pass`, the solved contact problem of the contacts that close at the same time, to the
+    /// impulses of the shocks so far, and updates the velocities.
     fn take(&mut self, problem: &StepProblem<M>, pass: &mut StepProblem<M>) {
         for ((_, row), &number) in pass.rows().zip(&pass.rows.contacts) {
             self.impulses[number as usize] += row.shifted_impulse;
@@ -221,8 +224,8 @@ impl<M: Model> ImpactSequence<M> {
         relative_velocities(problem, &self.bodies, &mut self.speeds);
     }
 
-    /// Stops all contacts that still close after the last pass, without friction. Uses the solver of the step, because
-    /// many contacts may close.
+    /// Stops all contacts that still close after the last computed shock, without friction. Uses the solver of the
+    /// step, because many contacts may close.
     fn stop_the_rest(
         &mut self,
         problem: &StepProblem<M>,
@@ -251,8 +254,9 @@ impl<M: Model> ImpactSequence<M> {
         report
     }
 
-    /// Changes the law of each struck contact so that it opens with the speed that the shocks have given it. A contact
-    /// that was not struck may not bounce. The impulses of the shocks become the starting values of the solver.
+    /// Changes the law of each struck contact so that it opens with the speed that the shocks have given it. A touching
+    /// contact without such a shock may not bounce. The impulses of the shocks become the starting values of the
+    /// solver.
     fn set_rebounds(&self, problem: &mut StepProblem<M>) {
         for (number, (row, wall_speed)) in problem.rows_with_walls().enumerate() {
             let impulse = self.impulses[number];

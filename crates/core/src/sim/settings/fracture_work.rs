@@ -11,8 +11,8 @@ pub struct FractureWork {
     /// Work of fracture, J.
     pub joules: f64,
     /// Work of fracture divided by the work that lifts one of the grains (mass m) by the mean diameter d against
-    /// gravity g, m·g·d. Without gravity, g is replaced by the acceleration that defines the cohesion force. 0 if both
-    /// accelerations are 0.
+    /// gravity g, m·g·d. Without gravity, the parameter `bond_acceleration` (m/s²), which then sets the cohesion force,
+    /// replaces g. 0 if both accelerations are 0.
     pub over_mgd: f64,
 }
 

@@ -96,8 +96,8 @@ impl Settings {
         parameters.get(name).or_else(|| solver.get(name)).or_else(|| remedies.get(name))
     }
 
-    /// Sets the setting `name` to a value. Returns false, and changes nothing, if no setting has this name or if its
-    /// values are of another type.
+    /// Sets the setting `name` to a value. Returns false, and changes nothing, if no setting has this name or if
+    /// `value` has the wrong type, such as a word instead of a number.
     pub fn set(&mut self, name: &str, value: Value) -> bool {
         let Self { stepper, parameters, solver, remedies } = self;
         if name == Self::STEPPER.name {
@@ -167,8 +167,8 @@ impl Settings {
         Ok(())
     }
 
-    /// Checks that the solver and the friction model support rolling friction, if a contact has rolling friction
-    /// (`is_given`).
+    /// Checks that the solver and the friction model support rolling friction. Checks nothing if `is_given` is false,
+    /// that is if no contact has rolling friction.
     fn check_rolling(&self, is_given: bool) -> Result<()> {
         let SolverSettings { method, friction_model, .. } = self.solver;
         let refuse = |field: &str, found: String, allowed: &str| {
@@ -286,8 +286,8 @@ impl Settings {
         }
     }
 
-    /// Returns these settings with all remedies switched off that the stepper does not support, and without a friction
-    /// model that the stepper or the solver does not support.
+    /// Returns a copy of these settings without unsupported parts. Remedies that the stepper does not support are
+    /// switched off. If the stepper or the solver does not support the friction model, Coulomb friction replaces it.
     pub fn with_only_what_is_taken(mut self) -> Self {
         self.solver = self.solver.by(self.solver.method);
         if !self.stepper.reads("friction-model") {

@@ -6,8 +6,8 @@ use crate::setting::{Group, Value, settings};
 use crate::sim::settings::stepper::Stepper;
 
 /// Value of the remedy `max-travel` in the preset `robust`, in mean diameters. The remedy divides a step into pieces in
-/// which no grain moves farther than this distance. The value is half of the distance that could carry a grain through
-/// a wall.
+/// which no grain moves farther than this distance. In a piece longer than half a diameter, the radius of a grain, a
+/// grain that does not yet touch a wall could pass through the wall. The value is half of this length.
 const ROBUST_TRAVEL: f64 = 0.25;
 
 /// Registry entry of a remedy: its name, the steppers that support it and its value in the preset `robust`.

@@ -51,7 +51,8 @@ use crate::world::{MAX_SUBSTEPS, Parameters, Physics, World};
 /// pile.
 const STATIC_OVERLAP: f64 = 1e-3;
 /// Smallest restitution that the dashpots reproduce; smaller restitutions are raised to this value. A smaller value
-/// requires more damping, and shortens the stable substep in proportion to its square root.
+/// requires more damping, and makes the stable substep shorter: its length is proportional to the square root of this
+/// value.
 const LEAST_RESTITUTION: f64 = 0.02;
 /// Length of a substep divided by the critical time step, if the number of substeps is automatic. With a larger value a
 /// collision has fewer substeps and its restitution is less exact; at 1 the simulation may become unstable.
