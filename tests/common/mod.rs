@@ -70,7 +70,8 @@ pub fn tight() -> SolverSettings {
     to_residual(1e-12)
 }
 
-/// Returns the default solver settings with a tolerance of 1e-10, which is close to rounding errors.
+/// Returns the default solver settings with a tolerance of 1e-10 for the relative velocity error (dimensionless), which
+/// is close to rounding errors.
 pub fn certain() -> SolverSettings {
     SolverSettings { tolerance: 1e-10, ..SolverSettings::default() }
 }
@@ -134,8 +135,9 @@ pub fn every_way() -> Vec<(Stepper, Method)> {
     Stepper::ALL.iter().flat_map(of).collect()
 }
 
-/// Returns the combinations of [`every_way`] without the stepper `avbd`. In these combinations grains are moved only by
-/// impulses, so momentum and energy are in balance.
+/// Returns all combinations of a stepper and a solver method, except the stepper `avbd`, which moves grains slightly
+/// further than the impulses would. All other steppers move grains only by impulses, so momentum and energy are in
+/// balance.
 pub fn every_way_that_balances() -> Vec<(Stepper, Method)> {
     every_way().into_iter().filter(|way| way.0 != Stepper::Avbd).collect()
 }
@@ -226,10 +228,10 @@ pub fn pressed_pile(count: usize, speed: f64, seed: u64, parameters: Parameters)
     Scene { fixed_discs: rough_base(columns as f64 + 2.0, diameter), ..under_g(parameters, grains) }
 }
 
-/// Returns a scene with logs at rest and, apart from them, three discs: a spinning disc that falls on the floor, a disc
-/// that overlaps the floor, and a disc with a stretched bond to the floor that does not break. The three discs touch no
-/// other grain, because with friction contacts between several grains can have several solutions, and rounding would
-/// choose between them.
+/// Returns a scene with three discs at rest (the built-in scene `logs`: two discs on a floor and one on top of them)
+/// and, apart from them, three further discs: a spinning disc that falls on the floor, a disc that overlaps the floor,
+/// and a disc with a stretched bond to the floor that does not break. The three further discs touch no other grain:
+/// contacts with friction between several grains can have several solutions, and rounding would choose between them.
 pub fn at_rest_and_falling() -> Scene {
     let mut scene = logs(1.0);
     let aside = |x: f64, y: f64| Grain::at_rest(scene.mean_diameter * DVec2::new(x, y), 0.005);
@@ -295,8 +297,8 @@ pub fn refused(scene: &Scene) -> String {
     said
 }
 
-/// Returns a copy of the scene for each of these combinations of stepper and method, together with the name of the
-/// combination.
+/// Returns a copy of the scene for each of the combinations `ways` of a stepper and a solver method, together with the
+/// name of the combination.
 pub fn in_each_way(
     scene: &Scene,
     ways: Vec<(Stepper, Method)>,
@@ -308,8 +310,9 @@ pub fn in_each_way(
     ways.into_iter().map(of)
 }
 
-/// Takes one step. Returns the observables of the step, the change of kinetic energy that the works do not explain (J),
-/// and the sum of the magnitudes of all works and of the kinetic energies before and after the step (J).
+/// Takes one step. Returns the observables of the step, the change of kinetic energy that the work of gravity, contacts
+/// and borders does not explain (J), and the sum of the magnitudes of the work of gravity and contacts and of the
+/// kinetic energies before and after the step (J).
 pub fn balance(run: &mut Simulation) -> (Observables, f64, f64) {
     let before = run.observables().kinetic_energy;
     let after = *run.step().expect("a finite state");

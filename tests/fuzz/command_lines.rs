@@ -14,7 +14,8 @@ use super::parsers::{NUMBERS, WORDS, is_legible, one_of};
 use super::scenes::scene_text;
 use crate::program::*;
 
-/// Time limit for a command. It is shorter than the time limit for a whole input.
+/// Time limit for a command. It is shorter than the 200 s after which an input counts as a hang, so that a slow command
+/// fails with a message of its own.
 const SLOWEST: Duration = Duration::from_secs(180);
 
 /// Values that Slump must refuse. For options whose large values make a run long, these values are tried in place of
@@ -189,8 +190,8 @@ fn command_lines_and_what_they_leave() {
     target.fuzz(&target.corpus(), command_line, |text, _| check(text));
 }
 
-/// Checks that table, manifest and pictures in the folder of a run agree. The run was not killed; it ended with the
-/// exit code `code` and wrote `stderr`.
+/// Checks that three outputs in the folder of a run agree: the table `observables.csv` with one row per step, the
+/// manifest, and the pictures. The run was not killed; it ended with the exit code `code` and wrote `stderr`.
 pub fn check_books(folder: &Path, code: i32, stderr: &str) {
     let rows = rows_of(&folder.join("observables.csv"));
     let manifest = manifest(folder);
@@ -215,7 +216,8 @@ pub fn check_books(folder: &Path, code: i32, stderr: &str) {
     pictures(folder, &manifest, &rows);
 }
 
-/// Checks that the manifest has a warning for each problem in the table, and that stderr contains each warning.
+/// Checks that the manifest of a run has a warning for each problem in `rows`, the measured quantities of all steps,
+/// and that stderr contains each warning.
 fn alarms(run: &Value, rows: &[Observables], stderr: &str) {
     let alarms = run["alarms"].as_array().expect("a list");
     let has = |kind: &str| alarms.iter().any(|alarm| alarm["kind"] == kind);
@@ -239,8 +241,8 @@ fn alarms(run: &Value, rows: &[Observables], stderr: &str) {
     }
 }
 
-/// Checks that the folder has exactly the pictures that the manifest names, and that each picture shows a row of the
-/// table.
+/// Checks that the folder has exactly the pictures that the manifest names, and that the numbers in each picture are
+/// those of one step in `rows`, the measured quantities of all steps.
 fn pictures(folder: &Path, manifest: &Value, rows: &[Observables]) {
     let listed = manifest["pictures"].as_array().expect("a list");
     for picture in listed {

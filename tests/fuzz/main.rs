@@ -1,5 +1,6 @@
-//! Fuzzing with random hostile input: nearly correct texts for every parser, absurd scenes with every stepper, method
-//! and remedy, and whole command lines. Nothing may panic, hang or fail silently.
+//! Fuzzing with random hostile input: nearly correct texts for every parser, absurd scenes with every stepper, solver
+//! method and remedy (an optional correction of a stepper), and whole command lines. Nothing may panic, hang or fail
+//! silently.
 //!
 //! Each run of these tests tries the same inputs. A target is one kind of input, and it defines the number of its
 //! inputs. `SLUMP_FUZZ_TIMES` multiplies this number; `SLUMP_FUZZ_SECS` sets instead for how many seconds each target

@@ -7,8 +7,9 @@ use std::sync::{Arc, Mutex};
 use super::Target;
 use crate::program::*;
 
-/// Time after which an input counts as a hang. It is longer than any input takes, even on a busy machine: fifty long
-/// steps of small grains with as many substeps as are stable take ten seconds on an idle machine.
+/// Time after which an input counts as a hang. It is longer than any input takes, even on a busy machine. On an idle
+/// machine the slowest inputs take ten seconds: fifty long time steps of small grains, with a stepper that divides each
+/// step into many substeps to remain stable.
 const SLOWEST: Duration = Duration::from_secs(200);
 
 /// Tries inputs. A failing input stays in its file, whether it panics, hangs or ends the process.

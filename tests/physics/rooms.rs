@@ -46,7 +46,8 @@ fn course(pile: &Scene, settings: Settings) -> Option<String> {
     Some(format!("{:?}{:?}{:?}", grains.positions, grains.velocities, run.observables()))
 }
 
-/// Returns true if some other value of a setting changes the run, or if every other value is invalid.
+/// Returns true if at least one of the tried values of a setting gives another run than the value of the scene, or if
+/// Slump refuses all tried values.
 fn matters(about: &About, stepper: Stepper) -> bool {
     let mut taken = 0;
     for pile in piles() {

@@ -151,8 +151,8 @@ fn definer(path: &[String], imports: &BTreeMap<Module, Imports<'_>>, depth: u32)
     Some(module.to_vec())
 }
 
-/// Returns all arrows between the files of a crate. `sources` contains the files by their names relative to the folder
-/// `src`.
+/// Returns all arrows between the files of a crate. An arrow is an import: (file that imports, file that defines the
+/// imported item). `sources` contains the files by their names relative to the folder `src`.
 pub fn arrows(
     sources: &BTreeMap<String, String>,
     own_names: &[&str],

@@ -303,7 +303,8 @@ fn more_runs_than_anyone_can_wait_for_are_refused_before_they_take_room() {
     assert!(said.contains("vary is 4000000 runs with vary.duration, but must be"), "{said}");
 }
 
-/// Returns the text of a scene file whose pile is made by the deposition `rain`.
+/// Returns the text of a scene file whose pile is described by `rain`: all grains fall together onto the base
+/// (deposition `rain`).
 fn rained(rain: &NewPile, duration_secs: f64) -> String {
     let mut scene = built_in("pile").expect("a scene");
     scene.grains.clear();

@@ -10,11 +10,11 @@ const DIAMETER: f64 = 5e-3;
 /// correct program and random seeds, one of the 30 comparisons would fail in one of 5,000 test runs.
 const ERRORS: f64 = 4.5;
 const COUNT: usize = 20_000;
-/// Hash of a pile made by the deposition `rain` in a version before the option `sizes` existed; the default sizes must
-/// still give this pile.
+/// Hash of a pile made by the deposition `rain` (all grains fall together) in a version before the option `sizes`
+/// existed; the default sizes must still give this pile.
 const RAIN: u64 = 0x539b_adf8_4444_897f;
-/// Hash of a pile made by the deposition drop and roll in a version before the option `sizes` existed; the default
-/// sizes must still give this pile.
+/// Hash of a pile made by the deposition `drop-and-roll` (grains are placed one by one and roll until two others hold
+/// them) in a version before the option `sizes` existed; the default sizes must still give this pile.
 const ROLL: u64 = 0x6c11_af30_2490_f32f;
 
 fn sizes(text: &str) -> Sizes {

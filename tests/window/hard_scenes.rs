@@ -1,4 +1,5 @@
-//! Tests of scenes that are made to break solvers: the window shows the right answer and a verdict on each simulation.
+//! Tests of scenes that are made to break solvers: the window shows the known result of the scene as the right answer,
+//! and for each simulation a verdict, which says if it agrees with this answer.
 
 use crate::robot::*;
 use slump::solver::SolverSettings;

@@ -1,4 +1,5 @@
-//! Tests that the statements of the lessons are true for the displayed pile and for sixteen other piles.
+//! Tests that the statements of the lessons (each demonstrates one effect in the window, with simulations side by side)
+//! are true for the displayed pile and for sixteen other piles.
 
 use crate::robot::*;
 use slump::app::lessons::{LESSONS, Lesson};

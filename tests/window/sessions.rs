@@ -2,7 +2,8 @@
 
 use crate::robot::*;
 
-/// Returns the step number, the recorded time and the displayed state of each compared simulation of a window.
+/// Returns three values for each compared simulation of a window: the displayed step number, the simulated time up to
+/// which the run is recorded (s), and the displayed state as bit patterns.
 fn shown(robot: &Robot) -> Vec<(u64, f64, Vec<[u64; 6]>)> {
     robot.of_worlds(|world| (world.snapshot.observables.step, world.recorded_secs, bits(world)))
 }

@@ -171,8 +171,10 @@ fn every_step_of_a_pile_that_slumps_is_solved_within_its_model() {
 }
 
 /// Returns two estimates of the velocity error of a step under Coulomb friction, m/s, computed from positions,
-/// velocities and impulses. The definitions are in `solver::problem::velocity_error`: the root of the duality gap over
-/// the mass of touching bodies, and the velocity change that all contacts need to obey their laws.
+/// velocities and impulses. The first is the root of S/M: S is the duality gap (the difference between the energies of
+/// the optimisation problem and of its dual problem, J), and M is the mass of all touching grains. The second is the
+/// velocity change of all grains that is needed so that no contact closes too fast. The module
+/// `solver::problem::velocity_error` contains the definitions.
 fn errors_of_world(run: &Simulation, pile: &Scene, before: &Simulation) -> [f64; 2] {
     let (mut gap, mut touches) = (0.0, vec![false; run.grains().len()]);
     let grains = run.grains().len();
@@ -248,7 +250,7 @@ fn the_error_of_the_velocities_is_what_world_data_make_it() {
 }
 
 /// Upper bound on the velocity error (m/s) divided by the root of the residual (dimensionless). The largest value in
-/// 4,500 steps of the piles of the next test was 0.35.
+/// 4,500 steps of random piles was 0.35.
 const ERROR_PER_ROOT_OF_RESIDUAL: f64 = 0.5;
 
 proptest! {

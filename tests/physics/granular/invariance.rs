@@ -212,7 +212,8 @@ fn numbers_of_grains_are_names_alone() {
     });
 }
 
-/// Returns a contact between these two grains as it is stored if the grain with the smaller number comes first.
+/// Returns a contact in the stored form, in which the grain with the smaller number is grain i. If `grain` has the
+/// larger number, the two grains are exchanged, and normal, branch vector and force change their signs.
 fn by_number(contact: ContactState, [grain, other]: [u32; 2]) -> ContactState {
     if grain < other {
         return ContactState { grain, other: OtherBody::Grain(other), ..contact };

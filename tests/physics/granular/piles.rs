@@ -147,8 +147,8 @@ fn stress_in_a_column_grows_with_depth() {
     assert_eq!(measured.pile.rattlers, count);
 }
 
-/// Returns a scene with rows of n and n − 1 discs in turn between two walls, and the row number of each disc. Only the
-/// top row has weight.
+/// Returns a scene with rows of discs between two walls, in turn with `columns` and with `columns` − 1 discs, and the
+/// row number of each disc. Only the top row has weight.
 fn under_a_lid(columns: usize, rows: usize) -> (Scene, Vec<usize>) {
     let (mut grains, mut row_of) = (Vec::new(), Vec::new());
     for row in 0..rows {

@@ -30,7 +30,9 @@ fn shape(seed: u64, rolling_friction: f64) -> [f64; 2] {
 /// Checks that rolling friction makes heaps steeper (larger angle of repose) and shorter (smaller run-out), and that
 /// both effects stop growing when grains hardly roll. Rolling resistance acts like the angularity of grains (Estrada et
 /// al., arXiv:1105.4418, who shear discs by Contact Dynamics). Each coefficient is tried with the same initial states.
-/// If rolling friction had no effect, each of the four comparisons below would be true by chance in 1 of 40 cases.
+/// The test makes four comparisons: the angle of repose and the run-out, each between the first and second and between
+/// the second and third coefficient. If rolling friction had no effect, each comparison would be true by chance in 1 of
+/// 40 cases.
 #[test]
 fn heaps_get_steeper_and_shorter_with_rolling_friction_until_grains_hardly_roll() {
     let pairs: Vec<(u64, f64)> =

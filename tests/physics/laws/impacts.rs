@@ -11,8 +11,8 @@ const RADIUS: f64 = 0.05;
 const TOUCH: f64 = 1e-9;
 const SPEED: f64 = 2.0;
 
-/// Returns a scene without gravity, cohesion and friction in which Slump treats collisions one after the other (remedy
-/// `sequential_impacts`).
+/// Returns a scene without gravity, cohesion and friction in which Slump treats collisions one after the other (with
+/// the remedy `sequential_impacts`, an optional correction of the stepper).
 fn struck(physics: Physics, restitution: f64, grains: Vec<Grain>) -> Scene {
     let mut scene = scene(physics, DVec2::ZERO, parameters(0.0, 1e-4, restitution, 0.0), grains);
     scene.remedies.sequential_impacts = true;
@@ -216,7 +216,8 @@ fn a_wall_that_moves_strikes_twice_and_its_work_is_no_gain_of_the_bounces() {
 }
 
 /// Returns the largest difference between the velocities of a run with and a run without the remedy
-/// `sequential_impacts`, divided by the largest velocity.
+/// `sequential_impacts` (an optional correction, which treats collisions one after the other), divided by the largest
+/// velocity.
 fn difference(scene: &Scene, steps: usize) -> f64 {
     let mut runs = [false, true].map(|sequential_impacts| {
         let mut scene = scene.clone();

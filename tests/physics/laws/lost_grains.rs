@@ -1,5 +1,6 @@
 //! Tests of grains that pass through walls or leave the simulated region ("lost" grains): Slump reports them and omits
-//! them from the slump. If contacts are detected before grains touch, grains do not pass through walls.
+//! them from the measured slump (the relative drop of the mean height). Grains do not pass through walls if contacts
+//! are detected before the grains touch.
 
 use slump::scene::stability::{WALL_DISTANCE, heap, thin_wall};
 

@@ -1,14 +1,14 @@
-//! Tests of a pyramid of logs for which equilibrium forces exist: it stands if the touch tolerance preserves its
-//! contacts although positions have errors.
+//! Tests of a pyramid of equal discs (logs that are seen from their ends) for which equilibrium forces exist: it stands
+//! if the touch tolerance preserves its contacts although positions have errors.
 
 use crate::common::*;
 
 const RADIUS: f64 = 0.05;
 const ROWS_OF_LOGS: u32 = 6;
 
-/// Returns a scene of 21 logs on a floor with the friction coefficient 1.7. Random errors of up to `scatter` (in
-/// diameters) are added to each coordinate. The rows also overlap by a distance of this order, so that some gaps are
-/// positive and some negative.
+/// Returns a scene of 21 logs (equal discs) that form a pyramid of six rows on a floor, with the friction coefficient
+/// 1.7. Random errors of up to `scatter` (in diameters) are added to each coordinate. The rows also overlap by a
+/// distance of this order, so that some gaps are positive and some negative.
 ///
 /// An equilibrium exists: linear programming finds forces within Coulomb's cones that carry all logs.
 fn pyramid(seed: u64, scatter: f64) -> Scene {
@@ -31,7 +31,7 @@ fn pyramid(seed: u64, scatter: f64) -> Scene {
     }
 }
 
-/// Returns the longest distance that a log moves within one second, in diameters.
+/// Returns the longest distance that a log (disc) of the pyramid moves within one second, in diameters.
 fn farthest_way(scene: &Scene) -> f64 {
     let mut run = start(scene);
     let places = run.places().to_vec();

@@ -249,8 +249,8 @@ fn a_pile_with_rolling_friction_is_the_same_on_one_and_two_threads() {
     assert!(bits(&one) != bits(&after(&pile(Method::Auto, 0.0), 150)), "it matters");
 }
 
-/// Solves the contact problem of the next step with the equations of one kind of physics (`M`). Returns the velocities
-/// as bit patterns.
+/// Solves the contact problem of the next step with the equations of the model `M`, which defines the number of axes
+/// and whether there are friction and rotation. Returns the velocities as bit patterns.
 fn solved_in<M: Model>(run: &Simulation, method: Method, rolling_friction: f64) -> Vec<[u64; 3]> {
     let (world, parameters) = (run.world(), run.parameters());
     let numbers = ProblemNumbers {

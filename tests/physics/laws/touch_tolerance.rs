@@ -84,8 +84,9 @@ fn the_pull_within_the_tolerance_gives_no_more_energy_than_it_takes() {
     assert!(kept > 100 && lost > 0, "{kept} leave with all of their speed, {lost} are caught");
 }
 
-/// Checks the energy that breaks a bond: ½ m_ij v² = C₀ (τ + the opening within a step), where τ is the touch tolerance
-/// and C₀ = Bond m_ij g the cohesion force (m_ij: effective mass).
+/// Checks the energy that breaks a bond: ½ m_ij v² = C₀ (τ + the opening within a step). Here v is the speed at which
+/// the discs separate, m_ij their effective mass, τ the touch tolerance (m), C₀ = Bond m_ij g the cohesion force, and g
+/// the gravitational acceleration.
 #[test]
 fn a_bond_takes_its_force_times_the_tolerance_to_break() {
     for tolerance in [1e-3, 0.01, 0.1] {
@@ -143,7 +144,7 @@ fn a_pair_turns_for_good_up_to_the_spin_that_its_bond_bears() {
 }
 
 /// Checks that discs that touch according to a file are bonded under the default touch tolerance. The numbers in a file
-/// are rounded, so their gaps are about ±1e-16 d.
+/// are rounded, so their gaps are about ±1e-16 diameters.
 #[test]
 fn discs_that_are_written_as_touching_are_bonded_by_default() {
     let mut random = random(9);

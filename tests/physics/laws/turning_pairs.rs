@@ -1,6 +1,6 @@
 //! Tests of bonded pairs that circle about their common centre. If bonds have a length, a pair breaks at the angular
-//! velocity √(Bond·g/2r), where r is the radius. If a bond ends at a gap of zero, the pair breaks at a lower angular
-//! velocity, and Slump warns.
+//! velocity √(Bond·g/2r), where r is the radius and g the gravitational acceleration that defines the cohesion force.
+//! If a bond ends at a gap of zero, the pair breaks at a lower angular velocity, and Slump warns.
 
 use crate::common::*;
 
@@ -28,7 +28,8 @@ fn warning(run: &Simulation) -> Option<Alarm> {
 }
 
 /// Returns the largest angular velocity ω at which the bond holds the pair together, rad/s. At this ω, the centripetal
-/// force m ω² r equals the cohesion force Bond ½m g.
+/// force m ω² r of a disc (mass m, radius r) equals the cohesion force Bond·½m·g, where ½m is the effective mass and g
+/// the gravitational acceleration.
 fn break_up(bond: f64) -> f64 {
     (bond * G / (2.0 * RADIUS)).sqrt()
 }

@@ -69,8 +69,8 @@ fn free_pair(case: &Case, physics: Physics, direction: DVec2) -> Scene {
 }
 
 /// Takes one step and compares the final normal velocity v^n and the normal impulse P with theory. Returns which of the
-/// three cases occurred: 0 if the contact pushes, 1 if it pulls and closes again, 2 if it opens (see the top of this
-/// file).
+/// three cases occurred: 0 if the contact pushes (a closing pair bounces), 1 if it pulls (an opening pair closes
+/// again), 2 if it opens because it cannot pull strongly enough.
 fn check(case: &Case, scene: &Scene, direction: DVec2) -> usize {
     let mut run = start(scene);
     run.step().expect("a finite state");

@@ -28,7 +28,7 @@ fn between(height: f64) -> Vec<Boundary> {
     vec![level(), plane(height * DVec2::Y, DVec2::NEG_Y)]
 }
 
-/// Returns five columns of logs in a periodic cell, under a piston with this mass (kg) and the pressure 40 N/m.
+/// Returns five columns of three discs in a periodic cell, under a piston with this mass (kg) and the pressure 40 N/m.
 pub(super) fn pressed(mass: f64) -> Scene {
     let (radius, spacing) = (0.01, 0.05);
     let place = |k: i32| DVec2::new(spacing * f64::from(k / 3), 0.01 + 0.02 * f64::from(k % 3));

@@ -11,8 +11,8 @@ fn evenly(rate: f64) -> Option<GravityTurn> {
     Some(GravityTurn { course: TurnCourse::Rate { rate }, elapsed_secs: 0.0 })
 }
 
-/// Checks free fall under gravity whose direction turns at the angular velocity Ω. The velocity at the time t must be ∫
-/// g (sin Ωt, −cos Ωt) dt = g/Ω (1 − cos Ωt, −sin Ωt).
+/// Checks free fall under gravity whose direction turns at the angular velocity Ω. If g is the magnitude of gravity,
+/// the velocity at the time t must be ∫ g (sin Ωt, −cos Ωt) dt = g/Ω (1 − cos Ωt, −sin Ωt).
 #[test]
 fn what_falls_freely_goes_as_the_integral_of_gravity() {
     for &stepper in Stepper::ALL {

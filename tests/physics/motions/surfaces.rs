@@ -1,9 +1,9 @@
 //! Tests of moving surfaces: drums, shaken floors, and a disc that is laid on a sliding surface.
 //!
 //! The disc has the radius r, its velocity is v, and the surface moves at the speed V. Coulomb friction (coefficient μ)
-//! accelerates the disc with μg until it moves with the surface. A disc that cannot rotate then has v = V. A disc that
-//! can rotate slips at first: at the time t it has v = μgt and rω = 2μgt (ω: angular velocity), until v + rω = V. Then
-//! it rolls with v = V/3.
+//! accelerates the disc with μg (g: gravitational acceleration) until it moves with the surface. A disc that cannot
+//! rotate then has v = V. A disc that can rotate slips at first: at the time t it has v = μgt and rω = 2μgt (ω: angular
+//! velocity), until v + rω = V. Then it rolls with v = V/3.
 
 use super::through_a_file;
 use crate::common::*;

@@ -231,8 +231,9 @@ fn overlap_grows_by_no_more_than_one_steps_travel() {
     assert!(old.get() > 1000 && new.get() > 100, "{} old, {} new contacts", old.get(), new.get());
 }
 
-/// Returns a scene for every kind of physics and friction cone, each with the smallest number of contacts that its
-/// first contact problem must have.
+/// Returns a scene for each friction cone with every kind of motion in the plane (with and without friction and
+/// rotation), and a scene on a line, each with the smallest number of contacts that its first contact problem must
+/// have.
 fn scenes() -> Vec<(Scene, usize)> {
     let mut scenes = Vec::new();
     for (physics, cone) in pairs(
@@ -355,8 +356,10 @@ impl ProblemVisitor for Check {
     }
 }
 
-/// Returns the scale of the residual, ‖(m_n v_n^free, m_t v_t^free)‖, N·s: the norm of the impulses that would stop all
-/// free velocities.
+/// Returns the scale of the residual, ‖(m_n v_n^free, m_t v_t^free)‖, N·s: the norm of the impulses that would stop the
+/// contacts. v_n^free and v_t^free are the normal and tangential velocities of a contact at the end of the step without
+/// contact impulses (m/s; v_n^free includes the restitution term), m_n and m_t its effective masses in these directions
+/// (kg).
 fn scale_of_residual<M: Model>(problem: &StepProblem<M>) -> f64 {
     let rows = problem.rows.fixed.iter().map(|row| (&row.row, true));
     let rows = rows.chain(problem.rows.pairs.iter().map(|row| (&row.row, false)));

@@ -86,7 +86,8 @@ fn every_scene_breaks_a_method_at_its_last_level_and_none_at_its_first() {
     }
 }
 
-/// Largest speed with which a grain still counts as at rest after a few solved steps, in units of √(g d).
+/// Largest speed with which a grain still counts as at rest after a few solved steps, in units of √(g d) (g:
+/// gravitational acceleration, d: mean diameter).
 const STILL: f64 = 1e-7;
 
 fn solved(mut scene: Scene) -> Simulation {
@@ -141,7 +142,8 @@ fn heaps_of_any_size_are_at_rest() {
     assert_eq!(heap_of(10_000).grains.len(), 9870);
 }
 
-/// Overlap at which the remedy `push_out` stops pushing grains apart, in diameters.
+/// Overlap at which the remedy `push_out` (an optional correction, which pushes overlapping grains apart) stops, in
+/// diameters.
 const LEFT: f64 = 2e-4;
 
 #[test]

@@ -10,9 +10,9 @@ use slump::study::stability::contraction_of_column;
 
 use crate::common::*;
 
-/// Number of steps before the speed is measured at which a column sinks if its steps are not solved completely. Each
-/// step reduces the difference between the present speed and the final, steady speed to a tenth or less, so after this
-/// number of steps the speed is steady.
+/// Number of steps after which the speed of a sinking column is measured. A column sinks if its steps are not solved
+/// completely. Its speed approaches a steady value: each step reduces the difference from this value to a tenth or
+/// less, so the speed is steady after this number of steps.
 const STEADY: usize = 40;
 
 fn cold(sweeps: u32) -> SolverSettings {
@@ -24,8 +24,8 @@ fn cold(sweeps: u32) -> SolverSettings {
     }
 }
 
-/// Returns the steady speed at which the last grain of a column sinks, in units of g Δt, if each step makes this many
-/// sweeps from zero impulses.
+/// Returns the steady speed at which the last grain of a column sinks, in units of g Δt (gravitational acceleration
+/// times time step), if each step makes this many sweeps from zero impulses.
 fn sinking_speed(mut scene: Scene, sweeps: u32) -> f64 {
     scene.solver = cold(sweeps);
     let run = after(&scene, STEADY);

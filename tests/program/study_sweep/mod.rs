@@ -1,4 +1,5 @@
-//! Tests of the command `slump sweep`: results, resuming, shards, and error messages about bad study files.
+//! Tests of the command `slump sweep`, which computes the runs of a study (a list of runs): results, resuming, shards
+//! (parts of a study that are computed separately), and error messages about bad study files.
 
 mod places;
 

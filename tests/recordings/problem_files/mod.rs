@@ -31,8 +31,8 @@ fn settings(method: Method, tolerance: f64) -> SolverSettings {
     SolverSettings { method, tolerance, max_sweeps: 1_000_000, stop, ..SolverSettings::SWEEPS }
 }
 
-/// Returns scenes for every kind of physics and friction cone, each with a name and the time at which its contact
-/// problem is written (s).
+/// Returns scenes with every kind of motion (one or two axes, with or without friction and rotation) and both friction
+/// cones, each with a name and the time at which its contact problem is written (s).
 fn scenes() -> Vec<(&'static str, Scene, f64)> {
     let pile = |physics: Physics, bond: f64, cone: FrictionCone| {
         let parameters = parameters(bond, 1e-3, 0.1, 0.5);
@@ -185,9 +185,10 @@ struct Reference {
     u: Vec<f64>,
 }
 
-/// Checks that the velocities agree with those of Siconos to 1e-9 of the fastest free velocity, from warm and from cold
-/// starts, and with the Delassus matrix W instead of the bodies. Without friction the velocities are unique; in these
-/// problems they are unique with friction, too.
+/// Checks that the velocities agree with those of Siconos to 1e-9 of the largest velocity without contact impulses.
+/// Each problem is solved from the impulses of the file and from zero impulses, and also with the Delassus matrix W
+/// instead of the bodies. Without friction the velocities are unique; in these problems they are unique with friction,
+/// too.
 #[test]
 fn velocities_are_those_that_siconos_finds() {
     let with_friction = [SICONOS, "bond_0.json", "bond_20.json", "pile_138_bond_50.json"];
