@@ -158,10 +158,11 @@ pub fn in_words(expected: &str) -> String {
 /// Largest number of digits with which a number is written in a message. A longer number is written with an exponent,
 /// and then every f64 fits into this many digits.
 const MOST_DIGITS: usize = 24;
-/// Largest number of characters of a word in a message. Longer words are cut.
+/// Largest number of characters of a word in a message. Longer words are cut, so that one word cannot fill the
+/// terminal.
 const MOST_OF_WORD: usize = 120;
-/// Largest number of bytes of a field, value or range in a message. The longest range, the list of all settings, is
-/// shorter.
+/// Largest number of bytes, in a message, of the name of a field, of its value, or of the description of the allowed
+/// values. The longest of these descriptions, the list of all settings, is shorter.
 const MOST_OF_PART: usize = 3000;
 
 /// Returns a text from a file or a command line in a form that is readable in an error message, whatever the text

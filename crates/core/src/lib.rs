@@ -13,11 +13,10 @@
 //! # Ok::<(), slump_core::error::Error>(())
 //! ```
 //!
-//! Programs start from a [`scene`] and advance its [`sim::Simulation`] step by step. To add a stepper, a contact law
-//! or a solver, implement [`sim::Advance`]. To read the contact problem of one step, pass a [`sim::ProblemVisitor`]
-//! to [`next_problem`](sim::Simulation::next_problem). [`solver::solve`] solves such a problem. Modules depend on
-//! each other in one direction only, from right to left: [`setting`] ← [`world`] ← [`contact`] ← [`solver`] ← [`sim`]
-//! ← [`scene`].
+//! Programs start from a [`scene`] and advance its [`sim::Simulation`] step by step. To add a stepper, a contact law or
+//! a solver, implement [`sim::Advance`]. To read the contact problem of one step, pass a [`sim::ProblemVisitor`] to
+//! [`next_problem`](sim::Simulation::next_problem). [`solver::solve`] solves such a problem. Of the following modules,
+//! each uses only the modules to its left: [`setting`] ← [`world`] ← [`contact`] ← [`solver`] ← [`sim`] ← [`scene`].
 
 #![warn(missing_docs, unreachable_pub)]
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]

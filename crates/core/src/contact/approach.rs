@@ -1,10 +1,10 @@
 //! Gap and normal between two bodies, and the time at which two freely moving bodies meet.
 //!
 //! **Time of impact.** The bodies are convex, so along a straight path the gap is a convex function of time. Its
-//! tangent never exceeds it, so Newton's iteration approaches the first zero of the gap from below and never passes
-//! it. If the bodies accelerate, the parabola with the present gap, speed and acceleration replaces the tangent. If
-//! the gap begins to open before it is zero, the two bodies pass each other. The tangent at the beginning alone cannot
-//! show this, so the iteration is needed.
+//! tangent never exceeds it, so Newton's iteration approaches the first zero of the gap from below and never passes it.
+//! If the bodies accelerate, the parabola with the present gap, speed and acceleration replaces the tangent. If the gap
+//! begins to open before it is zero, the two bodies pass each other. The tangent at the beginning of the path alone
+//! cannot show whether they meet or pass, so the iteration is needed.
 
 use glam::DVec2;
 
@@ -214,8 +214,9 @@ impl RelativeMotion {
     }
 }
 
-/// Returns the first time h > 0, s, at which a gap (m) that opens with this speed (m/s) and acceleration (m/s²) is
-/// zero. `None` if the gap never closes.
+/// Returns the first time h > 0, s, at which a gap that is now `gap` (m) becomes zero. The gap now grows at the speed
+/// `speed` (m/s, negative if it closes), with the constant acceleration `acceleration` (m/s²). `None` if the gap never
+/// closes.
 fn first_zero(gap: f64, speed: f64, acceleration: f64) -> Option<f64> {
     let squared = speed * speed - 2.0 * acceleration * gap;
     if squared < 0.0 {

@@ -107,7 +107,8 @@ impl Candidates {
         })
     }
 
-    /// Returns candidates for `world`, with the same search distances and an empty list of pairs.
+    /// Returns an object for the search of candidate pairs in `world`, with the search distances of this one and an
+    /// empty list of pairs.
     ///
     /// # Errors
     /// The errors of [`Self::new`].

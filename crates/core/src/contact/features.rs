@@ -120,8 +120,8 @@ impl Feature {
         Ok(())
     }
 
-    /// Moves the feature by the displacement `carry` of its boundary. `boundary` is the boundary after the move. The
-    /// result is bitwise equal to a feature built from the moved boundary.
+    /// Moves this feature (half-space, segment or polygon) by the displacement `carry` of its boundary. `boundary` is
+    /// the boundary after the move. The result is bitwise equal to a feature built from the moved boundary.
     pub(crate) fn carry(&mut self, carry: &Carry, boundary: &Boundary) {
         let follow = |segment: &mut Segment| {
             (segment.a, segment.b) = (carry.place(segment.a), carry.place(segment.b));
@@ -165,7 +165,7 @@ impl Feature {
         segment.into_iter().flatten().chain(sides.iter().map(|side| side.a))
     }
 
-    /// True if the feature is a half-space.
+    /// True if this part of a boundary is a half-space, not a segment or polygon.
     pub(crate) fn is_half_space(&self) -> bool {
         matches!(self, Feature::HalfSpace { .. })
     }

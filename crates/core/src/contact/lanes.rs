@@ -1,4 +1,5 @@
-//! Trait for the numbers of contact arithmetic: a single number, or a vector register with several numbers.
+//! Trait for the numbers with which the contact laws are computed: a single number, or a vector register that holds the
+//! numbers of several contacts.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};

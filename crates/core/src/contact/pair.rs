@@ -35,16 +35,16 @@ pub struct Impulse {
     pub tangential: f64,
 }
 
-/// Data that a stepper keeps about a contact from one substep to the next. The solvers of the contact problem do not
-/// use these data.
+/// Data that a stepper keeps about a contact from one step, or from one substep of a divided step, to the next. The
+/// solvers of the contact problem do not use these data.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactMemory {
     /// Stretch of the tangential spring of the contact, m. It grows if the tangential velocity v_t is positive.
     pub tangential_displacement: f64,
-    /// Normal force N in the last substep, newton.
+    /// Normal force N in the last of the shorter steps (substeps) into which a step is divided, newton.
     pub normal_force: f64,
-    /// Tangential force T in the last substep, newton.
+    /// Tangential force T in the last of the shorter steps (substeps) into which a step is divided, newton.
     pub tangential_force: f64,
     /// Stiffness of the penalty springs of the contact along the normal and along the tangent, N/m.
     pub stiffness: [f64; 2],

@@ -1,8 +1,9 @@
-//! Test that the error bound that a solve with bounded friction reports is not less than the distance of its
-//! velocities from the solution. The test runs over scenes, steppers, friction, restitution and time steps. It checks
-//! the solves that meet their tolerance. For all solves it computes the bound a second time, from the data of the
-//! contacts: the reported bound must equal this number, or exceed it if contacts violate their constraint
-//! (`solver::problem::velocity_error`).
+//! Test of the error bound that a solve with bounded friction (the friction model `tresca`) reports. The bound must not
+//! be less than the distance of the velocities of the solve from the velocities of the exact solution. The test runs
+//! over scenes, steppers, friction, restitution and time steps, and checks this for the solves that meet their
+//! tolerance. For all solves it also computes the bound a second time, from the data of the contacts. The reported
+//! bound must equal this number, unless contacts violate their constraint (their normal velocity is lower than the
+//! contact law requires). Then the reported bound may be larger (`solver::problem::velocity_error`).
 
 use crate::contact::ContactList;
 use crate::number::Parts;
@@ -23,13 +24,13 @@ const STEPS_TO_TOUCH: u64 = 120;
 /// The default settings of the solver for bounded friction (the friction model `tresca`).
 const BOUNDED: SolverSettings = SolverSettings::BOUNDED;
 
-/// Visitor that solves a contact problem with bounded friction by these solver settings, and measures the error of the
-/// solve.
+/// Visitor that solves a contact problem with bounded friction (the friction model `tresca`) by these solver settings,
+/// and measures the error of the solve.
 struct Certified(SolverSettings);
 
-/// Errors of one solve, in m/s: the error bound that the solve reports (`told`), the bound computed here from the data
-/// of the contacts (`found`), and the distance of the velocities from the solution (`distance`), if the solve met its
-/// tolerance.
+/// Errors of one solve, m/s: the error bound that the solve reports (`told`), the bound computed here from the data of
+/// the contacts (`found`), and the distance of the velocities from the solution (`distance`). The distance is `None` if
+/// the solve did not meet its tolerance, no solution was found, or no grain has a contact.
 struct Certificate {
     told: f64,
     found: f64,
@@ -57,11 +58,14 @@ impl ProblemVisitor for Certified {
     }
 }
 
-/// Computes the duality gap, J, of a problem with bounded friction (the difference of the primal and the dual energy),
-/// Σ m_ij (σ(w + 2z) + z² + g|v| + λv) over the contacts, and the mass of all grains with contacts, kg. In the sum,
-/// m_ij is the effective mass, σ is the shifted normal and λ the tangential reduced impulse, w and v the normal and
-/// tangential velocities (w with its restitution term), z is the amount by which w is below 0, and g is the friction
-/// bound.
+/// Returns the duality gap of a problem with bounded friction (the difference of the primal and the dual energy, J),
+/// and the mass of all grains with contacts (kg). The gap is the sum over the contacts of
+///
+/// > m_ij (σ(w + 2z) + z² + g|v| + λv),
+///
+/// with the effective mass m_ij (kg), the shifted normal impulse σ and the tangential impulse λ (both per effective
+/// mass, m/s), the normal velocity w with its restitution term, the tangential velocity v, the amount z by which w is
+/// below 0 (all in m/s), and the friction bound g (largest allowed |λ|, m/s).
 fn gap<M: Model>(problem: &StepProblem<M>) -> (f64, f64) {
     let spins = f64::from(u8::from(M::ROTATION));
     let coordinates = |grain: u32| M::coordinates(&problem.bodies.now[grain as usize]);

@@ -121,8 +121,9 @@ fn one() -> f64 {
     1.0
 }
 
-/// Largest allowed distance of a disc from the origin, in radii of the disc. At a larger distance, rounding moves the
-/// disc by more than a ten-thousandth of its radius, and a little farther away it moves discs onto each other.
+/// Largest allowed distance of a disc from the origin along either axis, in radii of the disc. At this distance,
+/// rounding moves the disc by up to about a tenth of its radius. At ten times this distance it would move the disc by
+/// about its radius, and so onto other discs.
 const FARTHEST_IN_RADII: f64 = 1e15;
 
 /// Largest allowed ratio of the mean diameter of the listed grains to the mean diameter d that the scene gives. A
@@ -286,7 +287,8 @@ impl Scene {
         self.settings().check_in(&world, self.physics)
     }
 
-    /// Returns the bodies and fields of the scene at time 0, from which a simulation starts.
+    /// Returns the world at time 0, from which a simulation starts: the bodies of the scene, their motions and
+    /// materials, gravity and the periodic borders.
     fn world(&self) -> World {
         World {
             fixed_discs: self.fixed_discs.clone(),

@@ -97,8 +97,8 @@ impl ProblemVisitor for Judge<'_> {
     }
 }
 
-/// Solves the steps with these numbers of a scene with all tested solvers, and returns the reported and actual errors.
-/// `what` describes the scene.
+/// Runs a scene and solves those of its steps whose numbers are in `steps` with all tested solvers. Returns the
+/// reported and the actual errors. `what` describes the scene.
 fn judge(scene: &Scene, what: &str, steps: &[u64], how: Search) -> Vec<Judged> {
     let mut judged = Vec::new();
     // Some steppers do not support the scene. Such a combination is skipped.
@@ -221,8 +221,8 @@ fn pile(grains: usize, bond: f64, time_step_secs: f64) -> Scene {
     scene
 }
 
-/// Checks that reported errors are rarely smaller than the actual errors (in at most 5 % of the solves), and that
-/// their median ratio is at most `largest_median`. Also prints a summary for each solver.
+/// Checks that reported errors are rarely smaller than the actual errors (in at most 5 % of the solves), and that the
+/// median of reported divided by actual error is at most `largest_median`. Also prints a summary for each solver.
 #[track_caller]
 fn check(name: &str, judged: &[Judged], largest_median: f64) {
     let [share, median] = tell(name, judged);

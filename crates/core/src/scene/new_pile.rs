@@ -6,7 +6,9 @@ use crate::error::{Error, Result};
 use crate::scene::sizes::Sizes;
 use crate::setting::words;
 
-/// Room for a random displacement of the largest disc on the initial lattice from which the grains rain, in diameters.
+/// Distance between the surfaces of neighbouring discs of the largest size on the initial lattice, from which the
+/// grains of the method rain fall, in mean diameters. It leaves room for random displacements of up to half this
+/// distance.
 const JITTER: f64 = 0.1;
 
 words! {
@@ -76,13 +78,14 @@ impl NewPile {
         Ok(())
     }
 
-    /// Returns the spacing of the initial lattice from which the grains rain, in diameters: the largest diameter plus
-    /// room for a random displacement.
+    /// Returns the spacing of the lattice on which the grains of the method rain are placed before they fall, in mean
+    /// diameters: the largest diameter plus room for a random displacement.
     pub(super) fn spacing(&self) -> f64 {
         self.sizes.largest() + JITTER
     }
 
-    /// Returns the number of discs in a row of the initial lattice from which the grains rain.
+    /// Returns the number of discs in a row of the lattice on which the grains of the method rain are placed before
+    /// they fall.
     pub(super) fn columns(&self) -> usize {
         (self.box_width_in_diameters / self.spacing()).floor() as usize
     }

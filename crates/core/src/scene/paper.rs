@@ -105,9 +105,10 @@ fn view_on_line(min: DVec2, max: DVec2) -> Option<View> {
 
 /// Returns the scene of the collision with one contact (Abramian & Staron 2020, §2.2): a disc falls on a fixed disc.
 ///
-/// Let A be the normal force (N) for which the formal velocity v̄ = (v⁺ + ρ v⁻)/(1 + ρ) of the contact would be 0
-/// (v⁻, v⁺: normal velocity before and after the step, ρ: restitution), and C₀ the cohesion force (N). The contact
-/// has three cases. For A > 0 the disc bounces. For −C₀ < A < 0 the contact closes again. For A < −C₀ it opens. The
+/// Let A be the normal force (N) for which the formal velocity v̄ = (v⁺ + ρ v⁻)/(1 + ρ) of the contact would be 0 (v⁻,
+/// v⁺: normal velocity before and after the step, ρ: restitution), and C₀ the cohesion force (N). The contact has three
+/// cases. For A > 0 the contact pushes with the force A, and the disc bounces. For −C₀ < A < 0 the contact pulls with
+/// the force −A, and a disc that moves away comes back. For A < −C₀ the contact pulls with C₀ only, and opens. The
 /// built-in scene starts in the first case and passes through the other cases as the bounces decay.
 pub fn collision() -> Scene {
     let radius = 0.5 * LINE_DIAMETER;
@@ -125,17 +126,17 @@ pub fn collision() -> Scene {
 }
 
 /// Initial distance, in diameters, between the centres of the falling disc and the disc that it hits in the scene
-/// `cradle`. With this distance, the impact breaks the bond of the other two discs at the same time steps as in
-/// Abramian & Staron (2020), who do not state the distance. The value was found by a search.
+/// `cradle`. With this distance, the impact breaks the bond of the other two discs for the same values of the time step
+/// Δt as in Abramian & Staron (2020), who do not state the distance. The value was found by a search.
 const START_IN_DIAMETERS: f64 = 7.865;
 
 /// Returns the scene of the cradle (Abramian & Staron 2020, §4): three discs on a line, with an attraction towards a
 /// point.
 ///
 /// Disc i is at the centre of attraction, and disc j touches it on the right. Disc k starts at rest on the left and
-/// falls onto disc i. Whether this shock separates i and j depends on the time step. At small time steps the result
-/// also depends on the remaining error of the solver: in an exactly solved step the relative velocity of i and j after
-/// the shock is 0.
+/// falls onto disc i. Whether this shock separates i and j depends on the time step. At small time steps the remaining
+/// error of the solver also decides whether they separate, because in an exactly solved step the relative velocity of i
+/// and j after the shock is 0.
 pub fn cradle() -> Scene {
     cradle_from(START_IN_DIAMETERS)
 }

@@ -8,7 +8,8 @@ use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
 /// Number of standard deviations from the mean at which normal and log-normal distributions of diameters are cut off.
-/// With a larger number, a few very large grains would determine the width of the lattice from which the grains rain.
+/// With a larger number, a few very large grains would determine the width of the lattice on which the grains are
+/// placed before they fall (method rain).
 const CUT: f64 = 2.5;
 /// Description of the allowed forms of a distribution of diameters, for error messages.
 const FORM: &str = "uniform:S (0 ≤ S ≤ 0.8), normal:S (0 < S ≤ 0.3), lognormal:S (0 < S ≤ 0.5), \
@@ -119,8 +120,9 @@ fn cut_normal(random: &mut Pcg64) -> f64 {
     }
 }
 
-/// Returns the number of grains, ∫ dM/D², between the first and the last sieve, where M is the mass fraction that
-/// passes a sieve of diameter D. The unit of mass is a disc of diameter 1.
+/// Returns the number of grains with diameters between the first and the last sieve, ∫ dM/D², in a sample of unit mass.
+/// M is the mass fraction that passes a sieve with openings of diameter D. The unit of mass is the mass of a disc whose
+/// diameter is 1 in the unit of D.
 fn count(sieves: &[[f64; 2]]) -> f64 {
     let count = |class: &[[f64; 2]]| (class[1][1] - class[0][1]) / (class[0][0] * class[1][0]);
     sieves.windows(2).map(count).sum()
@@ -133,7 +135,8 @@ impl fmt::Display for Sizes {
 }
 
 impl FromStr for Sizes {
-    /// Description of the allowed forms of a distribution of diameters.
+    /// Error type: a description of the allowed forms of a distribution of diameters, if the text has none of these
+    /// forms.
     type Err = &'static str;
 
     fn from_str(text: &str) -> Result<Self, &'static str> {

@@ -29,8 +29,9 @@ use crate::world::{Disc, Grain, Parameters};
 /// than a few trials change little.
 const TRIES: usize = 4;
 /// Fraction of the height by which a pile is compressed before it settles, so that all contacts touch. With a smaller
-/// fraction, the errors of the first steps (gΔt² = 8e-5 d) open contacts. With a larger fraction, the overlaps that
-/// remain at rest are larger.
+/// fraction, the position errors of the first steps open contacts. Such an error is about gΔt² = 8e-5 d, with gravity
+/// g, the time step Δt = 2e-4 s and the mean diameter d. With a larger fraction, the overlaps that remain at rest are
+/// larger.
 const PRESSED: f64 = 2e-4;
 /// Time step while the pile settles, s. It stays constant. If it were made longer when the pile is nearly at rest,
 /// contacts would open again, because the position errors of a step are proportional to the square of its length and
@@ -42,19 +43,23 @@ const SWEEPS: u32 = 20;
 /// Tolerance of the solver: the solve of a step stops when a sweep changes the contact impulses by less than this
 /// fraction of their size.
 const TOLERANCE: f64 = 1e-7;
-/// Damping by the thick medium: the fraction by which it reduces all velocities per step, multiplied by the number of
-/// layers of grains in the pile. The value is twice the frequency of the slowest oscillation. With half of this value
-/// the pile oscillates, and with twice the value it creeps. Both double the time to settle.
+/// Damping of a new pile by the thick medium at first: the fraction by which the medium reduces all velocities per
+/// step, multiplied by the number of layers of grains in the pile. The value is twice the frequency of the slowest
+/// oscillation of the pile, in the same unit: per step, times the number of layers. With half of this value the pile
+/// oscillates, and with twice the value it creeps. Both double the time to settle.
 const DAMPING_BY_LAYERS: f64 = 7.0;
-/// Largest fraction by which the thick medium reduces the velocities per step, however few layers the pile has.
+/// Largest fraction by which the thick medium reduces the velocities per step. It applies to piles of fewer than 35
+/// layers, for which [`DAMPING_BY_LAYERS`] divided by the number of layers is larger.
 const MOST_DAMPING: f64 = 0.2;
-/// Median speed of the grains, in √(g·d) (g: gravity, d: mean diameter), below which the pile no longer oscillates
-/// and the medium becomes thin.
+/// Median speed of the grains, in √(g·d) (g: gravity, d: mean diameter), below which the pile no longer oscillates.
+/// Then the medium that damps all velocities becomes thin.
 const STILL_SPEED: f64 = 1e-3;
-/// Terminal speed of a grain that falls through the thin medium, in √(g·d) (g: gravity, d: mean diameter).
+/// Terminal speed of a grain that falls through the thin medium, in √(g·d) (g: gravity, d: mean diameter). The other
+/// method of generating a pile, rain, has the same terminal speed.
 const TERMINAL_SPEED: f64 = 0.5;
-/// Mean kinetic energy of a grain, in m g d (mass, gravity, mean diameter), below which the medium is removed if no
-/// grain falls. After that, the pile is at rest if its energy stays below ten times this value.
+/// Mean kinetic energy of a grain, in m g d (mass, gravity, mean diameter), below which the medium that damps all
+/// velocities is removed if no grain falls. After that, the pile is at rest if its energy stays below ten times this
+/// value.
 const REST_ENERGY: f64 = 1e-7;
 /// Speed, in √(g·d) (g: gravity, d: mean diameter), above which a grain counts as falling. A pile counts as at rest if
 /// at most one of [`GRAINS_A_MOVING_ONE`] grains is faster.
@@ -166,17 +171,17 @@ pub(super) fn settled(
 /// The medium that damps the velocities of the grains while the pile settles: thick at first, then thin, then none.
 #[derive(Clone, Copy)]
 enum Medium {
-    /// Medium so thick that the pile cannot oscillate up and down as a whole.
+    /// Medium that damps all velocities so strongly that the pile cannot oscillate up and down as a whole.
     Thick {
         damping: f64,
     },
-    /// Medium so thin that grains can fall through it.
+    /// Medium that damps all velocities so weakly that grains can fall through it.
     Thin,
     None,
 }
 
 impl Medium {
-    /// Returns the fraction by which the medium reduces all velocities per step.
+    /// Returns the fraction by which this medium, in which the pile settles, reduces all velocities per step.
     fn damping(self) -> f64 {
         match self {
             Self::Thick { damping } => damping,

@@ -72,7 +72,8 @@ pub(super) fn settled(
     Ok(Settled::of(simulation))
 }
 
-/// Returns the discs from which the rain starts, on a lattice with random displacements, row by row from the bottom.
+/// Returns the discs of a new pile before they fall: at rest on a loose lattice with random displacements, row by row
+/// from the bottom.
 pub(super) fn lattice(rain: &NewPile) -> Vec<Grain> {
     let columns = rain.columns();
     let mut random = Pcg64::seed_from_u64(rain.seed);

@@ -29,7 +29,9 @@ use crate::world::Disc;
 /// that it passes by this length, and a falling disc may land this length above the point where its fall began. With
 /// the value 0, a disc between two discs that leave it exactly enough room would roll from one to the other endlessly.
 /// And a disc that falls off one disc at the point where it touches the next disc would fall through that next disc.
-/// Each fall still ends at least a millionth of the sum of the radii lower than it began.
+/// The falls still come to an end: a falling disc passes each disc that it would overlap by less than this length to
+/// the side, so after it has landed it rolls down by at least a millionth of the sum of the radii before it falls
+/// again.
 const GRAZING: f64 = 1e-12;
 
 /// The surface onto which discs are dropped: fixed discs, discs that were dropped before, a floor and two walls. The
@@ -160,12 +162,13 @@ pub struct Rest {
     pub supports: (Support, Option<Support>),
 }
 
-/// Angle, rad, that allows for rounding: a rolling disc can still meet an obstacle whose contact angle is behind the
-/// present angle of the disc by less than this value.
+/// Angle, rad, that allows for rounding: a rolling disc can still meet an obstacle although its present angle on the
+/// disc below is beyond the angle at which it touches the obstacle, by less than this value.
 const ROUNDING: f64 = 1e-9;
 
-/// Returns the position of rest of a disc that is dropped at the coordinate `x` (m) from above all other discs.
-/// `radius` (m) is at most the largest radius of the deposit, and a disc at `x` is between the walls.
+/// Returns the position of rest of a disc of radius `radius` (m) that is dropped at the coordinate `x` (m) from above
+/// all other discs. The caller must choose `radius` not larger than the largest radius of the deposit, and `x` so that
+/// the disc is between the walls.
 pub fn dropped(deposit: &Deposit, x: f64, radius: f64) -> Rest {
     let mut fall = FallingDisc { from: DVec2::new(x, f64::INFINITY), left: None, side: 1.0 };
     loop {
