@@ -20,9 +20,9 @@ use crate::error;
 pub struct About {
     /// Name of the setting on the command line, in studies and in error messages.
     pub name: &'static str,
-    /// Placeholder for the value in the help of the command line.
+    /// Placeholder for the value in the help of the command line, such as `SECONDS` in `--dt SECONDS`.
     pub value_name: &'static str,
-    /// Help text of one line.
+    /// Help text of the setting on the command line: one line.
     pub help: &'static str,
     /// Heading under which the help of the command line lists the setting.
     pub heading: &'static str,
@@ -53,7 +53,7 @@ pub enum Needs {
 /// Slider, check box or list in the window with which the user changes a setting.
 #[derive(Clone, Copy, Debug)]
 pub struct Control {
-    /// Label of the control.
+    /// Label that the window shows next to the control.
     pub label: &'static str,
     /// Short name of the setting, such as `Δt`, by which titles, explanations and window tests refer to it.
     pub symbol: &'static str,
@@ -211,7 +211,7 @@ settable!(f64, Number, "");
 settable!(u32, Count, "N");
 settable!(bool, Switch, "BOOL");
 
-/// A structure whose fields are settings.
+/// A structure whose fields are settings, which can be read and set by name.
 pub trait Group: Sized + 'static {
     /// The structure of changes to these settings: each setting is an `Option`, and `None` leaves it unchanged.
     type Changes: Changes<Group = Self>;
@@ -229,8 +229,8 @@ pub trait Group: Sized + 'static {
     fn validate_each(&self) -> error::Result<()>;
 }
 
-/// Changes of settings: new values for some settings of a group. Files and the command line access the settings by
-/// name.
+/// Changes of settings: new values for some of the settings in a structure of settings ([`Group`]). Files and the
+/// command line access the settings by name.
 pub trait Changes: Default {
     /// The structure whose settings are changed.
     type Group: Group<Changes = Self>;

@@ -163,7 +163,8 @@ struct ContactEnergy {
 }
 
 impl Watch {
-    /// Creates the data for the checks of a simulation from its state at time 0, after contact detection.
+    /// Creates the data with which a simulation is checked for failures, from its state at time 0. Call this after
+    /// contact detection.
     pub(super) fn new(state: &State) -> Self {
         let losses = Losses::new(&state.world, state.candidates.features(), state.physics);
         let mut watch = Self { losses, ..Self::default() };
@@ -291,8 +292,8 @@ impl Watch {
         }
     }
 
-    /// Returns the advice of the alarm on a state that is no longer finite, as text; an empty text without such an
-    /// alarm.
+    /// Returns the advice of the alarm that reports a state that is no longer finite, as text. The text is empty if
+    /// there is no such alarm.
     pub(super) fn advice_on_overflow(&self, settings: &Settings) -> String {
         let mut alarms = self.alarms.iter().filter(|alarm| alarm.kind == AlarmKind::NotFinite);
         alarms.next().map(|alarm| alarm.advice_in_words(settings)).unwrap_or_default()

@@ -50,10 +50,10 @@ pub struct PairSum {
     pub grain: u32,
     /// Body j of the pair.
     pub other: OtherBody,
-    /// Number of body j if grains, fixed discs and boundary features (parts of boundaries) are numbered in this order;
-    /// pairs are sorted by it.
+    /// Index of body j in the list of all grains, then all fixed discs, then all boundary features (parts of
+    /// boundaries). Pairs with the same grain i are sorted by this index.
     number: u32,
-    /// Number of steps in which the pair had an impulse.
+    /// Number of steps in which the impulse of the pair was not 0.
     pub steps: u64,
     /// Sum of the impulses on grain i, N·s.
     pub impulse: DVec2,

@@ -185,7 +185,8 @@ impl Losses {
             && self.lost.iter().filter(|&&lost| lost).count() == self.count as usize
     }
 
-    /// Makes the path of each grain start again at its new position in `positions`, m.
+    /// Makes the path of each grain start again at its position in `positions` (m), so that a displacement by the user
+    /// does not count as a path.
     pub(super) fn place(&mut self, positions: &[DVec2]) {
         self.from = positions.to_vec();
     }
@@ -304,8 +305,9 @@ fn carried(place: DVec2, before: [DVec2; 2], now: [DVec2; 2]) -> DVec2 {
     now[0] + local.x * along_now + local.y * along_now.perp()
 }
 
-/// Compares the path of a grain's centre from `from`, a point outside all polygons, to `to` (m) with one wall. `deep`
-/// is the negative of the depth inside a solid at which a grain is lost, m.
+/// Compares the path of a grain's centre with one wall, and returns if the grain is lost or its centre inside a
+/// polygon. The path is the straight line from `from`, a point outside all polygons, to `to` (m). `deep` is the
+/// negative of the depth inside a half-space or polygon at which a grain is lost, m.
 fn fate(feature: &Feature, from: DVec2, to: DVec2, deep: f64) -> Fate {
     let if_lost = |lost: bool| if lost { Fate::Lost } else { Fate::There };
     match feature {

@@ -173,8 +173,9 @@ pub(super) fn at_start<M: Model>(
     of_state::<M>(state, result, kinetic_energy, time_step_secs, initial_heights)
 }
 
-/// Returns the observables of a state and of the step that led to it. Step number, time and lost grains, which depend
-/// on earlier steps, are 0; other code sets them. Every field is set by name here, so that no field is forgotten.
+/// Returns the observables of a state and of the step that led to it. Step number, time and lost grains depend on
+/// earlier steps, so this function cannot compute them and sets them to 0. Every field is set by name here, so that no
+/// field is forgotten.
 fn of_state<M: Model>(
     state: &State,
     result: StepResult,

@@ -58,7 +58,8 @@ impl Simulation {
         }
     }
 
-    /// Sets the velocities of all grains to zero, and clears the impulses that contacts keep from the last step.
+    /// Sets the velocities of all grains to zero, and clears the impulses that contacts keep from the last step as
+    /// starting values of the next step.
     pub fn bring_to_rest(&mut self) {
         let State { world, contacts, .. } = &mut self.state;
         world.grains.velocities.fill(DVec2::ZERO);
@@ -67,8 +68,8 @@ impl Simulation {
         contacts.forget();
     }
 
-    /// Multiplies the velocities and angular velocities of all grains by `factor`, as a drag force during the last step
-    /// would.
+    /// Multiplies the velocities and angular velocities of all grains by `factor`. A factor below 1 has the effect of a
+    /// drag force during the last step.
     pub fn scale_velocities(&mut self, factor: f64) {
         let grains = &mut self.state.world.grains;
         for velocity in &mut grains.velocities {

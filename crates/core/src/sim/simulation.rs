@@ -23,9 +23,9 @@ use crate::{threads, with_model};
 
 /// A simulation of a world.
 ///
-/// A clone, and a simulation written to a file and read back, continue with exactly the same bits as the original. A
-/// file omits data on which no result depends: the contact problem, which every step recomputes, and data that solvers
-/// keep from one solve to the next (`tests/program/restart/` checks this for all solvers).
+/// A clone, and a simulation written to a file and read back, give results that equal those of the original bit by bit.
+/// A file omits data on which no result depends: the contact problem, which every step recomputes, and data that
+/// solvers keep from one solve to the next (`tests/program/restart/` checks this for all solvers).
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(remote = "Self", deny_unknown_fields)]
 pub struct Simulation {

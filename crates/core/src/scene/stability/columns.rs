@@ -34,10 +34,10 @@ pub fn column_on_line(count: usize) -> Scene {
     scene
 }
 
-/// Returns the scene of a heavy disc on a light disc, which needs many sweeps. Let R = `ratio` be the ratio of their
-/// masses and W the Delassus operator of the two contacts, which maps impulses to changes of velocities. Gauss–Seidel
-/// reduces the error of the impulses by the factor W₀₁²/(W₀₀W₁₁) = R/(R + 1) per sweep, so the number of sweeps is
-/// proportional to R.
+/// Returns the scene of a heavy disc on a light disc, which needs many sweeps. Let R = `ratio` be the mass of the heavy
+/// disc divided by that of the light disc. Let W be the Delassus operator, the matrix that maps impulses to changes of
+/// velocities, with the contacts 0 (light disc and floor) and 1 (both discs). Gauss–Seidel reduces the error of the
+/// impulses by the factor W₀₁²/(W₀₀W₁₁) = R/(R + 1) per sweep, so the number of sweeps is proportional to R.
 pub fn mass_ratio(ratio: f64) -> Scene {
     let radius = 0.5 * ratio.sqrt();
     let heavy =

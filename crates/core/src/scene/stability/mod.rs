@@ -28,10 +28,11 @@ use crate::world::{Boundary, Grain, Gravity, Parameters};
 pub const DIAMETER: f64 = 0.01;
 /// Gravity g in the scenes of this module and in the experiments of [`crate::scene::experiments`], m/s².
 pub const GRAVITY: f64 = 9.8;
-/// Initial overlap of discs that are meant to touch, in diameters. It is larger than the gap that the error of a well
-/// solved step may open, and much smaller than any length that the stability tests measure.
+/// Initial overlap of discs that are meant to touch, in diameters. Solver errors within the tolerance open gaps smaller
+/// than this overlap, so such discs keep touching. It is much smaller than any length that the stability tests measure.
 const TOUCH: f64 = 1e-6;
-/// Returns a scene of grains under gravity, without cohesion and without restitution.
+/// Returns a scene with these grains under gravity, with the friction coefficient 0.5, without cohesion and without
+/// restitution. `name` is the name of the scene.
 pub fn dry(name: &str, grains: Vec<Grain>) -> Scene {
     let gravity = Gravity::Uniform { acceleration: DVec2::new(0.0, -GRAVITY) };
     let parameters = Parameters { friction: 0.5, ..Parameters::default() };
@@ -40,7 +41,8 @@ pub fn dry(name: &str, grains: Vec<Grain>) -> Scene {
     scene
 }
 
-/// Returns a scene of grains under gravity above the ground at y = 0, without cohesion and without restitution.
+/// Returns a scene with these grains under gravity above the ground at y = 0, with the friction coefficient 0.5,
+/// without cohesion and without restitution. `name` is the name of the scene.
 fn on_floor(name: &str, grains: Vec<Grain>) -> Scene {
     Scene { boundaries: vec![floor()], ..dry(name, grains) }
 }

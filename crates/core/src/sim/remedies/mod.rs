@@ -1,5 +1,5 @@
-//! Remedies: optional corrections for known failures of a stepper, as functions that steppers and the simulation call.
-//! Their registry is `sim::settings::remedy`.
+//! Remedies: optional corrections for known failures of a stepper. Each remedy is a function that steppers or the
+//! simulation call. The list of all remedies is in `sim::settings::remedy`.
 
 #![deny(dead_code, reason = "a remedy that no step calls would not be missed")]
 
@@ -15,7 +15,8 @@ use crate::sim::settings::Settings;
 use crate::sim::stepping::Stage;
 use crate::solver::{Model, SolveReport};
 
-/// Solves the prepared contact problem of a step, with the remedy `sequential-impacts` if the settings turn it on.
+/// Solves the contact problem of a step after it has been set up. If the settings turn the remedy `sequential-impacts`
+/// on, this includes its computation of shocks.
 pub(super) fn solve<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> SolveReport {
     if settings.remedies.sequential_impacts {
         sequential_impacts::solve(stage, settings)
@@ -24,7 +25,7 @@ pub(super) fn solve<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> 
     }
 }
 
-/// Corrects positions after the grains have moved, with the remedy `push-out` if the settings turn it on.
+/// Pushes overlapping grains apart after the grains have moved, if the settings turn the remedy `push-out` on.
 pub(super) fn after_step<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     if settings.remedies.push_out {
         push_out::push_out(stage.state, settings.parameters.time_step_secs);

@@ -3,8 +3,8 @@
 use crate::sim::settings::Settings;
 use crate::sim::state::State;
 
-/// Largest number of pieces into which a step is divided. With more pieces, a step would no longer be comparable to a
-/// step with the requested time step.
+/// Largest number of pieces (shorter steps of equal length) into which a step is divided. With more pieces, a step
+/// would no longer be comparable to a step with the requested time step.
 const MOST_PIECES: f64 = 100.0;
 
 /// Returns the number of pieces into which the next step is divided: 1 unless grains are so fast that they would move

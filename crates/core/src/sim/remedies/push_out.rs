@@ -20,7 +20,7 @@ struct PushedContact {
     i: usize,
     j: Option<usize>,
     normal: DVec2,
-    /// Required increase of the gap, m. A negative value allows the gap to decrease by this amount.
+    /// Required increase of the gap, m. If it is negative, the gap may decrease by up to its absolute value.
     want: f64,
     /// Push λ of the contact, kg·m: an impulse that displaces a grain of the mass m by λ/m.
     push: f64,

@@ -66,12 +66,12 @@ const MOST_PASSES: u32 = 2000;
 /// by the sum of the absolute works of the normal impulses. Rounding and the tolerance of a step cause smaller values.
 const LEAST_GAIN: f64 = 1e-6;
 
-/// Largest number of times that the opening speeds after shocks are reduced in a step because bounces create energy:
-/// each time they are halved, and the last time they are set to 0.
+/// Largest number of times that the opening speeds after shocks are reduced in a step because bounces create energy.
+/// Each of the first four times the speeds are halved, and the fifth time they are set to 0.
 const HALVINGS: u32 = 5;
 
-/// Solver settings for a pass, which solves the contacts that close at the same time. They do not depend on the solver
-/// of the step, because only few contacts close at the same time.
+/// Solver settings for a pass of shocks, which solves the contacts that close at the same time. They do not depend on
+/// the solver of the step, because only few contacts close at the same time.
 const PASS: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-12, 1000);
 
 /// Computes the shocks of a step whose contact problem has been set up, and solves the step so that its contacts open
@@ -180,7 +180,8 @@ impl<M: Model> ImpactSequence<M> {
         Self { bodies, speeds, impulses, touching }
     }
 
-    /// Returns the fastest closing speed of touching contacts, max(−u), m/s, or 0 if no contact closes.
+    /// Returns the fastest closing speed of touching contacts, m/s: the largest −u, with the normal velocity u of a
+    /// contact. Returns 0 if no contact closes.
     fn fastest_closing(&self) -> f64 {
         let all = self.speeds.iter().zip(&self.touching);
         all.filter(|(_, touches)| **touches)

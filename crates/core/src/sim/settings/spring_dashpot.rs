@@ -57,7 +57,7 @@ const LEAST_RESTITUTION: f64 = 0.02;
 /// Length of a substep divided by the critical time step, if the number of substeps is automatic. With a larger value a
 /// collision has fewer substeps and its restitution is less exact; at 1 the simulation may become unstable.
 const SAFE_FRACTION: f64 = 0.5;
-/// Number of equal discs that fit around one disc, in the plane and on a line.
+/// Number of equal discs that fit around one disc: 6 in the plane, and 2 on a line.
 const NEIGHBOURS: [f64; 2] = [6.0, 2.0];
 /// Number of bisections in the search for the damping ratio: enough to reach the rounding of `f64`.
 const HALVINGS: u32 = 60;
@@ -72,9 +72,9 @@ pub struct SpringDashpot {
 }
 
 impl SpringDashpot {
-    /// Returns the spring and dashpot for these parameters. If their stiffness is 0, the springs are stiff enough for
-    /// the weight of a pile of the world's grains. If their damping ratio is 0, the dashpots give the restitution of
-    /// the parameters.
+    /// Returns the spring and dashpot for these parameters. If the parameter `stiffness` is 0, the stiffness is chosen
+    /// from the weight of a pile of the world's grains. If the parameter `damping_ratio` is 0, the damping ratio is
+    /// chosen so that collisions have the restitution in the parameters.
     pub fn of(world: &World, axes: u8, parameters: &Parameters) -> Self {
         Self {
             stiffness: match parameters.stiffness {

@@ -27,7 +27,7 @@ words! {
 /// Description of a stepper: its source, its settings and its abilities.
 #[derive(Clone, Copy, Debug)]
 pub struct StepperInfo {
-    /// One line on the problem that a step solves.
+    /// Description of the problem that the stepper solves in each step: one line.
     pub solves: &'static str,
     /// Publication that describes the stepper.
     pub source: &'static str,
