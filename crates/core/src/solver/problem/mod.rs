@@ -189,7 +189,7 @@ impl<M: Model> StepProblem<M> {
         for index in contacts.iter().map(|&index| index as usize) {
             let contact = &list.contacts()[index];
             let mass = masses[contact.grain as usize];
-            // Indices of bodies: grains come first, so fixed bodies have no mass in the list.
+            // Body indices count the grains first. So the index of a fixed body is past the end of the list of masses.
             let other = masses.get(contact.other as usize);
             let effective_mass = other.map_or(mass, |other| mass * (other / (mass + other)));
             let numbers = numbers_of(contact, effective_mass);
@@ -261,7 +261,7 @@ impl<M: Model> StepProblem<M> {
         threads::fill(&mut pair_rows, self.rows.contacts.len() - fixed, |number| {
             let number = fixed + number;
             let contact = contact(number);
-            // Indices of bodies: grains come first.
+            // Body indices count the grains first, so both are indices of grains.
             let (i, j) = (contact.grain as usize, contact.other as usize);
             let share = masses[j] / (masses[i] + masses[j]);
             let normal = M::normal_of(world, contact);

@@ -35,7 +35,8 @@ use crate::solver::kinematics::Model;
 /// Rolling resistance of a contact: a moment against the relative spin of its two bodies.
 #[derive(Clone, Copy, Debug)]
 pub struct Rolling {
-    /// Reduced rolling impulse ψ, m/s: rolling moment times time step, divided by reduced radius and effective mass.
+    /// Reduced rolling impulse ψ, m/s: rolling moment times time step, divided by the effective mass and the reduced
+    /// radius R of the contact (1/R = 1/r_i + 1/r_j, with the radii r_i and r_j of the two bodies).
     pub impulse: f64,
     /// Coefficient of rolling friction μ_r.
     pub friction: f64,

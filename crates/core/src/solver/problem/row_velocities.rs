@@ -1,5 +1,5 @@
-//! Visits the rows of a problem (each the data of one contact) in order with their relative velocities, and sums over
-//! them.
+//! Visits the contacts of a problem in the order of its rows (the data of one contact each), with the relative
+//! velocities of each contact, and adds up sums over the contacts.
 
 use std::ops::Range;
 
@@ -27,8 +27,9 @@ pub fn for_each_row<M: Model>(
     for_each_row_of(problem, 0..problem.rows.len(), visit);
 }
 
-/// Sums over the contacts, in chunks of fixed length: `visit` adds a row (data of one contact) to the sum of its chunk,
-/// and `join` adds the sum of the next chunk to the total.
+/// Computes a sum over the contacts, in chunks of fixed length, so that the result is the same for any number of
+/// threads: `visit` adds a row (data of one contact) to the sum of its chunk, and `join` adds the sum of the next chunk
+/// to the total.
 pub(super) fn sum_of_rows<M: Model, S: Default + Send>(
     problem: &StepProblem<M>,
     visit: impl Fn(&mut S, (usize, &Row<M>), RowVelocities) + Sync,

@@ -41,7 +41,7 @@ use super::{Approach, Row, StepProblem};
 use crate::contact::{Contact, ContactList};
 use crate::solver::kinematics::Model;
 
-/// Index that marks a contact with a body that is neither a grain nor a driven wall.
+/// Index that marks a contact with a body that is neither a grain nor a wall that a force moves.
 const NONE: u32 = u32::MAX;
 
 /// Motion of the surface of a body that is not a grain (wall or disc), at a contact.
@@ -64,7 +64,8 @@ pub struct Surface {
     /// True if the body moves only along the normal of its surface, so that this motion has no component along the
     /// tangent.
     pub is_pushed: bool,
-    /// The driven wall and its direction at the contact, if a force drives the body.
+    /// If a force moves the body: its index among the walls that a force moves, and its direction of motion at the
+    /// contact; else `None`.
     pub driven: Option<DrivenBy>,
 }
 
@@ -99,10 +100,11 @@ pub struct DrivenWall {
     pub now: f64,
 }
 
-/// The driven wall that a contact touches, and the wall's direction of motion at the contact.
+/// The wall that a contact touches and that a force moves (driven wall), and the wall's direction of motion at the
+/// contact.
 #[derive(Clone, Copy, Debug)]
 pub struct DrivenBy {
-    /// Index of the wall in the list of driven walls.
+    /// Index of the wall in the list of walls that a force moves.
     pub wall: u32,
     /// Components b of the wall's unit direction of motion along the contact's normal and tangent.
     pub along: [f64; 2],
@@ -144,10 +146,10 @@ pub(crate) struct MovingWalls {
     surfaces: Vec<Option<Surface>>,
     /// Walls that a force drives.
     pub driven: Vec<DrivenWall>,
-    /// Data of the contacts with driven walls.
+    /// Data of the contacts with walls that a force moves.
     pub driven_rows: Vec<DrivenRow>,
-    /// For each contact with a body that is not a grain, its index in `driven_rows`, or [`NONE`]; empty if no wall is
-    /// driven.
+    /// For each contact with a body that is not a grain, its index in `driven_rows`, or [`NONE`] if no force moves that
+    /// body; empty if no force moves any wall.
     driven_row_of: Vec<u32>,
 }
 
@@ -169,15 +171,15 @@ impl MovingWalls {
         self.driven_row_of.clear();
     }
 
-    /// Returns the data of the contact in row `number` if its fixed body is a driven wall.
+    /// Returns the data of the contact in row `number` if its fixed body is a wall that a force moves, else `None`.
     #[inline(always)]
     pub(crate) fn driven_row(&self, number: usize) -> Option<&DrivenRow> {
         self.driven_rows.get(*self.driven_row_of.get(number)? as usize)
     }
 
-    /// Records the next contact with a body that is not a grain. `by` is the driven wall of the contact, or `None`. The
-    /// other arguments, m/s, are values for the wall's speed at the beginning of the step: `wall_speed`, the speed of
-    /// the wall along the contact's normal, and `added` and `slide`, the fields `restitution_velocity` and
+    /// Records the next contact with a body that is not a grain. `by` is the wall of the contact if a force moves it,
+    /// or `None`. The other arguments, m/s, are values for the wall's speed at the beginning of the step: `wall_speed`,
+    /// the speed of the wall along the contact's normal, and `added` and `slide`, the fields `restitution_velocity` and
     /// `surface_speed` of the contact's data.
     fn add_row(&mut self, by: Option<DrivenBy>, wall_speed: f64, [added, slide]: [f64; 2]) {
         if self.driven.is_empty() {
@@ -248,7 +250,7 @@ impl<M: Model> StepProblem<M> {
     }
 
     /// Returns the speed along the normal, m/s, at the beginning of the step, of the wall (or other body that is not a
-    /// grain) at the contact in row `number`. For a driven wall the result is its present speed.
+    /// grain) at the contact in row `number`. For a wall that a force moves the result is its present speed.
     pub(crate) fn wall_speed_before(&self, number: usize) -> f64 {
         if self.gives_way(number) {
             return self.wall_speed(number);
@@ -272,8 +274,9 @@ impl<M: Model> StepProblem<M> {
         !self.walls.speeds.is_empty()
     }
 
-    /// Returns the part of the velocity of a body that is not a grain that changes the gap of its contact in row
-    /// `number`, m/s. For a half-space this is the component along `normal`, for other bodies the whole velocity.
+    /// Returns the velocity, m/s, with which the wall (or other body that is not a grain) at the contact in row
+    /// `number` changes the gap. For a half-space this is the component of its velocity along `normal`, for other
+    /// bodies the whole velocity.
     pub(crate) fn shape_velocity(&self, number: usize, normal: DVec2) -> DVec2 {
         match self.walls.surfaces.get(number) {
             Some(Some(surface)) if !surface.is_half_space => surface.velocity,
@@ -305,8 +308,8 @@ impl<M: Model> StepProblem<M> {
 
     /// Returns the work of moving surfaces and its tangential part, J, for the contacts of `part`, a problem with a
     /// subset of the contacts of this problem. `number_here` translates the row numbers of `part` to row numbers of
-    /// this problem. In contrast to [`Self::surface_works`], the work of a driven wall is computed with the wall's
-    /// speed at the end of the step.
+    /// this problem. In contrast to [`Self::surface_works`], the work of a wall that a force moves is computed with the
+    /// wall's speed at the end of the step.
     pub(crate) fn surface_works_of(
         &self,
         part: &Self,
@@ -370,8 +373,9 @@ impl<M: Model> StepProblem<M> {
         [known.speed + along * wall.before, along * (wall.now - wall.before)]
     }
 
-    /// Scales the normal and tangential relative velocity (v_n, v_t) of a contact with a driven wall, m/s, for the
-    /// residual (relative error of the impulses in the contact laws); `None` if the contact is not with a driven wall.
+    /// Scales the normal and tangential relative velocity (v_n, v_t), m/s, of a contact with a driven wall (a wall that
+    /// a force moves) for the residual (relative error of the impulses in the contact laws); `None` if the contact is
+    /// not with a driven wall.
     ///
     /// A contact with a driven wall has larger compliances than a contact with a fixed wall, because the wall gives
     /// way. v_n, with its restitution term, is divided by the ratio of these compliances 1 + κ b_n², and v_t by 1 + κ
@@ -394,10 +398,10 @@ impl<M: Model> StepProblem<M> {
         Some([(normal + added) / of_normal - added, tangential / of_tangential])
     }
 
-    /// Computes the normal and tangential relative velocity, m/s, of a contact with a driven wall, as it would be if
-    /// the wall had the speed that it has without contact impulses. The given velocity is relative to the wall's
-    /// present speed. The result is divided by ratios of compliances, as [`Self::own_part`] does; it is `None` if the
-    /// contact is not with a driven wall.
+    /// Computes the normal and tangential relative velocity, m/s, of a contact with a driven wall (a wall that a force
+    /// moves), as it would be if the wall had the speed that it has without contact impulses. The given velocity is
+    /// relative to the wall's present speed. The result is divided by ratios of compliances, as [`Self::own_part`]
+    /// does; it is `None` if the contact is not with a driven wall.
     #[inline(always)]
     pub(super) fn free_part(
         &self,
@@ -411,8 +415,8 @@ impl<M: Model> StepProblem<M> {
         self.own_part(number, row, [normal + along[0] * slower, tangential + along[1] * slower])
     }
 
-    /// Sets driven walls to the speeds that follow from the present contact impulses, and updates the contacts with
-    /// these walls.
+    /// Sets the walls that a force moves to the speeds that follow from the present contact impulses, and updates the
+    /// contacts with these walls.
     pub(super) fn form_wall_velocities(&mut self) {
         for wall in &mut self.walls.driven {
             wall.now = wall.free;
@@ -427,7 +431,7 @@ impl<M: Model> StepProblem<M> {
         self.tell_of_walls();
     }
 
-    /// Sets driven walls to given speeds, one per wall, m/s, and updates the contacts with these walls.
+    /// Sets the walls that a force moves to given speeds, one per wall, m/s, and updates the contacts with these walls.
     pub(crate) fn set_wall_velocities(&mut self, velocities: impl Iterator<Item = f64>) {
         for (wall, velocity) in self.walls.driven.iter_mut().zip(velocities) {
             wall.now = velocity;
@@ -435,7 +439,7 @@ impl<M: Model> StepProblem<M> {
         self.tell_of_walls();
     }
 
-    /// Recomputes the terms in the contacts' data that depend on the present speeds of driven walls.
+    /// Recomputes the terms in the contacts' data that depend on the present speeds of walls that a force moves.
     pub(crate) fn tell_of_walls(&mut self) {
         let MovingWalls { driven, driven_rows, speeds, .. } = &mut self.walls;
         for known in driven_rows {
@@ -448,11 +452,11 @@ impl<M: Model> StepProblem<M> {
     }
 
     /// Iterates over the contacts with bodies that are not grains. Returns for each contact an upper bound for the
-    /// compliance of its driven wall, dimensionless, or `None` if the body is not a driven wall. Methods that update
-    /// all contacts at once need this bound. It is κ (b_n² + b_t² m_t/m_n) times the number of contacts of the wall. κ
-    /// is the product of the contact's effective mass and the response of the wall's speed to an impulse, 1/kg; m_n and
-    /// m_t are the effective masses along normal and tangent; b_n and b_t are the components of the wall's direction of
-    /// motion along the normal and the tangent.
+    /// compliance of its driven wall (a wall that a force moves), dimensionless, or `None` if no force moves the body.
+    /// Methods that update all contacts at once need this bound. It is κ (b_n² + b_t² m_t/m_n) times the number of
+    /// contacts of the wall. κ is the product of the contact's effective mass and the response of the wall's speed to
+    /// an impulse, 1/kg; m_n and m_t are the effective masses along normal and tangent; b_n and b_t are the components
+    /// of the wall's direction of motion along the normal and the tangent.
     pub(crate) fn wall_compliances(&self) -> impl Iterator<Item = Option<f64>> {
         let MovingWalls { driven, driven_rows, .. } = &self.walls;
         let mut counts = vec![0.0; driven.len()];
