@@ -11,8 +11,9 @@ use crate::error::{Error, Result, check};
 use rayon::Yield;
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
-/// Number of items that are added to one partial sum. It does not depend on the number of threads, so that results do
-/// not.
+/// Number of items that are added to one partial sum. It does not depend on the number of threads: if it did, sums
+/// would round differently with another number of threads. With fewer items per partial sum, more partial sums have to
+/// be distributed among the threads; with more items, a short list has too few partial sums for several threads.
 const STRETCH: usize = 4096;
 /// Smallest number of items (grains or contacts) for which a loop runs on several threads. Loops over fewer items run
 /// on one thread, because several threads may take longer. With two threads, a step of 40 sweeps took 0.7 of the time

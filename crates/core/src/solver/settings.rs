@@ -7,8 +7,8 @@ use crate::setting::{Group, settings, words};
 words! {
     /// The stopping test: the quantity that the solver's tolerance limits. P is the vector of the normal and tangential
     /// impulses of all contacts (N·s), and ΔP its change in a sweep, or in an iteration of a method without sweeps. The
-    /// test `impulse-per-mass` is made after every sweep; in a long solve the other tests are made after every eighth
-    /// sweep.
+    /// test `impulse-per-mass` is made after every sweep. The other tests are made after each of the first 16 sweeps of
+    /// a solve and then only after every eighth sweep, because they take time.
     #[derive(Default)]
     pub enum StopTest {
         RelativeChange = "relative-change", "‖ΔP‖ of a sweep over ‖P‖";
@@ -48,14 +48,17 @@ impl StopTest {
 }
 
 impl FrictionModel {
-    /// Returns true if the friction model needs a number per contact (friction bound or opening speed) that is
-    /// estimated before a solve and can be recomputed for a further solve of the same step.
+    /// Returns true if the friction model uses a number per contact that is estimated before a solve, and that can be
+    /// estimated again for a further solve of the same step. The number is a friction bound, or an opening speed
+    /// (estimated speed at which the model would otherwise let a sliding contact open), m/s.
     pub fn is_taken_anew(self) -> bool {
         matches!(self, Self::Tresca | Self::Desaxce)
     }
 
     /// Returns true if the friction model allows each contact all impulses inside a cone. The cone is always the
-    /// shifted cone: with cohesion the compressive cone is not convex, and its convex hull is the shifted cone.
+    /// shifted friction cone, in which μ (N + C₀) bounds friction (μ: friction coefficient, N: normal force, C₀:
+    /// cohesion force). The other cone, with the bound μ max(N, 0), is not convex if there is cohesion, and its convex
+    /// hull is the shifted cone.
     pub(crate) fn is_on_cone(self) -> bool {
         matches!(self, Self::Associated | Self::Desaxce)
     }
@@ -66,8 +69,8 @@ settings! {
     /// passed to a simulation.
     ///
     /// By default each step is solved under Coulomb's law to an estimated velocity error of 1e-4 √(g d) (gravity g,
-    /// mean diameter d), which is too small to affect the slump of a pile. A flowing step of thousands of grains ends
-    /// with a larger error, which is reported ([`Measures::velocity_error`](super::Measures)).
+    /// mean diameter d), which is too small to affect the slump of a pile. A step in which thousands of grains flow can
+    /// end with a larger error, which is reported ([`Measures::velocity_error`](super::Measures)).
     #[serde(default)]
     pub struct SolverSettings, changes SolverChanges, heading "Solver" {
         method: Method = Method::Auto, "solver" ("NAME"), "Solver of each step", {
@@ -95,7 +98,7 @@ settings! {
             }),
         }
         /// Maximum number of sweeps per step, or of iterations of a method without sweeps. A step that needs more is
-        /// reported as not converged.
+        /// reported as unsolved.
         max_sweeps: u32 = 5_000, "max-sweeps", "Most sweeps per step; a step that needs more is reported as unsolved; the solver auto may stop earlier", {
             allowed: "at least 1",
             holds: |value| value > 0,

@@ -2,8 +2,9 @@
 //!
 //! Coulomb's law is not convex, so a step of a flowing pile can have several solutions, and the initial impulses decide
 //! which solution a method finds. This search starts conjugate gradients from several sets of initial impulses: the
-//! impulses of the previous step, zero, and random impulses that the law allows. Newton's method then continues from
-//! the result of the conjugate gradients. The result with the smaller residual is kept.
+//! impulses of the previous step, zero, and random impulses that the law allows. If the conjugate gradients do not
+//! reach the tolerance, Newton's method continues from their result, in problems of at most 10,000 contacts without
+//! walls that a force drives. Of the two results, the search returns the result with the smaller residual.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -15,10 +16,14 @@ use super::problem::{StepProblem, measure, residual};
 use super::settings::SolverSettings;
 use super::solve::solve;
 
-/// Maximum number of sweeps of Newton's method, which follows the conjugate gradients in each search.
+/// Maximum number of iterations of Newton's method, which continues from the result of the conjugate gradients if they
+/// do not reach the tolerance of a search. With a larger number, a search in a step without a solution takes longer;
+/// with a smaller number, Newton's method may stop before it reaches a solution.
 const NEWTON_STEPS: u32 = 400;
 
-/// Maximum number of contacts of a problem for which Newton's method follows the conjugate gradients in a search.
+/// Maximum number of contacts of a problem for which Newton's method continues from the result of the conjugate
+/// gradients in a search. It limits the computing time, because an iteration of Newton's method factorises a matrix for
+/// all bodies.
 const CONTACTS_FOR_NEWTON: usize = 10_000;
 
 /// Settings of a search for several solutions of one step.
@@ -40,7 +45,7 @@ pub struct SolutionSearch {
 pub struct Solution<M: Model> {
     /// The contact problem with the impulses and velocities of this solution. Its friction model is Coulomb's law.
     pub problem: StepProblem<M>,
-    /// Residual of the contact laws, dimensionless ([`super::residual`]).
+    /// Residual, dimensionless: relative error of the impulses in the contact laws ([`super::residual`]).
     pub residual: f64,
     /// Estimated distance of the solution's velocities from the velocities of an exact solution, m/s.
     pub velocity_error: f64,
