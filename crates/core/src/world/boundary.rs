@@ -23,7 +23,7 @@ pub struct Disc {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "shape", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Boundary {
-    /// A half-space: all points p with (p − point)·normal < 0.
+    /// A solid half-space, which contains all points p with (p − point)·normal < 0.
     HalfSpace {
         /// A point of the surface of the half-space.
         point: DVec2,

@@ -60,9 +60,9 @@ impl Grain {
         }
     }
 
-    /// Returns the index of the material and the mass (kg) of the disc. The mass is that given for the disc. If none
-    /// is given, it is the area πr² (r: radius) times the areal density (kg/m²). The areal density is that of the
-    /// material if the material has one, and otherwise `density`.
+    /// Returns the index of the material and the mass (kg) of the disc. If the disc has no given mass, its mass is the
+    /// area πr² (r: radius) times the areal density (kg/m²). The areal density is given by the material, or is
+    /// `density` if the material does not give one.
     pub(crate) fn material_and_mass(&self, density: f64, materials: &[Material]) -> (usize, f64) {
         let number = self.material.as_ref().and_then(|name| number_of(materials, name));
         let number = number.unwrap_or(0);
@@ -107,7 +107,8 @@ pub struct Grains {
     /// start. The centre plus this displacement is the position without such jumps.
     pub brought_back: Vec<DVec2>,
     /// Permanent number of each grain, which stays the same if other grains are removed: the index of the grain in the
-    /// scene. Grains that are added later have numbers above the numbers of all other bodies.
+    /// scene. The fixed discs and boundaries have the numbers after the grains of the scene, and grains that are added
+    /// later the numbers after these.
     pub ids: Vec<u32>,
     /// Number of grains at the start.
     pub count_at_start: u32,

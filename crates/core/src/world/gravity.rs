@@ -60,7 +60,8 @@ impl Gravity {
         }
     }
 
-    /// Magnitude g of the acceleration by gravity, m/s². The Bond number refers to it.
+    /// Returns the magnitude g of the acceleration by gravity, m/s². The Bond number is the cohesion force divided by
+    /// the weight of the effective mass, which is computed with this g unless the parameters give another acceleration.
     pub fn magnitude(&self) -> f64 {
         match *self {
             Self::Uniform { acceleration } => acceleration.length(),
@@ -100,8 +101,9 @@ pub enum TurnCourse {
     },
 }
 
-/// Uniform gravity whose direction can change, by a rotation over time and by a setting.
-/// [`World::gravity`](super::World::gravity) is its value in the last step.
+/// Uniform gravity whose direction can change, by a rotation over time and by the parameter `tilt` of the run.
+/// [`World::gravity`](super::World::gravity) is the gravity of the last step, or, if the tilt has changed since then,
+/// the present gravity.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TurningGravity {
@@ -109,8 +111,8 @@ pub struct TurningGravity {
     pub listed: DVec2,
     /// Rotation of gravity over time, which starts from the direction of `listed`.
     pub turn: GravityTurn,
-    /// Angle by which a setting turns gravity, rad, in addition to the rotation over time. It stays constant until the
-    /// setting changes.
+    /// Angle by which the parameter `tilt` of the run turns gravity, rad, positive anticlockwise, in addition to the
+    /// rotation over time. It stays constant until that parameter changes.
     pub tilt: f64,
 }
 
@@ -174,8 +176,8 @@ impl GravityTurn {
 }
 
 impl World {
-    /// Sets the angle (rad, positive anticlockwise) by which uniform gravity is turned, in addition to its
-    /// rotation over time. The angle is measured from the direction that the scene gives.
+    /// Turns uniform gravity by an angle (rad, positive anticlockwise), in addition to its rotation over time. The
+    /// angle is measured from the direction without this turn, so a second call replaces the angle of the first.
     pub(crate) fn tilt(&mut self, angle: f64) {
         if angle != 0.0
             && self.gravity_turn.is_none()

@@ -43,8 +43,8 @@ pub struct MaterialPair {
     /// Coefficient of restitution ρ, from 0 to 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub restitution: Option<f64>,
-    /// Bond number, which gives the cohesion force C₀ = Bond · m_ij · a, as in [`Parameters`] (m_ij: effective mass,
-    /// a: acceleration of cohesion).
+    /// Bond number, which gives the cohesion force C₀ = Bond · m_ij · a, as in [`Parameters`] (m_ij: effective mass; a:
+    /// gravity of the scene, or the parameter `bond_acceleration` if it is given).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bond: Option<f64>,
     /// Cohesion force C₀, N. It replaces the Bond number: the force is the same for all masses, with and without
@@ -56,8 +56,8 @@ pub struct MaterialPair {
 /// Cohesion of a pair of materials: a Bond number or a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Cohesion {
-    /// Bond number, which gives the cohesion force C₀ = Bond · m_ij · a (m_ij: effective mass, a: acceleration of
-    /// cohesion).
+    /// Bond number, which gives the cohesion force C₀ = Bond · m_ij · a (m_ij: effective mass; a: gravity of the scene,
+    /// or the parameter `bond_acceleration` if it is given).
     Bond(f64),
     /// Cohesion force C₀, N.
     Force(f64),
@@ -177,8 +177,8 @@ pub(super) fn check_materials(
     Ok(())
 }
 
-/// Checks that each boundary or fixed disc that a material lists is one of the `count` existing ones, and that none is
-/// listed twice.
+/// Checks the lists of boundaries, or of fixed discs, of all materials: each listed index must be below `count`, the
+/// number of these bodies, and no body may be listed twice.
 fn check_bodies(
     list: &str,
     materials: &[Material],

@@ -46,8 +46,8 @@ pub struct World {
     pub motions: Vec<Motion>,
     /// Gravity: the acceleration field of the grains.
     pub gravity: Gravity,
-    /// Rotation of the direction of gravity. `None` if gravity keeps its direction. Otherwise `gravity` is the value
-    /// in the last step.
+    /// Rotation of the direction of gravity. `None` if gravity keeps its direction. Otherwise the field `gravity`
+    /// contains the gravity of the last step, or the present gravity if the parameter `tilt` has changed since then.
     pub gravity_turn: Option<TurningGravity>,
     /// Periodic borders of the world. `None` if it has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -107,8 +107,9 @@ impl World {
         !self.motions.is_empty() || self.boundaries.iter().any(Boundary::moves_by_itself)
     }
 
-    /// Returns the shortest vector (m) from any periodic image of one point to another point, if `offset` is the
-    /// vector between the two points. Without periodic borders it is `offset` itself.
+    /// Returns the shortest vector (m) to a point from another point or any periodic image of this other point.
+    /// `offset` is the vector (m) to the first point from the other point itself. Without periodic borders the result
+    /// is `offset`.
     #[inline(always)]
     pub(crate) fn shortest(&self, offset: DVec2) -> DVec2 {
         match self.periodic {
@@ -118,7 +119,7 @@ impl World {
     }
 
     /// Returns the speed along x, m/s, of the periodic image of grain `j` that is nearest to grain `i`, relative to
-    /// grain `j` itself. 0 without sheared borders.
+    /// grain `j` itself. It is 0 if no periodic border is sheared, that is, if images do not move along the borders.
     #[inline]
     pub(crate) fn speed_of_image(&self, i: usize, j: usize) -> f64 {
         let places = &self.grains.positions;
@@ -126,7 +127,8 @@ impl World {
     }
 
     /// Moves all discs that have left the periodic cell back into it, on the opposite side. Returns the work done on
-    /// the grains, J, because crossing a sheared border changes the velocity of a grain.
+    /// the grains, J. It is 0 except for sheared borders, beyond which the images of grains move along the border: a
+    /// grain that crosses such a border takes the velocity of its image.
     pub(crate) fn wrap(&mut self) -> f64 {
         let Some(periodic) = self.periodic else { return 0.0 };
         let mut work = 0.0;

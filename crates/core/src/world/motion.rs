@@ -78,7 +78,7 @@ pub enum MotionCourse {
         #[serde(default, skip_serializing_if = "is_zero")]
         phase: f64,
     },
-    /// Oscillation about a pivot. The angle depends on time like the displacement of [`MotionCourse::Sine`].
+    /// Oscillation about a pivot. The angle at time t is amplitude · (sin(2π·frequency·t + phase) − sin(phase)).
     Swing {
         /// Position of the pivot, m.
         pivot: DVec2,
@@ -299,8 +299,8 @@ impl Drive {
         self.force.unwrap_or_else(|| self.pressure.unwrap_or(0.0) * width.unwrap_or(0.0))
     }
 
-    /// Returns the size of the periodic cell perpendicular to the direction of the drive, m. `None` if the cell is not
-    /// periodic in this direction or if the drive is not along the x or y axis.
+    /// Returns the size of the periodic cell perpendicular to the direction of the drive, m. `None` if the drive is not
+    /// along the x or y axis, or if the cell has no periodic borders along the other axis.
     pub(super) fn period_across(&self, periodic: Option<Periodic>) -> Option<f64> {
         let [width, height] = periodic?.periods();
         let DVec2 { x, y } = self.direction;
@@ -361,22 +361,24 @@ impl RigidVelocity {
     }
 
     /// Returns the mean velocity, m/s, in the next `secs` seconds, of the point of the rigid body that is now at c =
-    /// `place`: (R − 1)(c − p)/Δt, with the pivot p, the time Δt = `secs` and the rotation R during this time.
+    /// `place`: (R − 1)(c − p)/Δt, with the pivot p (m), the time Δt = `secs` (s) and the rotation matrix R of this
+    /// time; 1 is the unit matrix. If the body does not rotate, it is the velocity of the translation.
     #[inline]
     pub(crate) fn mean_from(&self, place: DVec2, secs: f64) -> DVec2 {
         self.mean(place, secs, -1.0)
     }
 
     /// Returns the mean velocity, m/s, in the last `secs` seconds, of the point of the rigid body that is now at c =
-    /// `place`: (1 − R⁻¹)(c − p)/Δt, with the pivot p, the time Δt = `secs` and the rotation R during this time.
+    /// `place`: (1 − R⁻¹)(c − p)/Δt, with the pivot p (m), the time Δt = `secs` (s) and the rotation matrix R of this
+    /// time; 1 is the unit matrix. If the body does not rotate, it is the velocity of the translation.
     #[inline]
     pub(crate) fn mean_until(&self, place: DVec2, secs: f64) -> DVec2 {
         self.mean(place, secs, 1.0)
     }
 
     /// Returns the mean velocity of the point of the rigid body that is now at `place`, m/s: over the next `secs`
-    /// seconds if `sign` is −1, and over the last `secs` seconds if `sign` is +1. The sign determines if the component
-    /// along the radius points towards the pivot or away from it.
+    /// seconds if `sign` is −1, and over the last `secs` seconds if `sign` is +1. In a rotation the mean velocity has a
+    /// component along the radius, towards the pivot for −1 and away from it for +1.
     fn mean(&self, place: DVec2, secs: f64, sign: f64) -> DVec2 {
         if self.spin == 0.0 {
             return self.velocity;

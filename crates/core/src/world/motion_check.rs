@@ -8,8 +8,8 @@ use glam::DVec2;
 use super::{Boundary, Drive, Motion, MotionCourse, Periodic};
 use crate::error::{self, Error, Result};
 
-/// Checks that the numbers of all motions are valid and that the motions are compatible with the boundaries, the
-/// number of fixed discs, the number of axes and the periodic borders of a scene.
+/// Checks that the numerical values of all motions are valid and that the motions are compatible with the boundaries,
+/// the number of fixed discs, the number of axes and the periodic borders of a scene.
 pub(super) fn check_motions(
     motions: &[Motion],
     boundaries: &[Boundary],
@@ -153,8 +153,8 @@ pub(super) fn check_table(
 }
 
 impl Drive {
-    /// Checks the numbers of a drive (a force or pressure that moves boundaries). `field` is the name of the drive in
-    /// error messages.
+    /// Checks the numerical values of a drive (a force or pressure that moves boundaries or fixed discs). `field` is
+    /// the name of the drive in error messages.
     fn check(&self, field: &str, periodic: Option<Periodic>) -> Result<()> {
         let refuse = |name: &str, found: String, allowed: &str| {
             Err(Error::value(format!("{field}.{name}"), found, allowed))

@@ -5,7 +5,8 @@ use crate::number::is_zero;
 use crate::setting::{settings, words};
 
 words! {
-    /// The part of the normal force that bounds the friction force T (Abramian & Staron 2020 can be read in both ways).
+    /// The part of the normal force that bounds the friction force T: N + C₀, or only a pushing N (N: normal force, C₀:
+    /// cohesion force, μ: friction coefficient). The text of Abramian & Staron (2020) allows both readings.
     #[derive(Default)]
     pub enum FrictionCone {
         #[default]
@@ -110,9 +111,9 @@ settings! {
             "Part of the normal force that bounds friction", {
             needs: Needs::Friction,
         }
-        /// The moment M (N·m) of a contact obeys |M| ≤ μ_r R N, with the coefficient of rolling friction μ_r, the
-        /// reduced radius R (m) of the two bodies from 1/R = 1/r_i + 1/r_j, and that part N (N) of the normal force
-        /// that bounds friction.
+        /// A contact transmits a moment M (N·m) against rolling, with |M| ≤ μ_r R F. μ_r is the coefficient of rolling
+        /// friction, R (m) the reduced radius of the two bodies, from 1/R = 1/r_i + 1/r_j with their radii r_i and r_j,
+        /// and F (N) the part of the normal force that bounds friction.
         #[serde(default, skip_serializing_if = "is_zero")]
         rolling_friction: f64 = 0.0, "rolling-friction" ("MU_R"),
             "Rolling friction of moreau, at least 0: the largest moment against rolling, divided by the reduced radius \
@@ -320,7 +321,7 @@ impl Parameters {
     }
 
     /// Returns the capture speed Bond·a·Δt, m/s: the opening speed that one step of cohesion cancels (Abramian & Staron
-    /// 2020, eq. 9; a: acceleration of cohesion, Δt: time step).
+    /// 2020, eq. 9; a: gravity of the scene, or the parameter `bond_acceleration` if it is given; Δt: time step).
     pub fn capture_speed(&self, gravity_magnitude: f64) -> f64 {
         self.bond * self.cohesion_acceleration(gravity_magnitude) * self.time_step_secs
     }

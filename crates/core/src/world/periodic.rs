@@ -1,9 +1,9 @@
-//! Periodic cells: opposite borders are identified, so that a grain that leaves on one side re-enters on the other.
+//! Periodic cells: copies of the cell (periodic images) continue it beyond its borders, so that a grain that leaves on
+//! one side re-enters on the opposite side.
 //!
-//! **Sheared borders.** The cells above and below slide along x, so that the grains flow without walls (A. W. Lees,
-//! S. F. Edwards, *The computer study of transport processes under extreme conditions*, J. Phys. C 5, 1972). The cell
-//! k heights above the cell of the simulation is shifted by k·s along x (m), and moves along x at the speed k·U
-//! (m/s):
+//! **Sheared borders.** The images of the cell above and below it slide along x, so that the grains flow without walls
+//! (A. W. Lees, S. F. Edwards, *The computer study of transport processes under extreme conditions*, J. Phys. C 5,
+//! 1972). The image k heights above the cell is shifted by k·s along x (m), and moves along x at the speed k·U (m/s):
 //!
 //! > U = γ̇ L_y,  ds/dt = U,  and s is equivalent to s − L_x,
 //!
@@ -36,8 +36,8 @@ pub struct Periodic {
     /// the height of the cell. 0 if the borders are not sheared.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub shear_rate: f64,
-    /// Present shift along x of the periodic image of the cell directly above, m. In a scene it is at most one width
-    /// of the cell to either side.
+    /// Present shift along x of the periodic image of the cell directly above, m; 0 if this image is not shifted. The
+    /// shift changes with time if `shear_rate` is not 0. In a scene it is at most one width of the cell to either side.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub shift: f64,
 }
@@ -96,9 +96,9 @@ impl Periodic {
         DVec2::new(periods_in(self.x, offset.x), periods_in(self.y, offset.y))
     }
 
-    /// Returns the displacements (m) from a shape to those of its periodic images, other than the shape itself, that
-    /// extend into the cell. The arguments are the corners of the bounding box of the shape. A shape that is inside
-    /// the cell, except for rounding, has no such images.
+    /// Returns the displacements (m) by which periodic images of a shape differ from the shape, for all images that
+    /// extend into the cell. The shape itself is not one of them. The arguments are the corners of the bounding box of
+    /// the shape. A shape that is inside the cell, except for rounding, has no such images.
     pub fn images(self, [low, high]: [DVec2; 2]) -> impl Iterator<Item = DVec2> {
         let middle = 0.5 * (low.x + high.x);
         let along_y = reaching(self.y, [low.y, high.y]).into_iter().flatten();
@@ -165,8 +165,8 @@ pub(super) fn shortest(borders: Option<[f64; 2]>, offset: f64) -> f64 {
     })
 }
 
-/// Returns the displacements (m) along one axis from an interval to those of its periodic images that overlap the
-/// cell. The first displacement is 0, for the interval itself.
+/// Returns the displacements (m) along one axis by which periodic images of an interval differ from the interval, for
+/// all images that overlap the cell. The first displacement is 0, for the interval itself.
 fn reaching(borders: Option<[f64; 2]>, [from, to]: [f64; 2]) -> [Option<f64>; 3] {
     let over = borders.map_or([None; 2], |[low, high]| {
         let period = high - low;
@@ -202,8 +202,9 @@ impl Periodic {
         }
     }
 
-    /// Returns `offset` (m) minus the shift along x that sheared borders contribute to it: the shift from one cell to
-    /// the next, times the number of whole cell heights in the offset.
+    /// Returns `offset` (m) without the shift along x that comes from sheared borders, beyond which the periodic images
+    /// of the cell are shifted along x. The removed shift is the shift from one image to the next, times the number of
+    /// whole cell heights in the offset.
     #[inline]
     pub(super) fn upright(self, offset: DVec2) -> DVec2 {
         DVec2::new(offset.x - self.lean(periods_in(self.y, offset.y)), offset.y)

@@ -55,8 +55,9 @@ impl Periodic {
         Ok(())
     }
 
-    /// Checks sheared borders: the shear rate and the shift must be finite, both axes must be periodic, the physics
-    /// must include friction and rotation, and there must be no boundaries or fixed discs.
+    /// Checks sheared borders, beyond which the periodic images of the cell move along x or are shifted along x: the
+    /// shear rate and the shift must be finite, both axes must be periodic, the physics must include friction and
+    /// rotation, and there must be no boundaries or fixed discs.
     fn check_shear(self, fixed_bodies: usize, physics: Physics) -> Result<()> {
         let Self { shear_rate, shift, .. } = self;
         let numbers = [("periodic.shear_rate", shear_rate), ("periodic.shift", shift)];
