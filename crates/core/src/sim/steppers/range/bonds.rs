@@ -4,10 +4,10 @@
 //! opens after the shocks of the step, and the load J, the change of this speed by all other forces in the step. So a
 //! step is solved several times, always with the same solver and the same contacts.
 //!
-//! 1. **Shocks** (`range::shocks`) give v. Bonds have no effect in a shock, because it takes no time and their force is
-//!    finite.
-//! 2. **The step** is solved from the velocities after the shocks, with gravity. Each bond may pull with the impulse
-//!    C₀Δt at most.
+//! 1. **Shocks** (collisions, `range::shocks`) give v. Bonds have no effect in a shock, because it takes no time and
+//!    their force is finite.
+//! 2. **The step** is solved from the velocities after the shocks, with gravity. Each bond may pull at most with the
+//!    impulse C₀Δt (cohesion force C₀, time step Δt).
 //! 3. **Breaks.** The solution gives the loads. A bond that would open by the debonding distance δ_c before the end of
 //!    the step breaks: its bound becomes the impulse of its force C₀ until it breaks. The step is solved again,
 //!    starting from the present solution, until no bound decreases any more. Bounds never increase, so this process
@@ -34,8 +34,9 @@ use crate::solver::{Model, RowVelocities, SolveReport, StepProblem, for_each_row
 /// them again.
 const MOST_ROUNDS: u32 = 8;
 
-/// Fraction of the strength of bonds in the search for restless bonds: a bond counts as restless (about to break) if it
-/// would break in the step with only this fraction of its strength.
+/// Fraction of the cohesion force of bonds in the search for restless bonds: a bond counts as restless (about to break)
+/// if it would break in the step with only this fraction of its force. With a larger value, fewer bonds count as
+/// restless, so fewer steps are divided.
 const STRENGTH_OF_RESTLESS_BONDS: f64 = 0.5;
 
 /// Largest motion of a grain in a step that counts as rest, in debonding distances δ_c. With a larger value, the slow
@@ -55,15 +56,15 @@ pub(in crate::sim) struct RangeMemory {
     lowered: Vec<(usize, f64)>,
     /// True if bonds were about to break in the last step.
     pub restless: bool,
-    /// Longest time step, s, whose substeps are short enough to follow the bonds that were about to break; `None` if
-    /// the last step was not longer.
+    /// Longest time step, s, for which the largest number of substeps (sixteen) is enough to follow the bonds that were
+    /// about to break; `None` if the last step was not longer than this time.
     #[serde(skip)]
     pub longest_step_secs: Option<f64>,
 }
 
-/// Solves the prepared contact problem of a step: first its shocks (collisions), then the step with its bonds. Updates
-/// the bonds, but does not move the grains, and returns the results. If `may_break` is false and a bond is about to
-/// break, returns only the report of the solves, as an error.
+/// Solves the contact problem that `range::prepare` has set up: first its shocks (collisions), then the step with its
+/// bonds. Updates the bonds, but does not move the grains, and returns the results. If `may_break` is false and a bond
+/// is about to break, returns only the report of the solves, as an error.
 pub(super) fn solve_range<M: Model>(
     stage: &mut Stage<'_, M>,
     remembered: &mut RangeMemory,
@@ -99,24 +100,26 @@ pub(super) fn solve_range<M: Model>(
     Ok(result)
 }
 
-/// Opening (change of the gap) of a bonded pair in a step or, if a shock closed the bond, in the rest of the step after
-/// that shock.
+/// Opening (change of the gap) of a bonded pair in a step or, if a shock (collision) closed the bond, in the rest of
+/// the step after that shock.
 struct BondOpening {
-    /// Fraction of the step that this opening covers: 1, or less if a shock closed the bond within the step.
+    /// Fraction of the step that this opening covers: 1, or less if a shock (collision) closed the bond within the
+    /// step.
     part: f64,
-    /// True if a shock closed the bond in this step.
+    /// True if a shock (collision) closed the bond in this step.
     is_closed: bool,
-    /// Opening speed v at the beginning of the step, or just after the shock that closed the bond, m/s.
+    /// Opening speed v at the beginning of the step, or just after the shock (collision) that closed the bond, m/s.
     speed: f64,
-    /// Load J: change of the opening speed by all forces except the bond's own, m/s.
+    /// Load J: change of the opening speed by all forces except the force of the bond itself, m/s.
     load: f64,
     /// Impulse of the bond itself, divided by the effective mass, m/s.
     impulse: f64,
 }
 
 impl BondOpening {
-    /// Computes the opening of the bond of contact `number` in a solved step. All forces except the bond's own are
-    /// constant over the step, so their impulse in a fraction of the step is that fraction of their whole impulse.
+    /// Computes the opening of the bond of contact `number` in a solved step. All forces except the force of the bond
+    /// itself are constant over the step, so their impulse in a fraction of the step is that fraction of their whole
+    /// impulse.
     fn of<M: Model>(
         problem: &StepProblem<M>,
         number: usize,
@@ -138,14 +141,14 @@ impl BondOpening {
         }
     }
 
-    /// Returns the mean opening speed (v + v^n)/2, m/s: v is the speed at the beginning and v^n the speed at the end.
+    /// Returns the mean (v + v^n)/2 of the opening speeds v at the beginning and v^n at the end of this opening, m/s.
     fn opening_speed(&self) -> f64 {
         self.speed + 0.5 * (self.load + self.impulse)
     }
 }
 
-/// Updates the stretch and the state of all bonds after a solved step, and returns their energies. `bonds` contains one
-/// bond per contact.
+/// Updates the stretch of all bonds, and whether they exist, after a solved step. Returns the energies of the bonds.
+/// `bonds` contains one bond per contact.
 fn update_bonds<M: Model>(
     problem: &StepProblem<M>,
     bonds: &mut [Bond],
@@ -194,7 +197,7 @@ struct BondLimits<'a> {
 
 impl BondLimits<'_> {
     /// True if bonds are about to break in a solved step. `fastest` is the speed of the fastest grain or wall at the
-    /// beginning of the step, m/s. The function uses `lowered` as work space.
+    /// beginning of the step, m/s. The function overwrites `lowered`, which it uses as work space.
     fn is_restless<M: Model>(
         &self,
         problem: &StepProblem<M>,
@@ -221,9 +224,9 @@ impl BondLimits<'_> {
         speed <= still
     }
 
-    /// Finds the bonds that would break before the end of the step if they had only `strength` times their strength.
-    /// Fills `lowered` with the numbers of their contacts and the new bounds of their impulses, divided by the
-    /// effective mass (m/s).
+    /// Finds the bonds that would break before the end of the step if their cohesion force were multiplied by
+    /// `strength` (a number up to 1). Fills `lowered` with the numbers of their contacts and the new bounds (largest
+    /// impulses) of the bonds, divided by the effective mass (m/s).
     fn lowered<M: Model>(
         &self,
         problem: &StepProblem<M>,
@@ -254,7 +257,8 @@ impl BondLimits<'_> {
     }
 }
 
-/// Lowers the bounds on the impulses of bonds that break before the end of the step to the bounds in `lowered`.
+/// Lowers the bounds (largest impulses) of the bonds that break before the end of the step to the values in `lowered`,
+/// m/s: impulses divided by the effective mass.
 fn shorten<M: Model>(problem: &mut StepProblem<M>, lowered: &[(usize, f64)]) {
     for &(number, bound) in lowered {
         let before = std::mem::replace(&mut problem.rows.captures[number], bound);

@@ -1,18 +1,18 @@
-//! Stepper `range`: a step under the contact law `range` (`contact::range`). Pairs that may meet become contacts before
-//! they touch. The step is solved with its bonds (`range::bonds`), in substeps if bonds break or grains move far. Then
-//! overlaps are pushed out.
+//! Stepper `range`: a step under the contact law `range` (`contact::range`). Pairs that may meet within the step become
+//! contacts before they touch. The step is solved with its bonds (`range::bonds`), in substeps if bonds break or grains
+//! move far. Then remaining overlaps are removed by moving the grains apart.
 //!
 //! **Substeps** are needed for two reasons.
 //!
-//! * The step is long compared with the time √(2δ_c m_ij/C₀) in which a bond breaks (debonding distance δ_c, cohesion
-//!   force C₀), and bonds are restless, that is about to break (`range::bonds`). A pile at rest, or without restless
-//!   bonds, is solved in one full step. The next step is divided without first trying a full step if bonds were
-//!   restless in the previous step, undivided or in any of its substeps, or if bonded pairs circle fast
-//!   ([`circling_looks_like_a_shock`]). If even sixteen substeps are too long for a break, the step reports this with
-//!   the longest step that would suffice (`sim::alarm`).
+//! * The step is long compared with the time √(2δ_c m_ij/C₀) in which the pull of a bond alone would open or close it
+//!   by the debonding distance δ_c (cohesion force C₀, effective mass m_ij), and bonds are restless, that is about to
+//!   break (`range::bonds`). A pile at rest, or without restless bonds, is solved in one full step. The next step is
+//!   divided without first trying a full step if bonds were restless in the previous step, undivided or in any of its
+//!   substeps, or if the two grains of a bond circle each other fast ([`circling_looks_like_a_shock`]). If even sixteen
+//!   substeps are too long for a break, the step reports this with the longest step that would suffice (`sim::alarm`).
 //! * Grains move far. A contact keeps its normal from the beginning of the step, so the constraint v_n + gap/Δt ≥ 0
-//!   also stops a grain that would have passed another grain. In piles without cohesion, this is the only reason for
-//!   substeps; without them such a pile would slump too little at a large Δt.
+//!   (normal velocity v_n, time step Δt) also stops a grain that would have passed another grain. In piles without
+//!   cohesion, this is the only reason for substeps; without them such a pile would slump too little at a large Δt.
 
 mod bonds;
 mod shocks;
@@ -36,21 +36,21 @@ use crate::solver::{Approach, Model, SolveReport};
 /// first distance within the step and is now below the second distance.
 const AHEAD_IN_DIAMETERS: [f64; 2] = [0.25, 2.0];
 
-/// Longest substep while bonds are restless (about to break), in units of the time in which a bond breaks. With a
-/// larger value, weakly bonded piles do not fall at a large Δt, because a load reaches only the next bond in each
-/// substep; a smaller value costs more.
+/// Longest substep while bonds are restless (about to break), in units of the time in which the pull of a bond alone
+/// would open or close it by the debonding distance. With a larger value, weakly bonded piles do not fall at a large
+/// time step, because a load reaches only the next bond in each substep; a smaller value costs more.
 const SUBSTEP_IN_BOND_TIMES: f64 = 0.4;
 
 /// Longest distance that a grain moves in a substep, in mean diameters, unless this needs more than [`MOST_SUBSTEPS`]
-/// substeps. With a larger value a pile slumps too little at a large Δt; a smaller value costs more.
+/// substeps. With a larger value a pile slumps too little at a large time step; a smaller value costs more.
 const MOST_TRAVEL: f64 = 0.1;
 
-/// Largest number of substeps into which a step is divided. With more substeps, a step would no longer be comparable to
-/// a step with the requested time step.
+/// Largest number of substeps into which a step is divided. With more substeps, a step would be solved so much more
+/// finely than requested that its result would no longer be comparable to a step of the requested length.
 const MOST_SUBSTEPS: f64 = 16.0;
 
-/// Returns the distances within which the present step searches for contacts. They are sufficient if no grain becomes
-/// faster than the fastest grain or wall, except by gravity and body forces.
+/// Returns the distances within which the present step searches for contacts. The distances are sufficient if no grain
+/// becomes faster than the fastest grain or wall, except by gravity and body forces.
 fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     let world = &state.world;
     let travel = travel(state, time_step_secs);
@@ -68,12 +68,13 @@ fn travel(state: &State, time_step_secs: f64) -> f64 {
 /// Decision on how a step is divided into substeps.
 struct StepCut {
     substeps: u32,
-    /// True if bonded pairs circle so fast that an undivided step would separate them.
+    /// True if the two grains of a bond circle each other so fast that an undivided step would separate them.
     circling: bool,
-    /// True if the step is first tried undivided.
+    /// True if the step is first tried undivided; if bonds turn out to be about to break, it is then solved in
+    /// substeps.
     whole_first: bool,
-    /// Longest time step, s, whose substeps are short enough to follow a bond that breaks; `None` if the present step
-    /// is not longer.
+    /// Longest time step, s, for which [`MOST_SUBSTEPS`] substeps are enough to follow a bond that breaks; `None` if
+    /// the present time step is at most this long.
     longest_step_secs: Option<f64>,
 }
 
@@ -103,7 +104,7 @@ impl StepCut {
     }
 }
 
-/// Takes a step, undivided or in substeps. The comment at the top of this file explains when a step is divided.
+/// Takes a step: undivided, or in substeps if bonds are about to break or grains move far.
 pub(super) fn advance<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -134,8 +135,8 @@ pub(super) fn advance<M: Model>(
     result
 }
 
-/// Computes the shocks with which the next step begins, and sets up the first contact problem with gravity and bonds
-/// that follows them.
+/// Computes the shocks (collisions) with which the next step begins. Then sets up the first contact problem after these
+/// shocks, with gravity and bonds.
 pub(super) fn set_up<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -149,8 +150,8 @@ pub(super) fn set_up<M: Model>(
     shocks::pass(stage, &mut memory.shocks, &first);
 }
 
-/// Detects the contacts and sets up the contact problem of a step. Under its law a gap may close by no more than its
-/// size; the bounces are computed separately, with the shocks.
+/// Detects the contacts and sets up the contact problem of a step, in which a gap may close by no more than its size.
+/// Bounces are computed separately, with the shocks (collisions).
 pub(super) fn prepare<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     let time_step_secs = settings.parameters.time_step_secs;
     let touch = TOUCH_IN_DIAMETERS * stage.world().mean_diameter;
@@ -159,8 +160,8 @@ pub(super) fn prepare<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     stage.prepare_ahead(settings, ahead, rebound);
 }
 
-/// Solves the prepared problem with its bonds and moves the grains. If `may_break` is false and a bond is about to
-/// break, returns the report of the solves as an error and moves no grain.
+/// Solves the contact problem that [`prepare`] has set up, with its bonds, and moves the grains. If `may_break` is
+/// false and a bond is about to break, moves no grain and returns the report of the solves as an error.
 fn try_step<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -175,12 +176,14 @@ fn try_step<M: Model>(
     Ok(result)
 }
 
-/// Number of passes over the contacts that separate overlapping grains after a step. Each pass moves an overlap at
-/// least one layer of grains further.
+/// Largest number of passes over the contacts that move overlapping grains apart after a step. A pass that separates a
+/// pair may push its grains into other grains, so an overlap moves through the pile, by at least one layer of grains
+/// per pass.
 const PASSES: u32 = 8;
 
-/// Separates overlapping grains by a few passes over the contacts. No overlap needs to remain, because under this law
-/// bonds exist without overlap.
+/// Moves grains apart that overlap by more than [`TOUCH_IN_DIAMETERS`] mean diameters, in at most [`PASSES`] passes
+/// over the contacts. No larger overlap needs to remain, because under the contact law `range` bonds exist without
+/// overlap.
 pub(super) fn separate<M: Model>(state: &mut State) {
     let State { world, contacts, candidates, .. } = state;
     let allowed = TOUCH_IN_DIAMETERS * world.mean_diameter;
@@ -192,13 +195,13 @@ pub(super) fn separate<M: Model>(state: &mut State) {
 }
 
 /// Largest opening speed that the rotation of a bonded pair may cause in a step, divided by the escape speed of the
-/// bond (the smallest opening speed after a shock at which the bond breaks). With a larger value, circling pairs
-/// separate too early; with a smaller value, steps are divided in vain.
+/// bond (the smallest opening speed after a collision at which the bond breaks). With a larger value, grains that
+/// circle each other separate too early; with a smaller value, steps are divided without need.
 const MOST_OF_ESCAPE_SPEED: f64 = 0.5;
 
-/// True if a bonded pair circles so fast that a step of this length would treat the rotation of the contact normal as a
-/// shock. `pull` is the cohesion force divided by the effective mass, C₀/m_ij, m/s², and `distance` is the debonding
-/// distance δ_c, m.
+/// True if the two grains of a bond circle each other so fast that a step of this length would treat the rotation of
+/// the contact normal as a shock (a sudden change of velocity). `pull` is the cohesion force divided by the effective
+/// mass, C₀/m_ij, m/s², and `distance` is the debonding distance δ_c, m.
 ///
 /// **Why such pairs need substeps.** A step takes the contact normal from its beginning. If two grains circle each
 /// other with the tangential velocity v_t, with their centres at the distance L, the normal turns by v_tΔt/L in a step.

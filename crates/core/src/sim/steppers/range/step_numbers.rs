@@ -1,17 +1,19 @@
-//! Constants that the shocks and bonds of a step under the law `range` need.
+//! Constants that the calculation of shocks (collisions) and bonds needs in a step under the contact law `range`.
 
 use crate::contact::range::TOUCH_IN_DIAMETERS;
 use crate::sim::settings::Settings;
 use crate::world::{Parameters, World};
 
-/// Constants that the shocks and bonds of a step need: parameters, time step and lengths in metres.
+/// Constants that the calculation of shocks (collisions) and bonds needs in a step: parameters, time step and lengths
+/// in metres.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StepNumbers {
     pub parameters: Parameters,
     pub time_step_secs: f64,
     /// Debonding distance δ_c, m: the stretch at which a bond breaks.
     pub debonding_distance: f64,
-    /// Touch tolerance, m: smaller gaps count as zero.
+    /// Gap, m, up to which a pair counts as touching: [`TOUCH_IN_DIAMETERS`] mean diameters. The setting
+    /// `touch-tolerance` does not change it.
     pub touch: f64,
     /// Gravitational acceleration g, m/s².
     gravity_magnitude: f64,
@@ -30,9 +32,9 @@ impl StepNumbers {
         }
     }
 
-    /// Returns the term ρ u (restitution ρ) that the law of a shock adds to the normal velocity of a contact, m/s.
-    /// `closing` is the normal velocity u before the shock, below 0. The term is 0 for shocks slower than the
-    /// restitution threshold.
+    /// Returns the term ρ u, m/s, that is added to the normal velocity of a contact in the law of collisions, with the
+    /// coefficient of restitution ρ. `closing` is the normal velocity u before the collision, m/s, below 0. The term is
+    /// 0 if the contact closes more slowly than the restitution threshold.
     pub(super) fn rebound(&self, closing: f64) -> f64 {
         self.parameters.restitution_velocity(closing, self.gravity_magnitude)
     }

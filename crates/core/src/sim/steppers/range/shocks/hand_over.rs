@@ -1,4 +1,5 @@
-//! Passes the results of the shocks on to the contact problem of the step.
+//! Passes the results of the shocks (instantaneous collisions at the beginning of a step) on to the contact problem of
+//! the step.
 
 use glam::DVec2;
 
@@ -14,28 +15,32 @@ use crate::world::World;
 pub(in super::super) struct ClosedBond {
     /// Time from the shock to the end of the step, divided by the time step.
     pub part: f64,
-    /// Velocity that gravity had given the pair by the time of the shock, m/s.
+    /// Normal velocity that gravity had added, between the beginning of the step and the shock, to a grain that falls
+    /// on a fixed body, m/s; 0 for other pairs.
     pub gained: f64,
 }
 
 impl Shocks {
-    /// Changes the contact problem of a step so that it continues from the shocks. Bodies begin with their velocities
-    /// after the shocks, v⁺. Each contact may close the gap that the pair would have if its bodies had moved with their
-    /// present velocities since the beginning of the step.
+    /// Changes the contact problem of a step so that it continues from the shocks (instantaneous collisions). Bodies
+    /// begin with their velocities v⁺ after the shocks. Each contact may close a gap that is computed backwards: the
+    /// gap that the pair would have had at the beginning of the step, if its bodies had moved with their present
+    /// velocities since then.
     ///
-    /// **Grains that pass by.** The constraint on a gap uses the speed along the normal at the beginning of the step,
-    /// so it stops a grain that would have passed another grain. If the constraint would act although the two grains do
-    /// not meet, it uses the tangent of the gap at the end of the step instead. Then v⁺ itself satisfies every contact.
+    /// **Grains that pass by.** The constraint on a gap uses the contact normal at the beginning of the step, so it
+    /// stops a grain that would have passed another grain. If the constraint would act although the two grains do not
+    /// meet, the code replaces it by a constraint with the normal and the gap that the pair will have at the end of the
+    /// step. Then v⁺ itself satisfies every contact.
     ///
-    /// **No contact has to open.** A pair that was struck at the time t opens from then on, as if from a gap of −t
-    /// v_n⁺. To end the step without any overlap, its v_n would have to be above 0, but other contacts that hold the
-    /// pair may not allow that. Then v = 0 would no longer satisfy every contact, and a cluster with many struck
+    /// **No contact has to open.** A pair that was struck at the time t has the normal velocity v_n⁺ from then on, as
+    /// if it had opened from a gap of −t v_n⁺ since the beginning of the step. To end the step without any overlap, its
+    /// normal velocity v_n at the end of the step would have to be above 0, but other contacts that confine the pair
+    /// may not allow that. Then velocities of 0 would no longer satisfy every contact, and a cluster with many struck
     /// contacts would often have no solution. So only v_n ≥ 0 is required, and the remaining overlap of at most t v_n⁺
-    /// is pushed out (`range::separate`).
+    /// is removed by moving the grains apart (`range::separate`).
     ///
-    /// **Gaps below the touch tolerance count as zero**, after a shock as before it. Otherwise gaps of the size of
-    /// rounding between touching grains would require contacts to open or close by less than the tolerance of the
-    /// solver.
+    /// **Gaps below `TOUCH_IN_DIAMETERS` mean diameters count as zero**, after a shock as before it. Otherwise gaps of
+    /// the size of rounding between touching grains would require contacts to open or close by less than the tolerance
+    /// of the solver.
     pub(super) fn hand_over<M: Model>(
         &mut self,
         problem: &mut StepProblem<M>,
@@ -71,8 +76,9 @@ impl Shocks {
         }
     }
 
-    /// Returns the closing speed that a contact may have after the shocks, m/s, relative to a moving wall, and the new
-    /// contact normal if the normal has changed. Returns `None` if neither the speed nor the normal has changed.
+    /// Returns the closing speed that a contact may have at the end of the step after the shocks (collisions), m/s,
+    /// relative to the wall if the other body is a moving wall, and the new contact normal if the normal has changed.
+    /// Returns `None` if neither the speed nor the normal has changed.
     fn closing_left<M: Model>(
         &self,
         at: &ShockInputs<'_, M>,
@@ -109,16 +115,17 @@ impl Shocks {
     }
 
     /// Returns two capture speeds (opening speeds that the bond of a contact can stop), m/s: the value before the
-    /// shocks, and the value for the rest of the step after a shock has closed the bond. Returns `None` if no shock has
-    /// closed the bond.
+    /// shocks (collisions) of the step, and the value for the rest of the step after a shock has closed the bond.
+    /// Returns `None` if no shock has closed the bond.
     fn capture_left<M: Model>(&self, problem: &StepProblem<M>, number: usize) -> Option<[f64; 2]> {
         let before = *problem.rows.captures.get(number)?;
         let ClosedBond { part, .. } = self.closed(number)?;
         Some([before, part * problem.law.capture_speed()])
     }
 
-    /// Returns the bond of contact `number` if a shock closed this bond; otherwise `None`. A pair that touched and was
-    /// bonded before the shock keeps its bond unchanged.
+    /// Returns the bond of contact `number` if a shock (collision) of this step closed the bond; otherwise `None`. A
+    /// pair that touched and was bonded before the shock keeps its bond unchanged, so for this pair the result is
+    /// `None`.
     pub(in super::super) fn closed(&self, number: usize) -> Option<ClosedBond> {
         let pair = self.pairs.get(number)?;
         let closes = pair.impulse > 0.0 && (pair.touch == Touch::Met || !pair.is_bonded);
@@ -128,18 +135,19 @@ impl Shocks {
         })
     }
 
-    /// True if the pair of contact `number` meets within the step, so that the impulse from the solution of the step
-    /// (without the impulses of shocks) acts on the pair only after the meeting. A pair that met at the time t, and
-    /// whose grains were not struck later, has the gap 0 at t. So its gap at the end of the step is (Δt − t) v^n, with
-    /// its normal velocity v^n at the end of the step, minus ½a(Δt − t)² if its grain falls with the acceleration a.
+    /// True if the pair of contact `number` met within the step and none of its grains was struck after this meeting.
+    /// Then the impulse that the solution of the step gives the pair acts only after the meeting, at the time t: at t
+    /// the gap is 0, and at the end of the step it is (Δt − t) v^n, with the time step Δt and the normal velocity v^n
+    /// at the end of the step. If the grain falls freely with the acceleration a, ½a(Δt − t)² is subtracted from this
+    /// gap.
     fn acts_late(&self, number: usize, i: usize, j: Option<usize>) -> bool {
         let pair = &self.pairs[number];
         pair.touch == Touch::Met && pair.impulse > 0.0 && self.since(i, j) <= pair.struck_at
     }
 
     /// Records the results of a solved step. If a pair met at the time t, the impulse λ of the step on it moves its
-    /// grains only for the rest of the step: by (Δt − t)·λ, and not by Δt·λ, with the time step Δt. Also adds the
-    /// impulses of shocks and step to the sums of the contacts.
+    /// grains only for the rest of the step: by (Δt − t)·λ, and not by Δt·λ, with the time step Δt (λ is divided by the
+    /// effective mass, m/s). Also adds the impulses of shocks and step to the contacts' impulse sums of the step.
     pub(in super::super) fn finish<M: Model>(
         &mut self,
         problem: &StepProblem<M>,
@@ -174,8 +182,8 @@ impl Shocks {
         }
     }
 
-    /// Moves each grain by the difference, caused by shocks and free fall, between its displacement in the step and Δt
-    /// times its velocity at the end.
+    /// Corrects the positions of the grains, which have moved by Δt times their velocities at the end of the step. Adds
+    /// the difference to the true displacement, which is due to shocks within the step and to free fall.
     pub(in super::super) fn shift(&self, world: &mut World) {
         let grains = &mut world.grains;
         for (index, body) in self.bodies.iter().enumerate() {

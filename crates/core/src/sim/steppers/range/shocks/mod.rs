@@ -2,44 +2,49 @@
 //!
 //! Collisions are instantaneous, so gravity and bonds have no effect on them, because their forces are finite. So each
 //! step begins with its shocks: without gravity and cohesion, colliding grains get the velocities that they have after
-//! their collisions. A contact that closes with the normal velocity u⁻ bounces with the restitution ρ and ends with u⁺,
+//! their collisions. A contact that closes with the normal velocity u⁻ (below 0) bounces with the coefficient of
+//! restitution ρ and ends with u⁺, by the normal impulse P_n,
 //!
 //! > 0 ≤ P_n ⟂ u⁺ + ρ u⁻ ≥ 0.
 //!
-//! The step then continues from the velocities v⁺ after the shocks, without bounces.
+//! The step then continues from the bodies' velocities v⁺ after the shocks, without bounces.
 //!
 //! **A pair that meets within the step** bounces within this step, with its full speed u at the meeting, along its
 //! normal at the meeting (`contact::approach`). The alternative would be to slow the pair down so that it closes its
 //! gap in this step and bounces in the next step. Its restitution would then be φρ, where φ is the fraction of the step
-//! in which the gap closes: any value from 0 to ρ. An impulse at the time t changes a velocity by Δv and moves the
-//! grain only for the rest of the step,
+//! in which the gap closes: any value from 0 to ρ. An impulse at the time t changes the velocity of a grain by Δv and
+//! moves the grain only for the rest of the step Δt. So the grain moves from x to
 //!
 //! > x^n = x + Δt v^n − Σ t Δv,
 //!
-//! so that a grain has straight paths before and after the shock, and meets other grains at its actual place. The field
-//! `offset` of a grain is this sum −Σ t Δv. The bond of the pair exists from t on.
+//! with its velocity v^n at the end of the step and the sum over its shocks. It has straight paths before and after a
+//! shock, and meets other grains at its actual place. The field `offset` of a grain is the sum −Σ t Δv. The bond of a
+//! pair that meets exists from the time t on.
 //!
-//! **Sequence.** A pass takes the meetings that are the first for both grains, because a grain that another collision
-//! deflects first does not arrive at its predicted place. The next pass examines the pairs of struck grains again.
-//! Contacts that touch at the time of a meeting and are connected to it are struck together with it, all at once, as
-//! under `moreau`. So in a row of touching balls at rest all balls fly off together, while balls with gaps transmit the
-//! shock and only the last ball flies off. If several meetings at different times reach the same touching grains, all
-//! of them are computed at the first of these times.
+//! **Sequence.** Shocks are computed in passes. A pass takes the meetings that are the first for both grains, because a
+//! grain that another collision deflects first does not arrive at its predicted place. The next pass examines the pairs
+//! of struck grains again. Contacts that touch at the time of a meeting and are connected to it are struck together
+//! with it, all at once, as under `moreau`. So in a row of touching balls at rest all balls fly off together, while
+//! balls with gaps transmit the shock and only the last ball flies off. If several meetings at different times reach
+//! the same touching grains, all of them are computed at the first of these times.
 //!
-//! **Gravity.** An unsupported grain falls on the parabola x + v s + ½a s² (time s, acceleration a), into however many
-//! steps the fall is divided. The displacement by the last velocity alone would exceed the parabola by Δt v^n − ½aΔt²,
-//! so this excess is subtracted. If the grain meets a fixed body at the time t, the closing velocity is u = v_n + a_n
-//! t. The step adds the gravity of the whole step to v⁺, but only gravity after the meeting should count. So v⁺ is
-//! chosen such that v⁺ + a_n t = −ρu. Works are computed with the speeds at the meeting. A grain that is known to be
-//! supported before the step is solved does not fall, so u = v_n.
+//! **Gravity.** An unsupported grain falls on the parabola x + v s + ½a s² (position x and velocity v at the beginning,
+//! time s, acceleration a), into however many steps the fall is divided. The displacement by the last velocity v^n
+//! alone would exceed the parabola by Δt v^n − (Δt v + ½aΔt²) = ½aΔt², so this excess is subtracted. If the grain meets
+//! a fixed body at the time t, the closing velocity is u = v_n + a_n t, with the components v_n and a_n of v and a
+//! along the normal. The step adds the gravity of the whole step to v⁺, but only gravity after the meeting should
+//! count. So v⁺ is chosen such that along the normal v⁺ + a_n t = −ρu. Works are computed with the speeds at the
+//! meeting. A grain that is known to be supported before the step is solved does not fall, so u = v_n.
 //!
-//! **Bonds.** A bond with the stretch s gives the energy C₀s back before its pair meets: u² = v_n² + 2C₀s/m_ij.
+//! **Bonds.** A bond with the cohesion force C₀ that is stretched by s gives the energy C₀s back before its pair meets:
+//! u² = v_n² + 2C₀s/m_ij, with the effective mass m_ij.
 //!
-//! **Why shocks are separate from the step.** If a single problem required both bounces and v_n ≥ 0 of opening
-//! contacts, it might have no solution: two grains that rattle between other grains may both have to separate, but have
-//! no room. In separate problems, v⁺ = −ρ v⁻ of all grains satisfies every contact of the shocks, and v = 0 every
-//! contact of the step. For this, opening contacts have a term in the shocks, too: they may close by ρ v_n⁻, and are
-//! struck by the next pass if they do.
+//! **Why shocks are separate from the step.** If a single problem required bounces of closing contacts and v_n ≥ 0 of
+//! opening contacts (normal velocity v_n), it might have no solution: two grains that rattle between other grains may
+//! both have to separate, but have no room. In separate problems, the velocities −ρ v⁻ of all grains (v⁻: velocities
+//! before the shocks) satisfy every contact of the shocks, and velocities of 0 every contact of the step. For this,
+//! opening contacts have a term in the shocks, too: they may close by ρ v_n⁻, and are struck by the next pass if they
+//! do.
 //!
 //! **Walls driven by a force** take part in no shock, because an impact would change the speed of the wall, and so the
 //! times of all its later meetings. Instead the step itself stops grains that reach such a wall, and the wall's unknown
@@ -69,14 +74,15 @@ use crate::solver::{
 };
 use crate::world::World;
 
-/// Largest number of passes in the calculation of a step's shocks. Contacts that still close after the last pass are
-/// stopped by the solution of the step, without a bounce. With a smaller value, too few contacts bounce if many grains
-/// meet in a step; with a larger value, a wedge of grains that bounces ever faster costs much time.
+/// Largest number of passes in the calculation of a step's shocks. A pass computes a group of collisions that are the
+/// next for their grains. Contacts that still close after the last pass are stopped by the solution of the step,
+/// without a bounce. With a smaller value, too few contacts bounce if many grains meet in a step; with a larger value,
+/// grains that bounce to and fro in a narrowing gap, ever more often, cost much time.
 const MOST_PASSES: u32 = 24;
 
-/// Closing speed, divided by the fastest shock of the step, above which contacts of grains that were struck before are
-/// struck again. With a smaller value, clusters of touching grains need more passes; with a larger value, some of their
-/// contacts do not bounce.
+/// Closing speed, divided by the closing speed of the fastest shock (collision) of the step, above which a contact of a
+/// grain that was struck before in the step counts as another shock. With a smaller value, clusters of touching grains
+/// need more passes; with a larger value, some of their contacts do not bounce.
 const LEAST_AGAIN: f64 = 1e-3;
 
 /// Speed of approach below which a grain rests on a body that it touches, in units of the speed that gravity adds in a
@@ -84,16 +90,18 @@ const LEAST_AGAIN: f64 = 1e-3;
 /// just come down would not have the speed of its fall.
 const RESTS_BELOW: f64 = 2.0;
 
-/// Difference in time, divided by Δt, up to which meetings count as simultaneous, so that symmetric motions stay
-/// symmetric.
+/// Difference in time, divided by the time step, up to which collisions count as simultaneous, so that symmetric
+/// motions stay symmetric.
 const SAME_MOMENT: f64 = 1e-6;
 
 /// Value for a time that is never reached.
 const NEVER: f64 = f64::INFINITY;
 
-/// Computes the shocks of a step. Afterwards the bodies of the contact problem begin with the velocities v⁺ after the
-/// shocks. Returns the works and reports of the shocks, or `None` without shocks. Their `gravity_work` contains, with a
-/// minus sign, the work of gravity before meetings, because the solution of the step counts this work again.
+/// Computes the shocks (instantaneous collisions) of a step. Afterwards the bodies of the contact problem begin with
+/// the velocities after the shocks. Returns the works and reports of the shocks, or `None` without shocks. The field
+/// `gravity_work` of the result is a correction: the solution of the step counts the work of gravity as if grains had
+/// their velocities after the shocks from the beginning of the step, although they moved with other velocities until
+/// their shocks.
 pub(super) fn pass<M: Model>(
     stage: &mut Stage<'_, M>,
     shocks: &mut Shocks,
@@ -131,26 +139,31 @@ struct ShockPair {
     is_bonded: bool,
     /// Stretch of the pair's bond, m.
     stretch: f64,
-    /// Unit normal n, from j to i: at the beginning of the step, or at the last meeting of the pair.
+    /// Unit normal from the second body of the pair to the first body, which is a grain: at the beginning of the step,
+    /// or at the last meeting of the pair.
     normal: DVec2,
-    /// Gap along n at the beginning of the step, m. After a meeting: the value for which [`ShockPair::gap_at`] is 0 at
-    /// the time of the meeting.
+    /// Gap along `normal` at the beginning of the step, m. After a meeting of the pair: the value for which
+    /// [`ShockPair::gap_at`] is 0 at the time of the meeting.
     gap: f64,
     /// Change of the gap because shocks have changed the paths of the two grains, m.
     shift: f64,
-    /// Normal velocity v_n of the pair, relative to the wall if the other body is a moving wall, m/s.
+    /// Relative velocity of the pair along `normal`, m/s, relative to the wall if the other body is a moving wall;
+    /// below 0 if the gap closes.
     speed: f64,
-    /// Acceleration a_n along n of a grain that falls on a fixed disc or a boundary, m/s²; 0 for other pairs.
+    /// Acceleration along `normal` of a grain that falls on a fixed disc or a boundary, m/s²; 0 for other pairs.
     acceleration: f64,
     touch: Touch,
     next: NextImpact,
-    /// Role of the pair in the present pass: struck, connected to a struck pair, or neither.
+    /// Role of the pair in the present pass (group of collisions that are computed together): struck, connected to a
+    /// struck pair, or neither.
     role: Role,
-    /// Sum of the normal impulses of the pair's shocks so far, divided by the effective mass, m/s.
+    /// Sum of the normal impulses of the pair's shocks (collisions) in this step so far, divided by the effective mass,
+    /// m/s.
     impulse: f64,
-    /// Time of the pair's last shock, counted from the beginning of the step, s.
+    /// Time of the pair's last shock (collision), counted from the beginning of the step, s; 0 before its first shock.
     struck_at: f64,
-    /// Velocity that gravity had given the pair by the time of its last shock, m/s.
+    /// Normal velocity that gravity had added, between the beginning of the step and the pair's last shock, to a grain
+    /// that falls on a fixed body, m/s; 0 for other pairs.
     gained: f64,
 }
 
@@ -171,7 +184,7 @@ enum NextImpact {
     /// since.
     Unknown,
     Never,
-    /// The pair touches, and closes from this time (s) on.
+    /// The pair touches, and its two bodies approach each other from this time (s) on.
     Closes(f64),
     /// The pair has a gap that closes: it meets at the time `secs` (s) with the normal `normal`.
     Meets {
@@ -180,27 +193,28 @@ enum NextImpact {
     },
 }
 
-/// Role of a pair in a pass of the calculation of shocks.
+/// Role of a pair in a pass: a group of shocks (collisions) of a step that are computed together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Role {
     Apart,
     /// The pair touches, and is connected through touching pairs to a struck pair.
     Joined,
-    /// The pair is struck: its impact is the next impact of both its grains.
+    /// The pair is struck: the next impact of each of its grains is the impact of this pair.
     Struck,
 }
 
 /// State of a grain in the calculation of a step's shocks.
 #[derive(Clone, Copy, Debug)]
 struct ShockBody {
-    /// Offset −Σ t Δv of the grain's path by its shocks, each a change of velocity Δv at a time t, m. One entry per
-    /// degree of freedom.
+    /// Change of the grain's path by its shocks (collisions), extrapolated back to the beginning of the step, one entry
+    /// per degree of freedom, m: −Σ t Δv, where Δv (m/s) is the change of velocity by a shock at the time t (s).
     offset: [f64; 3],
-    /// Change of the grain's `offset` in the last pass along x and y, m.
+    /// Change of the grain's `offset` along x and y by the last pass (group of shocks) that struck the grain, m.
     shift: DVec2,
-    /// Time of the grain's last shock, s.
+    /// Time of the grain's last shock (collision), counted from the beginning of the step, s; 0 before its first shock.
     since: f64,
-    /// Time of the grain's next shock, s, or [`NEVER`].
+    /// Time of the grain's next shock (collision), counted from the beginning of the step, s; [`NEVER`] if no shock
+    /// follows.
     next: f64,
     struck_in_step: bool,
     struck_in_pass: bool,
@@ -208,55 +222,60 @@ struct ShockBody {
     gain: [f64; 3],
     /// True if the grain does not fall freely, because it rests on a body or is bonded.
     is_supported: bool,
-    /// Displacement of the grain in the step minus Δt times its velocity at the end, m: −½aΔt² for a freely falling
-    /// grain with the acceleration a, and −Σ tλ for the impulses λ of the step on pairs that met at a time t.
+    /// Displacement of the grain in the step minus the time step Δt times its velocity at the end of the step, m,
+    /// without the part `offset` that is due to shocks. For a grain that falls freely with the acceleration a it is
+    /// −½aΔt². A grain of pairs that met within the step has in addition −Σ tλ, where λ (m/s) is the change of its
+    /// velocity by the solution of the step at a pair that met at the time t (s).
     rest_of_way: DVec2,
-    /// Next grain on the path to the representative grain of this grain's cluster. A cluster is a set of grains that
-    /// are struck together.
+    /// Parent of this grain in a union–find structure: following `root` from grain to grain leads to the representative
+    /// grain of the cluster. A cluster is a set of grains that are struck together.
     root: u32,
-    /// Only for the representative grain of a cluster: the time of the cluster's shock, s, and the number of the
-    /// cluster's contacts.
+    /// Only for the representative grain of a cluster (a set of grains that are struck together): the time of the
+    /// cluster's shock, s, and the number of the cluster's contacts.
     cluster: (f64, u32),
 }
 
-/// Data of the shocks of a step. The vectors keep their memory from one step to the next.
+/// Data of the shocks (instantaneous collisions) of a step. The vectors keep their memory from one step to the next.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Shocks {
     numbers: StepNumbers,
     pairs: Vec<ShockPair>,
     bodies: Vec<ShockBody>,
-    /// Impulses of the shocks, N·s, each with the number of its contact and the contact normal.
+    /// Impulses of the shocks (collisions) of the step, N·s, each with the number of its contact and the contact
+    /// normal.
     of_shocks: Vec<(usize, (DVec2, Impulse))>,
     /// Impulses from the solution of the step after the shocks, N·s, one for each contact, with the contact normals.
     of_step: Vec<(DVec2, Impulse)>,
     /// Largest error of a contact's impulse in a step that is solved to its residual tolerance, N·s.
     least: f64,
-    /// Smallest product of effective mass and closing speed with which a touching contact is struck, N·s. It exceeds
-    /// the errors of solves.
+    /// Smallest product of effective mass and closing speed at which a touching contact is struck, N·s. It exceeds the
+    /// errors that the solver's tolerance allows.
     least_momentum: f64,
-    /// Smallest closing speed with which a touching contact is struck, m/s. It exceeds the errors of solves.
+    /// Smallest closing speed at which a touching contact is struck, m/s. It exceeds the errors that the solver's
+    /// tolerance allows.
     least_closing: f64,
-    /// Closing speed of the fastest shock of the step so far, m/s.
+    /// Closing speed of the fastest shock (collision) of the step so far, m/s.
     fastest: f64,
 }
 
-/// Inputs for the calculation of shocks.
+/// Inputs for the calculation of the shocks (collisions) of a step.
 struct ShockInputs<'a, M: Model> {
     problem: &'a StepProblem<M>,
     world: &'a World,
     candidates: &'a Candidates,
 }
 
-/// Returns the grains of contact `number`: grain i, and grain j unless the other body is a fixed disc or a boundary.
+/// Returns the grains of contact `number`: the first body, which is always a grain, and the second body unless it is a
+/// fixed disc or a boundary.
 fn grains<M: Model>(problem: &StepProblem<M>, number: usize) -> (usize, Option<usize>) {
     let row = problem.rows.get(number);
     let is_pair = number >= problem.rows.fixed.len();
     (row.i as usize, is_pair.then_some(row.j as usize))
 }
 
-/// Returns the number by which the residual of a contact problem is divided, N·s: the norm of the normal impulses that
-/// would stop the contacts' normal velocities without contact impulses, including the term that the contact law adds to
-/// the normal velocity.
+/// Returns the denominator of the residual of a contact problem, N·s: the Euclidean norm of a vector with one entry per
+/// contact, its effective mass times the sum of two velocities. These are the normal velocity without contact impulses
+/// and the term that the contact law adds to the normal velocity (for restitution).
 fn scale<M: Model>(problem: &StepProblem<M>) -> f64 {
     let mut squared = 0.0;
     for_each_row(problem, |_, row, motion| {
@@ -280,8 +299,8 @@ fn along_axes<M: Model>(body: &M::Body<f64>) -> DVec2 {
 }
 
 impl ShockBody {
-    /// Creates the state of a grain that no shock has struck yet. `before` is its velocity at the beginning of the
-    /// step, and `free` its velocity after the gravity of the whole step.
+    /// Creates the state of a grain that no shock (collision) has struck yet. `before` is its velocity at the beginning
+    /// of the step, and `free` its velocity after the gravity of the whole step.
     fn untouched<M: Model>(before: &M::Body<f64>, free: &M::Body<f64>) -> Self {
         let [before, free] = [before, free].map(M::coordinates);
         Self {
@@ -369,7 +388,8 @@ impl NextImpact {
 }
 
 impl ShockPair {
-    /// Returns the gap of the pair along its normal at the time `secs` (s), m. The true gap is never smaller.
+    /// Returns the gap of the pair along its stored normal at the time `secs` (s), m. The true gap is at least this
+    /// large, because a distance is never smaller than its component along a fixed direction.
     fn gap_at(&self, secs: f64) -> f64 {
         self.gap + self.shift + secs * (self.speed + 0.5 * self.acceleration * secs)
     }

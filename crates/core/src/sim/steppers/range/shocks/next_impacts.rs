@@ -1,4 +1,5 @@
-//! Selects the pairs that the next shocks strike, and the contacts that are struck together with them.
+//! Selects the pairs of bodies that collide next within a step, and the touching contacts that these collisions
+//! (shocks) strike together with them.
 
 use glam::DVec2;
 
@@ -38,12 +39,13 @@ impl Shocks {
         pair.normal.dot(self.fall::<M>(i)) / self.numbers.time_step_secs
     }
 
-    /// Returns the change of a grain's velocity by gravity in the whole step, m/s.
+    /// Returns the change of the velocity of grain `grain` along x and y by gravity in the whole step, m/s.
     fn fall<M: Model>(&self, grain: usize) -> DVec2 {
         along_axes::<M>(&M::from_coordinates(self.bodies[grain].gain))
     }
 
-    /// Returns the motion of the grain of contact `number` relative to the other body, after the shocks so far.
+    /// Returns the motion of the first body of contact `number`, a grain, relative to the second body, after the shocks
+    /// (collisions) that have been computed so far: offset, velocity and acceleration.
     pub(super) fn course<M: Model>(
         &self,
         problem: &StepProblem<M>,
@@ -69,13 +71,16 @@ impl Shocks {
         RelativeMotion { offset, velocity, acceleration }
     }
 
-    /// Returns the time since which both grains of a pair have had their present velocities, s.
+    /// Returns the time, s from the beginning of the step, since which both bodies of a pair have had their present
+    /// velocities. `i` is a grain; `j` is the second body if it is a grain, too.
     pub(super) fn since(&self, i: usize, j: Option<usize>) -> f64 {
         j.map_or(0.0, |j| self.bodies[j].since).max(self.bodies[i].since)
     }
 
-    /// True if a pair touches at the time of the last shock of its grains. The normal has changed if other grains have
-    /// struck the pair since it met; then the gap is computed along the new normal.
+    /// True if the pair of contact `number` touches at the time of the last shock (collision) that changed the velocity
+    /// of one of its grains, or at the beginning of the step without such a shock. The gap is computed along the stored
+    /// normal of the pair. If the last shock was a shock with other bodies, after the pair itself was struck, the
+    /// normal has changed; then the gap along the new normal must be closed, too.
     pub(super) fn is_in_touch<M: Model>(&self, at: &ShockInputs<'_, M>, number: usize) -> bool {
         let pair = &self.pairs[number];
         let (i, j) = grains(at.problem, number);
@@ -87,7 +92,8 @@ impl Shocks {
         end.flatten().is_none_or(|(_, gap)| gap <= touch)
     }
 
-    /// Returns the normal and the gap (m) of a pair at the time `secs` (s).
+    /// Returns the normal and the gap (m) of the pair of contact `number` at the time `secs` (s). `None` if the nearest
+    /// point of the boundary is a corner at which another part of the boundary reports the contact.
     pub(super) fn approach<M: Model>(
         &self,
         at: &ShockInputs<'_, M>,
@@ -98,7 +104,8 @@ impl Shocks {
         self.course(at.problem, number).approach(at.world, at.candidates, contact, secs, M::AXES)
     }
 
-    /// Returns the next impact of contact `number` in the step.
+    /// Returns the next impact of the pair of contact `number` in the step. A pair that touches has an impact if it
+    /// closes fast enough, a pair with a gap if the gap closes within the step.
     fn next_of<M: Model>(&self, at: &ShockInputs<'_, M>, number: usize) -> NextImpact {
         let pair = &self.pairs[number];
         let (i, j) = grains(at.problem, number);
@@ -120,7 +127,8 @@ impl Shocks {
         self.meeting(at, number, from).unwrap_or(NextImpact::Never)
     }
 
-    /// Returns the meeting of a pair after the time `from` (s); `None` if the pair does not meet within the step.
+    /// Returns the meeting (time and normal) of the pair of contact `number` after the time `from` (s); `None` if the
+    /// gap of the pair does not close within the step.
     fn meeting<M: Model>(
         &self,
         at: &ShockInputs<'_, M>,
@@ -134,8 +142,9 @@ impl Shocks {
         Some(NextImpact::Meets { secs, normal })
     }
 
-    /// Computes the exact meeting times of pairs that count as touching because their gaps are below the touch
-    /// tolerance. Only for pairs that are struck alone, that is without a common grain with another pair.
+    /// Computes the exact meeting times of struck pairs that count as touching because their gaps are small, and
+    /// replaces the assumed times. Leaves out pairs that are struck together with other contacts, because such contacts
+    /// share the time of their cluster.
     pub(super) fn refine<M: Model>(&mut self, at: &ShockInputs<'_, M>) {
         for (number, row) in at.problem.rows() {
             let root = self.root(row.i as usize);
@@ -151,9 +160,9 @@ impl Shocks {
         }
     }
 
-    /// Chooses the pairs that are struck in this pass. A pair is struck if its next impact is the next impact of both
-    /// its grains. All contacts that touch at that time and are connected to a struck pair are struck, too. `first` is
-    /// the time of the earliest impact, s.
+    /// Chooses the pairs that are struck in this pass: the group of shocks (collisions) that is computed next. A pair
+    /// is struck if its next impact is the next impact of each of its grains. All contacts that touch at that time and
+    /// are connected to a struck pair are struck, too. `first` is the time of the earliest impact of all pairs, s.
     pub(super) fn choose<M: Model>(&mut self, problem: &StepProblem<M>, first: f64) {
         let StepNumbers { time_step_secs, touch, .. } = self.numbers;
         for (index, body) in self.bodies.iter_mut().enumerate() {

@@ -11,19 +11,23 @@ use crate::solver::{
     StopTest, measure, solve, sweep,
 };
 
-/// Number of contacts above which shocks are solved to the tolerance of the step, and not to the smaller tolerance of
-/// [`TIGHTLY`].
+/// Number of contacts up to which shocks (collisions) that are computed together are first solved to the small
+/// tolerance of [`TIGHTLY`]. With more contacts, or if this does not succeed, they are solved to the tolerance of the
+/// step.
 const FEW: usize = 16;
 
-/// Solver settings for shocks with few contacts, for which a small tolerance costs almost nothing.
+/// Solver settings for shocks (collisions) with few contacts, for which a small tolerance costs almost nothing: method
+/// `nsgs`, residual 1e-13, at most 500 sweeps.
 const TIGHTLY: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-13, 500);
 
-/// Largest tolerance of shocks, relative to the impulses of the shocks. It takes effect if shocks are small compared
-/// with the velocities of the step.
+/// Largest residual to which shocks (collisions) are solved, unless the tolerance of the step is larger. Shocks are
+/// solved such that the error of a contact's impulse is at most that of the step. If the impulses of the shocks are
+/// small compared with those of the step, the residual for this error would be too large; then this bound is used
+/// instead.
 const LOOSEST: f64 = 1e-3;
 
-/// Solves the contact problem of shocks that share grains, to the tolerance of the step. `least` is the largest impulse
-/// error that a contact of the step may have, N·s.
+/// Solves the contact problem `part` of shocks (collisions) that share grains, to the tolerance of the step. `least` is
+/// the largest error that the impulse of a contact of the step may have, N·s.
 fn solve_together<M: Model>(
     part: &mut StepProblem<M>,
     memory: &mut Memory,
@@ -52,8 +56,9 @@ fn solve_together<M: Model>(
 }
 
 impl Shocks {
-    /// Fills the contact problem `part` with pairs struck in this pass: if `alone` is true, the pairs that share no
-    /// grain with another struck pair, otherwise all other pairs. Returns true if there are such pairs.
+    /// Fills the contact problem `part` with pairs that are struck in this pass (a group of shocks that are computed
+    /// together). If `alone` is true, takes the pairs that share no grain with another struck pair, otherwise all other
+    /// struck pairs. Returns true if there are such pairs.
     pub(super) fn set_up<M: Model>(
         &mut self,
         problem: &mut StepProblem<M>,
@@ -89,8 +94,9 @@ impl Shocks {
         true
     }
 
-    /// Returns the term that the law of a shock adds to the normal velocity v_n of contact `number`, m/s. If the pair
-    /// meets within the step, also sets the contact normal to the normal at the meeting.
+    /// Returns the term, m/s, that the law of collisions adds to the normal velocity of contact `number` at the end of
+    /// the collision: for restitution, for gravity until the meeting, and for the velocity of a moving wall. If the
+    /// pair meets within the step, also sets the contact normal to the normal at the meeting.
     fn strike_row<M: Model>(&mut self, problem: &mut StepProblem<M>, number: usize) -> f64 {
         let numbers = self.numbers;
         let mut wall_speed = problem.wall_speed(number);
@@ -124,8 +130,8 @@ impl Shocks {
         bounce + gained - wall_speed
     }
 
-    /// Solves the contact problem in `part`, and stores its impulses and velocities. If `alone` is true, the pairs
-    /// share no grain, so a single sweep is exact.
+    /// Solves the contact problem in `part`, and stores its impulses and velocities as results of the shocks. If
+    /// `alone` is true, the pairs share no grain, so a single sweep over the contacts is exact.
     pub(super) fn solve<M: Model>(
         &mut self,
         problem: &mut StepProblem<M>,
@@ -190,7 +196,8 @@ impl Shocks {
         }
     }
 
-    /// Updates the gaps and speeds of all pairs that contain a grain struck in this pass.
+    /// Updates the gaps and normal velocities of all pairs with a grain that was struck in this pass (the group of
+    /// shocks computed last), and marks their next impacts as unknown.
     pub(super) fn move_on<M: Model>(&mut self, problem: &StepProblem<M>) {
         let bodies = &self.bodies;
         let shift = |grain: usize| {
