@@ -58,7 +58,7 @@ impl BroadPhase {
         }
     }
 
-    /// Calls `found` once for every pair of discs whose distance is below the sum of their extents (radius plus
+    /// Calls `found` once for every pair of discs whose centres are closer than the sum of their extents (radius plus
     /// search margin, m). It is also called for some pairs that are farther apart.
     pub fn pairs<const AXES: usize>(
         &mut self,

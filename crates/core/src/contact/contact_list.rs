@@ -83,8 +83,8 @@ impl ContactList {
         }
     }
 
-    /// Adds an impulse (N·s) of the contact with this index to the impulse sums of the step. The impulse acts along
-    /// `normal`, which may have turned since the contact was found.
+    /// Adds an impulse (N·s) of the contact with this index to the impulse sums of the step. Its normal component acts
+    /// along `normal`, which may have turned since the contact was found.
     pub(crate) fn add_to_sums(&mut self, index: usize, normal: DVec2, impulse: Impulse) {
         let ContactColumns { contacts, found_in, .. } = &self.now;
         self.sums.add(Transmitted::of(contacts[index], found_in[index], normal, impulse));
@@ -243,7 +243,7 @@ impl ContactList {
         }
     }
 
-    /// Iterates over the contacts of the list and over the contacts that belong to the impulse sums of the step.
+    /// Iterates over the contacts of the list and over those whose impulses are summed over the step.
     fn all_mut(&mut self) -> impl Iterator<Item = &mut Contact> {
         let earlier = self.sums.pairs.iter_mut().map(|pair| &mut pair.contact);
         self.now.contacts.iter_mut().chain(earlier)
@@ -274,9 +274,9 @@ impl ContactList {
             && found_in.iter().all(is_past)
     }
 
-    /// Finds the contacts at the present positions: candidate pairs with a gap below the gap tolerance. A contact that
-    /// existed in the previous step starts with its previous impulses and stepper data. All other contacts start with
-    /// zero.
+    /// Finds the contacts at the present positions: pairs of nearby bodies (`candidates`) with a gap below the gap
+    /// tolerance. A contact that existed in the previous step starts with its previous impulses and stepper data. All
+    /// other contacts start with zero.
     pub fn detect<const AXES: usize>(&mut self, world: &World, candidates: &Candidates) {
         self.looks_ahead = false;
         let gap_tolerance = candidates.gap_tolerance();
@@ -325,8 +325,8 @@ impl ContactList {
         });
     }
 
-    /// Replaces the contacts by all candidate pairs for which `keep` returns true. `keep` receives the contact and the
-    /// state of its bond, which it may change.
+    /// Replaces the contacts by all pairs of nearby bodies (`candidates`) for which `keep` returns true. `keep`
+    /// receives the contact and the state of its bond, which it may change.
     #[inline(always)]
     fn find<const AXES: usize>(
         &mut self,

@@ -21,8 +21,9 @@ use crate::world::{Periodic, World};
 /// the cell are enough, because each pair across a border is then found from one of its two discs.
 const HALF_AROUND: [DVec2; 4] = [DVec2::X, DVec2::Y, DVec2::ONE, DVec2::new(-1.0, 1.0)];
 
-/// Calls `found` once for every pair of discs, given by their indices, whose nearest periodic images are closer than
-/// the sum of their extents (radius plus search margin, m). It is also called for some pairs that are farther apart.
+/// Calls `found` once for every pair of discs, given by their indices, if the centres of their nearest periodic images
+/// are closer than the sum of the extents of the discs (radius plus search margin, m). It is also called for some pairs
+/// that are farther apart.
 pub(super) fn pairs<const AXES: usize>(
     broad_phase: &mut BroadPhase,
     periodic: Periodic,

@@ -61,7 +61,7 @@ pub(crate) struct Bond {
     /// True if the bond exists: under the law `range`, if the two bodies have touched and their bond has not broken
     /// since. Under other laws, true if the pair is in touch, so that cohesion acts.
     pub alive: bool,
-    /// Stretch s of the bond, m: the distance by which the pair has been pulled apart. 0 if the pair touches.
+    /// Stretch s of the bond, m: the distance by which the two bonded bodies have been pulled apart. 0 if they touch.
     pub stretch: f64,
 }
 
@@ -70,7 +70,7 @@ pub(crate) struct Bond {
 pub(crate) struct OpeningMotion {
     /// Opening that remains before the bond breaks, D = δ_c − s, m (δ_c: debonding distance, s: stretch).
     pub left: f64,
-    /// Opening speed v of the pair at the beginning of the step, m/s.
+    /// Speed v at which the two bonded bodies move apart at the beginning of the step, m/s.
     pub speed: f64,
     /// Load J, m/s: change of the opening speed during the step by all forces other than the bond itself.
     pub load: f64,

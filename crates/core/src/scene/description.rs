@@ -131,8 +131,8 @@ const FARTHEST_IN_RADII: f64 = 1e15;
 /// grains of several sizes could not choose one of these sizes as its unit of length.
 const MOST_DIAMETERS_OF_MEAN: f64 = 100.0;
 
-/// Checks that a value is finite and above 0. `field` names the value in the error message. It is formatted only for
-/// an error, because a study checks each disc of each run.
+/// Checks that a value is finite and above 0. `field` names the value in the error message. The name is formatted only
+/// if there is an error. This saves time, because a study checks each disc of each run.
 fn positive(field: Arguments<'_>, value: f64, unit: &str) -> Result<()> {
     if value > 0.0 && value.is_finite() {
         Ok(())

@@ -147,7 +147,7 @@ impl Deposit {
 pub enum Support {
     /// The disc with this index in the list of all discs.
     Disc(usize),
-    /// The wall that is nearer to the disc.
+    /// The left or the right wall: the one that is nearer to the supported disc.
     Wall,
     /// The floor.
     Floor,
