@@ -147,13 +147,13 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     /// Returns the velocity of a body as numbers, m/s, one per degree of freedom (a rotation as radius times angular
     /// velocity); further entries are not used.
     fn coordinates<T: Lanes>(body: &Self::Body<T>) -> [T; 3];
-    /// Returns the body whose velocity has these coordinates, m/s.
+    /// Returns a velocity in the form that the solver stores, from its numbers `coordinates` (m/s).
     fn from_coordinates<T: Lanes>(coordinates: [T; 3]) -> Self::Body<T>;
     /// Sets the velocity of a body from its coordinates, m/s, one per degree of freedom of the model. Further entries
     /// of `coordinates` are ignored.
     fn set(body: &mut Self::Body<f64>, coordinates: [f64; 3]);
-    /// Returns the derivatives of a contact's normal and tangential velocities v_n and v_t by the velocity coordinates
-    /// of body i, then of body j: v_n = Σ \[body\]\[0\]·coordinates, v_t = Σ \[body\]\[1\]·coordinates.
+    /// Returns the derivatives `[body][direction]` of a contact's velocity (direction 0: normal, 1: tangential) by the
+    /// velocity coordinates of the body (0: i, 1: j). Sums of derivatives times coordinates give the velocity.
     fn gradients(normal: Self::Normal<f64>) -> [[[f64; 3]; 2]; 2];
     /// Returns the work of gravity on a body in a step, J: the impulse of gravity, `mass` × (`free` − `before`), times
     /// the mean of the velocities `before` and `after` the step (see `solver::measure`). `free` is the velocity without

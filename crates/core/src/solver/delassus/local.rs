@@ -1,21 +1,24 @@
-//! Exact solution of one contact of a problem that is given by the Delassus operator W, without bodies.
+//! Exact solution of one contact in a contact problem that is given by the Delassus operator W (changes of contact
+//! velocities per contact impulse, 1/kg), without data on bodies.
 //!
-//! A grain that is not a disc couples its normal and tangential directions (W_nt ≠ 0), so the two projections that
-//! solve a disc's contact become an enumeration of cases. Let p = P_n + c₀ be the normal impulse shifted by the
-//! cohesion impulse c₀, P_t the tangential impulse (all in N·s), μ the friction coefficient, W_kk the contact's own 2×2
-//! block of W (1/kg), u its velocity, and b its velocity at p = P_t = 0 (m/s). The law in the shifted cone is
+//! At a contact of a grain that is not a disc, a normal impulse also changes the tangential velocity (W_nt ≠ 0). So the
+//! two separate projections, of normal and tangential impulse, that solve a contact between discs become an enumeration
+//! of cases. Let p = P_n + c₀ be the normal impulse P_n shifted by the cohesion impulse c₀, P_t the tangential impulse
+//! (all in N·s), μ the friction coefficient, W_kk the contact's own 2×2 block of W with the entries W_nn, W_nt and
+//! W_tt, u = (u_n, u_t) its velocity, and b = (b_n, b_t) its velocity at p = P_t = 0 (m/s). The law in the shifted cone
+//! is
 //!
 //! > u = W_kk (p, P_t) + b,  0 ≤ p ⟂ u_n ≥ 0,  |P_t| ≤ μp, sliding opposes u_t,
 //!
-//! and the cases are
+//! and the three cases are
 //!
 //! > open: p = P_t = 0 if b_n ≥ 0;
 //! > stick: (p, P_t) = −W_kk⁻¹ b if that is in the cone;
 //! > slip: P_t = sμp with s = ±1, so that p = −b_n / (W_nn + sμW_nt), if s·u_t ≤ 0.
 //!
 //! If μ|W_nt| < W_nn, there is exactly one solution; otherwise the first case that satisfies its condition is taken. In
-//! the compressive cone a contact with p ≤ c₀ has no friction. A contact with p > c₀ is solved in a shifted cone with
-//! p − c₀ instead of p and b + c₀(W_nn, W_nt) instead of b.
+//! the compressive cone the friction bound is μ max(p − c₀, 0), so a contact with p ≤ c₀ has no friction. A contact
+//! with p > c₀ is solved in a shifted cone with p − c₀ instead of p and b + c₀(W_nn, W_nt) instead of b.
 
 /// Data of one contact that its update in a sweep reads: its own block of the Delassus operator, quantities derived
 /// from this block, friction coefficient and cohesion impulse. They are computed once before the sweeps.

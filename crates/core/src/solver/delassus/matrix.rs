@@ -2,10 +2,11 @@
 //! entries, and sorts the entries into 2×2 blocks.
 //!
 //! W (1/kg) maps impulses to changes of the contacts' velocities; q (m/s) are the contacts' velocities without contact
-//! impulses. With G the gradients of a contact's (v_n, v_t) in the bodies' coordinates, M the inertias in these
-//! coordinates and v^free the bodies' velocities without contact impulses, W = G M⁻¹ Gᵀ and q = G v^free, plus the
-//! restitution term in the normal rows. A contact is coupled only to contacts that share one of its grains: the n
-//! contacts of one grain give n² blocks.
+//! impulses. Let M be the inertias of the bodies, one per velocity coordinate (component of a body's velocity or spin),
+//! G the derivatives of the contacts' normal and tangential velocities by these coordinates, and v^free the bodies'
+//! velocities without contact impulses. Then W = G M⁻¹ Gᵀ and q = G v^free, plus the restitution term in the normal
+//! rows. A contact is coupled only to contacts that share one of its grains: the n contacts of one grain give n²
+//! blocks.
 
 use crate::error::{self, Error, Result};
 use crate::solver::kinematics::Model;
@@ -143,8 +144,9 @@ pub struct Assembled {
 }
 
 impl Assembled {
-    /// Computes the Delassus operator W and the free velocities q of a problem. On a line, which has no tangent, the
-    /// tangential rows of W have W_tt = W_nn on the diagonal and no other entries.
+    /// Computes the Delassus operator W and the free velocities q (velocities without contact impulses) of a problem.
+    /// In a problem with one space dimension there is no tangent; then the tangential rows of W have W_tt = W_nn on the
+    /// diagonal and no other entries.
     ///
     /// # Errors
     /// An error names the body with the most contacts, if W would have too many entries.
@@ -189,8 +191,7 @@ impl Assembled {
 }
 
 /// Checks that the Delassus operator has at most [`MOST_ENTRIES`] entries. The argument lists the contacts of each
-/// body. The operator has one block of four entries per contact, and two blocks for each pair of contacts that share a
-/// body.
+/// body. Each contact has one block of four entries, and each pair of contacts that share a body has two such blocks.
 fn check_entries(contacts_of_body: &[Vec<usize>]) -> Result<()> {
     let of_body = |contacts: &Vec<usize>| 4 * (contacts.len() as u64).pow(2);
     let entries: u64 = contacts_of_body.iter().map(of_body).sum();

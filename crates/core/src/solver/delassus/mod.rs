@@ -1,10 +1,10 @@
 //! A contact problem that is given by the Delassus operator W: u = W r + q, without any bodies.
 //!
-//! W (1/kg) is the change of the velocity of one contact per impulse of another. r = (P_n, P_t) are the normal and
-//! tangential impulses in N·s, u the relative velocities at the end of the step, and q the relative velocities without
-//! contact impulses, restitution term included, in m/s. Rows and columns are ordered as N0, T0, N1, T1, …. The contact
-//! law is the law of `contact::law`; each contact has its own cohesion impulse c₀ = C₀Δt (cohesion force times time
-//! step) and its own friction coefficient μ:
+//! W (1/kg) is the change of the relative velocity of one contact per impulse of another contact. r = (P_n, P_t) are
+//! the normal and tangential impulses in N·s, u the relative velocities at the end of the step, and q the relative
+//! velocities without contact impulses, restitution term included, in m/s. Rows and columns are ordered as N0, T0, N1,
+//! T1, … (N normal, T tangential, with the number of the contact). The contact law is the law of `contact::law`; each
+//! contact has its own cohesion impulse c₀ = C₀Δt (cohesion force times time step) and its own friction coefficient μ:
 //!
 //! > 0 ≤ p ⟂ u_n ≥ 0,  |P_t| ≤ μp (shifted cone) or ≤ μ max(p − c₀, 0) (compressive), p = P_n + c₀.
 //!
@@ -12,10 +12,10 @@
 //! the shifted impulses (p, P_t) instead of (P_n, P_t). Cohesion is then part of the free velocity and costs nothing:
 //! u = W (p, P_t) + q', q' = q − W (c₀, 0).
 //!
-//! Gauss–Seidel on W (M. Jean, 1999) solves one contact after the other, each exactly for the present impulses of the
-//! others. Methods that treat all impulses as one vector use scaled impulses s = P/√m_n with m_n = 1/W_nn, and the
-//! matrix A: W multiplied by √m_n from both sides. If W_nt ≠ 0, a contact's own block of A has off-diagonal entries; no
-//! method on `ContactSystem` needs them to be zero.
+//! Gauss–Seidel on W (M. Jean, 1999) solves one contact after the other, each exactly for the present impulses of all
+//! other contacts. Methods that treat all impulses as one vector use scaled impulses s = P/√m_n with m_n = 1/W_nn, and
+//! the matrix A: W multiplied by √m_n from both sides. If W_nt ≠ 0 (the entry of W that couples normal and tangent of a
+//! contact), a contact's own block of A has off-diagonal entries; no method on `ContactSystem` needs them to be zero.
 
 mod local;
 mod matrix;
@@ -37,7 +37,9 @@ use crate::world::FrictionCone;
 /// that sweep. A smaller number risks an unnecessary sweep, a larger number an unnecessary computation of the residual.
 const NEAR: f64 = 2.0;
 /// Interval, in sweeps, at which the residual is computed while the impulses still change by more than [`NEAR`] times
-/// their allowed error in a sweep.
+/// their allowed error in a sweep. With a smaller interval, more computations of the residual, each as expensive as a
+/// sweep, are in vain; with a larger interval, a solve that has already reached its tolerance may do up to this number
+/// of unnecessary sweeps.
 const TEST_INTERVAL: u32 = 16;
 
 /// A 2×2 block of the Delassus operator outside its diagonal, 1/kg: the change of a contact's velocity per impulse of
@@ -163,12 +165,12 @@ impl DelassusProblem {
         (0..self.len()).map(|contact| self.velocity(contact))
     }
 
-    /// Returns the residual of the natural map, dimensionless, defined as in [`residual`](crate::solver::residual) for
-    /// problems with bodies. The effective masses along normal and tangent are m_n = 1/W_nn and m_t = 1/W_tt, with the
-    /// entries of the contact's own block of the Delassus operator W, and the velocities after the step and without
-    /// contact impulses come from W and q. W_nt ≠ 0 is allowed: for any positive m_n and m_t the map is zero exactly if
-    /// the law is satisfied. If the friction coefficient is 0, the tangential part of a contact does not enter the
-    /// denominator.
+    /// Returns the residual (relative size of the natural map), dimensionless, defined as in
+    /// [`residual`](crate::solver::residual) for problems with bodies. The effective masses along normal and tangent
+    /// are m_n = 1/W_nn and m_t = 1/W_tt, with the entries of the contact's own block of the Delassus operator W. The
+    /// velocities after the step and without contact impulses are computed from W and the free velocities q. An entry
+    /// W_nt ≠ 0 is allowed: for any positive m_n and m_t the map is zero exactly if the contact law is satisfied. If
+    /// the friction coefficient is 0, the tangential part of a contact does not enter the denominator.
     pub fn residual(&self) -> f64 {
         let errors = self.rows.iter().enumerate().map(|(contact, row)| {
             row.squared_error(self.impulses[contact], self.velocity(contact), self.compressive_cone)
@@ -196,7 +198,7 @@ impl DelassusProblem {
     }
 
     /// Returns the normal and tangential velocity, m/s, of contact number `contact` due to its free velocity and the
-    /// present impulses of the other contacts, without the effect of its own impulses.
+    /// present impulses of all other contacts, without the effect of its own impulses.
     #[inline(always)]
     fn velocity_of_others(&self, contact: usize) -> [f64; 2] {
         let mut velocity = self.rows[contact].free;
@@ -210,8 +212,11 @@ impl DelassusProblem {
 }
 
 impl DelassusRow {
-    /// Returns the sum of the contact's squared normal and tangential errors in the natural map, (N·s)², at the shifted
-    /// normal impulse p, the tangential impulse `rubbing` (N·s) and the velocity `u` (m/s).
+    /// Returns the contact's part of the squared natural map, (N·s)²: the sum of the squared errors of the shifted
+    /// normal impulse `p` and the tangential impulse `rubbing` (N·s) at the relative velocity `u` (m/s). For each
+    /// impulse, the impulse minus effective mass times velocity is limited to the range that the contact law allows;
+    /// the error is the difference between the impulse and this value. If `compressive` is true, the cohesion impulse
+    /// does not count in the friction bound.
     fn squared_error(&self, [p, rubbing]: [f64; 2], u: [f64; 2], compressive: bool) -> f64 {
         let LocalBlock { normal, tangential, friction, cohesion_impulse, .. } = self.local;
         let rubs =

@@ -1,18 +1,19 @@
 //! Sparse Cholesky factorisation of a symmetric positive definite matrix of blocks of D × D numbers, with one row and
 //! one column of blocks per body. D is the number of degrees of freedom of a body.
 //!
-//! Rows are numbered by the bodies' positions in the elimination order. Let U_ab be the block in row a and column b >
-//! a, and B_k the diagonal block of position k after all earlier eliminations. The elimination of position k computes
-//! the lower triangular Cholesky factor L_k of B_k and the blocks W_kb of the final factor:
+//! Rows are numbered by the bodies' positions in the elimination order. Let A be the matrix, U_ab its block in row a
+//! and column b ≥ a after all earlier eliminations, and B_k = U_kk the diagonal block of position k. The later
+//! neighbours of k are the positions b > k with a nonzero block U_kb. The elimination of position k computes the lower
+//! triangular Cholesky factor L_k of B_k and the blocks W_kb of the final factor W:
 //!
 //! > B_k = L_k L_kᵀ,  W_kb = L_k⁻¹ U_kb,  U_ab ← U_ab − W_kaᵀ W_kb for all pairs of later neighbours a ≤ b of k
 //!
-//! (U_aa is the diagonal block of a). Finally the matrix A is the product WᵀW, with the blocks L_kᵀ on the diagonal of
-//! W. This takes half the work and half the memory of unsymmetric factors, and a positive definite matrix needs no
-//! pivoting. Adjacent positions with the same later neighbours form a supernode and are eliminated together: each block
-//! that they change is fetched once, and receives the changes from all of them while they are in the cache (C. C.
-//! Ashcraft, R. G. Grimes, 1989). Diagonal blocks are factorised rather than inverted: the inverse of a block that is
-//! stiff along one direction and soft along another loses half of all digits.
+//! (W_kaᵀ is the transpose of W_ka). Finally A is the product WᵀW, with the blocks L_kᵀ on the diagonal of W. This
+//! takes half the work and half the memory of unsymmetric factors, and a positive definite matrix needs no pivoting.
+//! Adjacent positions with the same later neighbours form a supernode and are eliminated together: each block that they
+//! change is fetched once, and receives the changes from all of them while they are in the cache (C. C. Ashcraft, R. G.
+//! Grimes, 1989). Diagonal blocks are factorised rather than inverted: the inverse of a block that is stiff along one
+//! direction and soft along another loses half of all digits.
 
 use std::ops::Range;
 
@@ -39,16 +40,17 @@ pub(crate) struct SymmetricBlockMatrix<const D: usize> {
     /// Diagonal blocks in elimination order. The factorisation replaces each block by its lower triangular Cholesky
     /// factor, with the inverses of the factor's diagonal entries on the diagonal.
     diagonal: Vec<Padded<D>>,
-    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b whose bodies are neighbours.
-    /// The vector [`Elimination::later`] lists the later neighbours of each position; the block has the index of the
-    /// entry b in the list of position a.
+    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b of the elimination order whose
+    /// bodies are neighbours. A block has the same index as its entry in [`Elimination::later`], the lists that give
+    /// for each position a the positions b of the neighbours that are eliminated later.
     upper: Vec<Padded<D>>,
-    /// Work memory: the blocks of a supernode's rows outside the supernode, column by column.
+    /// Work memory for one supernode (adjacent rows that are eliminated together): the blocks of its rows to the right
+    /// of the supernode, column by column.
     panel: Vec<Padded<D>>,
 }
 
 impl<const D: usize> SymmetricBlockMatrix<D> {
-    /// Sets the matrix to zero, with the nonzero pattern of `elimination`.
+    /// Sets all blocks of the matrix to zero, and their number and order to those of `elimination`.
     pub(crate) fn clear(&mut self, elimination: &Elimination) {
         self.diagonal.clear();
         self.diagonal.resize(elimination.body_at.len(), Padded::ZERO);

@@ -20,8 +20,8 @@ pub(crate) fn diagonal<const D: usize>(numbers: [f64; D]) -> Block<D> {
     block
 }
 
-/// Returns the inertias of a body of mass `mass`, one per degree of freedom, kg. The coordinate of a rotation is radius
-/// times angle, so its inertia is a mass, too.
+/// Returns the inertias of a body of mass `mass` (kg), one per degree of freedom, kg. The velocity of a rotation is
+/// radius times angular velocity (m/s), so its inertia is a mass, too.
 pub(crate) fn inertias<M: Model, const D: usize>(mass: f64) -> [f64; D] {
     std::array::from_fn(|axis| mass * M::INERTIA_OVER_MASS[axis])
 }
@@ -31,18 +31,18 @@ pub(crate) fn inertias<M: Model, const D: usize>(mass: f64) -> [f64; D] {
 pub(crate) struct BlockMatrix<const D: usize> {
     /// Diagonal blocks in elimination order. [`BlockMatrix::factorise`] inverts them.
     diagonal: Vec<Block<D>>,
-    /// Blocks below the diagonal, in row b and column a, one per pair of positions a < b whose bodies are neighbours.
-    /// The vector [`Elimination::later`] lists the later neighbours of each position; the block has the index of the
-    /// entry b in the list of position a.
+    /// Blocks below the diagonal, in row b and column a, one per pair of positions a < b of the elimination order whose
+    /// bodies are neighbours. A block has the same index as its entry in [`Elimination::later`], the lists that give
+    /// for each position a the positions b of the neighbours that are eliminated later.
     lower: Vec<Block<D>>,
-    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b whose bodies are neighbours.
-    /// The vector [`Elimination::later`] lists the later neighbours of each position; the block has the index of the
-    /// entry b in the list of position a.
+    /// Blocks above the diagonal, in row a and column b, one per pair of positions a < b of the elimination order whose
+    /// bodies are neighbours. A block has the same index as its entry in [`Elimination::later`], the lists that give
+    /// for each position a the positions b of the neighbours that are eliminated later.
     upper: Vec<Block<D>>,
 }
 
 impl<const D: usize> BlockMatrix<D> {
-    /// Sets the matrix to zero, with the nonzero pattern of `elimination`.
+    /// Sets all blocks of the matrix to zero, and their number and order to those of `elimination`.
     pub(crate) fn clear(&mut self, elimination: &Elimination) {
         let zero = [[0.0; D]; D];
         for (blocks, count) in [

@@ -1,14 +1,15 @@
 //! The order in which a sparse factorisation eliminates bodies, and the pattern of nonzero blocks in its factors.
 //!
-//! The order is a minimum degree order of the graph whose edges are the contacts between bodies: the body with the
-//! fewest neighbours is eliminated first, and its neighbours become neighbours of each other. Contact graphs are nearly
-//! planar, so the neighbourhoods stay small.
+//! The order is a minimum degree order of the graph whose nodes are the bodies and whose edges are the contacts between
+//! them: the body with the fewest neighbours is eliminated first, and its neighbours become neighbours of each other.
+//! Contact graphs are nearly planar, so bodies get only few neighbours.
 //!
-//! **Postorder** puts positions whose eliminations change the same blocks next to each other. The parent of a position
-//! in the elimination tree is the first of its later neighbours. Every order that has each position before its parent
-//! leads to the same factors with the same fill-in. An order that finishes a subtree before it begins the next subtree
-//! changes blocks that were computed recently, and puts positions with the same later neighbours next to each other (J.
-//! W. H. Liu, 1990).
+//! **Postorder** puts positions whose eliminations change the same blocks next to each other. The later neighbours of a
+//! position are the neighbours of its body that are eliminated after this body. The parent of a position in the
+//! elimination tree is the first of its later neighbours. Every order that has each position before its parent leads to
+//! the same factors with the same fill-in (additional nonzero blocks). An order that finishes a subtree before it
+//! begins the next subtree changes blocks that were computed recently and are still in the cache, and puts positions
+//! with the same later neighbours next to each other (J. W. H. Liu, 1990).
 
 use smallvec::SmallVec;
 
@@ -26,16 +27,21 @@ pub(crate) struct Elimination {
     pub body_at: Vec<u32>,
     /// Position of each body in the elimination order.
     pub place_of: Vec<u32>,
-    /// Boundaries of the lists of later neighbours, which are in rising order. The list of position k is
-    /// `later[starts[k] .. starts[k + 1]]`, and the index in `later` is the number of the off-diagonal block.
+    /// Boundaries of the lists in `later`, one list per position of the elimination order. The list of position k,
+    /// `later[starts[k] .. starts[k + 1]]`, contains in rising order the positions of those neighbours of its body that
+    /// are eliminated later. The index of an entry in `later` is also the number of the off-diagonal block of the two
+    /// bodies.
     pub starts: Vec<u32>,
-    /// Later neighbours of all positions, given by their own positions in the elimination order.
+    /// For each position of the elimination order in turn, the positions of those neighbours of its body that are
+    /// eliminated later.
     pub later: Vec<u32>,
-    /// Numbers of the blocks that the elimination of each position changes: for each pair a < b of the position's later
-    /// neighbours, in lexicographic order, the number of block (a, b).
+    /// Numbers of the off-diagonal blocks that the elimination of each position changes. A position changes one block
+    /// (a, b) for each pair a < b of the positions of its neighbours that are eliminated later; the pairs are in
+    /// lexicographic order.
     pub targets: Vec<u32>,
-    /// First position of each supernode, and finally the number of positions. A supernode is a run of successive positions
-    /// whose columns of the factor have the same pattern below the run.
+    /// First position of each supernode, and finally the number of positions. A supernode is a run of successive
+    /// positions of the elimination order whose columns of the factor have the same pattern of nonzero blocks below the
+    /// run.
     pub supernodes: Vec<u32>,
     postorder: Postorder,
     neighbours: Vec<BodyNeighbours>,
@@ -64,14 +70,15 @@ impl Elimination {
         self.structure(bodies);
     }
 
-    /// Returns the number of the block of positions a < b in the elimination order, whose bodies must be neighbours.
+    /// Returns the number of the off-diagonal block of the bodies at positions a < b of the elimination order. The two
+    /// bodies must be neighbours.
     pub(crate) fn block(&self, a: u32, b: u32) -> usize {
         let row = self.row(a as usize);
         row.start + self.later[row].partition_point(|&place| place < b)
     }
 
-    /// Returns the range of the numbers of the off-diagonal blocks in the row of a position, one block per later
-    /// neighbour.
+    /// Returns the range of the numbers of the off-diagonal blocks in the row of a position of the elimination order.
+    /// The row has one block for each neighbour of the position's body that is eliminated later.
     #[inline(always)]
     pub(super) fn row(&self, place: usize) -> std::ops::Range<usize> {
         self.starts[place] as usize..self.starts[place + 1] as usize
@@ -110,7 +117,8 @@ impl Elimination {
         }
     }
 
-    /// Renumbers the positions of the elimination order in postorder.
+    /// Renumbers the positions of the elimination order in postorder: every subtree of the elimination tree becomes a
+    /// range of successive positions, with its root last.
     fn rearrange(&mut self) {
         let Self { body_at, place_of, neighbours, postorder, .. } = self;
         // All neighbours that a body had when it was eliminated come later in the order.
@@ -197,21 +205,21 @@ impl Elimination {
     }
 }
 
-/// Number that marks a body without a position in the elimination order so far, or a missing child in the elimination
+/// Value that marks a body that has no position in the elimination order yet, or a missing child in the elimination
 /// tree.
 const NONE: u32 = u32::MAX;
 
 /// Work memory for computing a postorder, reused for the next elimination order.
 #[derive(Clone, Debug, Default)]
 struct Postorder {
-    /// For each position, the first child of a linked list of its children in the elimination tree.
+    /// For each position, the first entry of the linked list of its children in the elimination tree, or [`NONE`].
     first_child: Vec<u32>,
-    /// For each position, the next child of the position's parent in the linked list of children.
+    /// For each position, the next child of the same parent in the linked list of that parent's children, or [`NONE`].
     next_child: Vec<u32>,
-    /// For each position, its child with the most later neighbours. This child comes right before its parent in the new
-    /// order.
+    /// For each position, its child with the most neighbours that are eliminated later, or [`NONE`] without children.
+    /// In the new order this child comes right before its parent.
     heir: Vec<u32>,
-    /// For each position, the number of later neighbours of the child in `heir`.
+    /// For each position, the number of neighbours of the child in `heir` that are eliminated later than this child.
     most: Vec<usize>,
     stack: Vec<u32>,
     /// The positions in postorder, last position first.
@@ -219,8 +227,8 @@ struct Postorder {
 }
 
 impl Postorder {
-    /// Computes the postorder of the positions, given the parent (`None` for a root) and the number of later neighbours
-    /// of each position.
+    /// Computes the postorder of the positions. For each position `parents` gives its parent in the elimination tree
+    /// (`None` for a root), and the number of its neighbours that are eliminated later.
     fn arrange(&mut self, parents: impl ExactSizeIterator<Item = (Option<u32>, usize)>) {
         let Self { first_child, next_child, heir, most, stack, reversed } = self;
         for links in [&mut *first_child, next_child, heir] {
@@ -262,11 +270,11 @@ impl Postorder {
     }
 }
 
-/// The elimination order for the contacts between grains, and between grains and driven walls. It is kept as long as
-/// these contacts stay the same. Driven walls are numbered after the grains.
+/// The elimination order of grains and walls driven by a force, for their present contacts. It is kept as long as these
+/// contacts stay the same. Driven walls are numbered after the grains.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ContactGraph {
-    /// The elimination order.
+    /// The elimination order, and the pattern of nonzero blocks in the factors.
     pub elimination: Elimination,
     /// For each contact between two moving bodies (grains or driven walls), the number of its block, an index in
     /// [`Elimination::later`].
