@@ -10,7 +10,8 @@ pub(super) use self::elimination::{ContactGraph, Elimination};
 
 #[cfg(test)]
 mod tests {
-    /// Returns the pairs of neighbours on a square grid with `side` bodies along each side.
+    /// Returns the pairs of neighbouring bodies on a square grid with `side` bodies along each side. Bodies are
+    /// numbered row by row, from 0.
     pub(super) fn grid(side: u32) -> Vec<(u32, u32)> {
         let neighbours = |k: u32| {
             let right = (k % side + 1 < side).then_some((k, k + 1));

@@ -3,24 +3,26 @@
 //!
 //! Body velocities V and contact velocities z, m/s, are separate unknowns. They are coupled by the condition HV = z,
 //! with H the map from V to contact velocities, the impulses as multipliers, and a penalty m_ij/ε (effective mass m_ij,
-//! kg; compliance ε, dimensionless). The impulses are the reduced impulses of `contact::law`, m/s: shifted normal
-//! impulse σ and tangential impulse λ_t. A contact has the normal n, the tangent t, the velocities v_n and v_t along
-//! them, the effective masses m_n and m_t along them, and the friction bound bound(σ). With the normal velocity plus
-//! the restitution term, u = v_n + ρ v_n^{n−1} (restitution ρ times the normal velocity before the step), computed from
-//! V, one iteration computes the impulses σ' and λ_t' by the law,
+//! kg; compliance ε, dimensionless). The impulses are reduced impulses (divided by the effective mass, m/s;
+//! `contact::law`): the shifted normal impulse σ (normal impulse plus cohesion impulse) and the tangential impulse λ_t.
+//! A contact has the normal n, the tangent t, the velocities v_n and v_t along them, the effective masses m_n and m_t
+//! along them, and the friction bound bound(σ). With the normal velocity plus the restitution term, u = v_n + ρ
+//! v_n^{n−1} (restitution ρ times v_n^{n−1}, the normal velocity before the step), computed from V, one iteration
+//! computes the impulses σ' and λ_t' by the law,
 //!
 //! > σ' = max(σ − u/ε, 0),  λ_t' = clamp(λ_t − v_t m_t/(m_n ε), ±bound(σ')),
 //!
-//! sets z = v_n + ε (σ' − σ) along the normal and its counterpart along the tangent, and then computes the velocities V
-//! from the impulses and the penalty for V's distance from z,
+//! sets z = v_n + ε (σ' − σ) along the normal and z = v_t + (ε m_n/m_t) (λ_t' − λ_t) along the tangent, and then
+//! computes the velocities V from the impulses and the penalty for V's distance from z,
 //!
 //! > (M + Σ m_ij/ε (n nᵀ + m_t/m_n t tᵀ)) V = M V_free + Σ m_ij [n (2σ' − σ − c + v_n/ε) + t (…)],
 //!
-//! with the inertias M of the bodies, their velocities V_free without contacts, and the capture speed c, m/s. The term
-//! (…) is the tangential counterpart of the term along n, without c. The matrix depends only on ε, so an iteration is
-//! one pass over the contacts and one solve with cached factors. At a fixed point V agrees with the impulses, and the
-//! impulses with the law: the natural map is 0. ε determines how fast the impulses and the velocities converge; it is
-//! changed if one of two residuals is much larger than the other: ε(σ' − σ), and (z' − z)/ε with the new z' and the
+//! with the inertias M of the bodies, their velocities V_free without contacts, and the capture speed c, m/s (the
+//! opening speed that cohesion cancels in one step). The term (…) is the tangential counterpart of the term along n,
+//! without c. The matrix depends only on ε, so an iteration is one pass over the contacts and one solve with cached
+//! factors. At a fixed point V agrees with the impulses, and the impulses with the law: the natural map is 0. ε
+//! determines how fast the impulses and the velocities converge; it is changed if one of two residuals is much larger
+//! than the other: ε(σ' − σ), the distance of z from the contact velocities HV, and (z' − z)/ε, with the new z' and the
 //! previous z.
 
 use super::contact_system::{BestIterate, BodySystem, ContactSystem, ScaledVector};
@@ -31,29 +33,34 @@ use crate::solver::linear::{BlockMatrix, Elimination};
 use crate::solver::problem::{Row, StepProblem};
 use crate::solver::settings::SolverSettings;
 
-/// Initial compliance ε, relative to the compliance 1/m_ij of a contact (effective mass m_ij); 1/ε is the penalty.
+/// Initial compliance ε, the inverse of the penalty that couples body velocities and contact velocities, relative to
+/// the compliance 1/m_ij of a contact (effective mass m_ij). With a smaller ε the difference between these two
+/// velocities costs more.
 const FIRST_COMPLIANCE: f64 = 0.03;
-/// Number of iterations between two decisions whether the compliance ε is changed, which requires a new factorisation.
-/// A factorisation costs as much as about ten iterations.
+/// Number of iterations between two decisions whether the compliance ε, the inverse of the penalty that couples body
+/// velocities and contact velocities, is changed. A change requires a new factorisation, which costs as much as about
+/// ten iterations.
 const BALANCE_INTERVAL: u32 = 24;
-/// Minimum ratio of the larger to the smaller residual (of the velocities and of the impulses) at which the compliance
-/// ε is changed.
+/// Minimum ratio of the larger to the smaller of two residuals at which the compliance ε, the inverse of the penalty
+/// that couples body velocities and contact velocities, is changed. The residuals are the difference between these two
+/// velocities, and the change of the contact velocities in an iteration.
 const OUT_OF_BALANCE: f64 = 4.0;
-/// Maximum factor by which the compliance ε is increased or decreased in one change.
+/// Maximum factor by which the compliance ε, the inverse of the penalty that couples body velocities and contact
+/// velocities, is increased or decreased in one change.
 const LARGEST_CHANGE: f64 = 10.0;
-/// Minimum and maximum compliance ε, relative to the compliance 1/m_ij of a contact (effective mass m_ij). With a
-/// smaller ε rounding errors in the factorisation matter; with a larger ε the effect of an impulse hardly spreads from
-/// contact to contact.
+/// Minimum and maximum of the compliance ε, the inverse of the penalty that couples body velocities and contact
+/// velocities, relative to the compliance 1/m_ij of a contact (effective mass m_ij). With a smaller ε rounding errors
+/// in the factorisation matter; with a larger ε the effect of an impulse hardly spreads from contact to contact.
 const COMPLIANCES: [f64; 2] = [1e-5, 1.0];
 
-/// Work memory of the method for each number of degrees of freedom of a body (1 to 3). Memory that is not used
-/// allocates nothing.
+/// Work memory of the method, one part for each number of degrees of freedom of a body (1 to 3). A part that is not
+/// used allocates nothing.
 #[derive(Debug, Default)]
 pub(crate) struct AdmmMemory {
     one: Directions<1>,
     two: Directions<2>,
     three: Directions<3>,
-    /// The scaled impulses (in √J) with the smallest residual in the present solve.
+    /// The impulses with the smallest residual in the present solve, divided by the roots of the effective masses, √J.
     best: ScaledVector,
 }
 
@@ -71,7 +78,8 @@ struct Directions<const D: usize> {
     matrix: BlockMatrix<D>,
     /// Right-hand side of the linear equations; after their solution, the body velocities V in elimination order, m/s.
     vector: Vec<[f64; D]>,
-    /// Contact velocities z without the restitution term, m/s.
+    /// Contact velocities z (normal, tangential), m/s, which a penalty couples to the body velocities. They do not
+    /// contain the restitution term (restitution times the normal velocity before the step).
     targets: ScaledVector,
     impulses: ScaledVector,
     before: ScaledVector,
@@ -144,7 +152,8 @@ fn run<M: Model, const D: usize>(
 }
 
 impl<const D: usize> Directions<D> {
-    /// Factorises the matrix of the linear equations for the body velocities V, with the compliance ε = `compliance`.
+    /// Factorises the matrix of the linear equations for the body velocities V. `compliance` is the dimensionless
+    /// compliance ε, the inverse of the penalty that couples V and the contact velocities.
     fn factorise<M: Model>(&mut self, problem: &StepProblem<M>, compliance: f64) {
         let Self { elimination, matrix, .. } = self;
         matrix.start::<M>(elimination, &problem.bodies.masses);
@@ -179,7 +188,8 @@ impl<const D: usize> Directions<D> {
         matrix.factorise(elimination);
     }
 
-    /// Sets the body velocities V and the contact velocities z from the present velocities of the problem.
+    /// Sets the body velocities V to the present velocities of the problem's bodies, and the contact velocities z to
+    /// the relative velocities at the contacts that follow from V.
     fn start<M: Model>(&mut self, problem: &StepProblem<M>) {
         let bodies =
             self.elimination.body_at.iter().map(|&body| &problem.bodies.now[body as usize]);
@@ -215,7 +225,8 @@ impl<const D: usize> Directions<D> {
     }
 
     /// Computes the contact impulses and the contact velocities z from the body velocities V. Returns the factor by
-    /// which ε must be multiplied to make the residuals of velocities and impulses equal.
+    /// which the dimensionless compliance ε (`compliance`) must be multiplied to make two residuals equal: the
+    /// difference between z and the contact velocities that follow from V, and the change of z in this iteration.
     fn apply_law<M: Model>(&mut self, problem: &mut StepProblem<M>, compliance: f64) -> f64 {
         let (mut of_velocities, mut of_impulses) = (0.0, 0.0);
         let mut targets = std::mem::take(&mut self.targets);
@@ -256,7 +267,8 @@ impl<const D: usize> Directions<D> {
         if balance.is_finite() && balance > 0.0 { balance.sqrt().sqrt() } else { 1.0 }
     }
 
-    /// Computes the right-hand side of the linear equations for V from the impulses and the contact velocities z.
+    /// Computes the right-hand side of the linear equations for the body velocities V from the impulses and the contact
+    /// velocities z. `compliance` is the dimensionless compliance ε.
     fn take_loads<M: Model>(&mut self, problem: &StepProblem<M>, compliance: f64) {
         let Self { elimination, vector, targets, .. } = self;
         for (place, &body) in elimination.body_at.iter().enumerate() {
@@ -289,5 +301,6 @@ impl<const D: usize> Directions<D> {
     }
 }
 
-/// Gradients of a contact's normal and tangential velocity (v_n, v_t) by a body's velocity coordinates.
+/// Gradients of a contact's normal and tangential velocity (v_n, v_t) with respect to the velocity coordinates of a
+/// body.
 type Gradients = [[f64; 3]; 2];

@@ -1,10 +1,11 @@
 //! Accelerated projected gradients with adaptive restart (H. Mazhar, T. Heyn, D. Negrut, A. Tasora, *Using Nesterov's
 //! method to accelerate multibody dynamics with friction and contact*, 2015).
 //!
-//! The unknowns are the scaled impulses s of a step, √J. The scaled velocities are w(s) = A s + b, √J, with a symmetric
-//! matrix A and the velocities b without impulses (`contact_system`). With friction bounds that stay fixed during the
-//! solve (Tresca) the solution minimises the convex function f(s) = ½ s·As + b·s over a box, and Nesterov's method
-//! applies. It computes iterates x_k and extrapolated impulses y_k:
+//! The unknowns are the scaled impulses s of a step: impulses divided by the root of the contact's effective mass, √J.
+//! The scaled velocities (velocities times this root) are w(s) = A s + b, √J, with a symmetric matrix A and the scaled
+//! velocities b without impulses (`contact_system`). With friction bounds that stay fixed during the solve (Tresca) the
+//! solution minimises the convex function f(s) = ½ s·As + b·s over a box, and Nesterov's method applies. It computes
+//! iterates x_k and extrapolated impulses y_k:
 //!
 //! > x_{k+1} = projection of y_k − D w(y_k)/L,  y_{k+1} = x_{k+1} + β_k (x_{k+1} − x_k),
 //!
@@ -20,9 +21,9 @@
 //! * **L** is the largest curvature found during the solve. A change Δ of the impulses is accepted if Δ·AΔ ≤ L Δ·D⁻¹Δ;
 //!   otherwise the step is repeated with a larger L, up to the bound of `ContactSystem::splitting`. A variant in which
 //!   L falls between iterations, which is common, takes more iterations.
-//! * **Restart** (B. O'Donoghue, E. Candès 2015): the momentum is reset if it points away from the direction of the
-//!   projected step, (y_k − x_{k+1})·D⁻¹(x_{k+1} − x_k) > 0. The test with the gradient instead of the projected step
-//!   takes two to three times as many iterations.
+//! * **Restart** (B. O'Donoghue, E. Candès 2015): the factor β_k is reset to 0 if the extrapolation would point away
+//!   from the direction of the projected step, (y_k − x_{k+1})·D⁻¹(x_{k+1} − x_k) > 0. The test with the gradient
+//!   instead of the projected step takes two to three times as many iterations.
 //! * w is affine in the impulses, so w(y) is computed from the known w(x): one product with A per iteration.
 
 use super::contact_system::{BestIterate, ContactSystem, ScaledVector, WorkVectors, projected};
@@ -33,8 +34,8 @@ use crate::solver::settings::SolverSettings;
 /// 1, because the next step has about the same curvature.
 const MARGIN: f64 = 1.05;
 
-/// Solves a contact system by accelerated projected gradients, from its present impulses. Every product with the matrix
-/// A of the system counts as an iteration.
+/// Solves a contact system by accelerated projected gradients, from its present impulses. Every product of the system's
+/// matrix A with a vector of impulses, which gives their velocities, counts as an iteration.
 pub(super) fn solve<S: ContactSystem>(
     system: &mut S,
     settings: &SolverSettings,
@@ -70,7 +71,7 @@ pub(super) fn solve<S: ContactSystem>(
         if best.look(system, next, sweeps, settings) {
             return best.restore(system, sweeps);
         }
-        // (y − next)·D⁻¹(next − now): if positive, the momentum points away from the projected step.
+        // (y − next)·D⁻¹(next − now): if positive, the extrapolation points away from the projected step.
         let mut product = 0.0;
         for (contact, ((y, next), now)) in y.iter().zip(&*next).zip(&*x).enumerate() {
             product += (y[0] - next[0]) * (next[0] - now[0])
@@ -95,9 +96,9 @@ pub(super) fn solve<S: ContactSystem>(
 }
 
 /// Returns the curvature of the minimised function, dimensionless, along the difference Δ of two vectors of scaled
-/// impulses x and y: Δ·AΔ / Δ·D⁻¹Δ, with AΔ the difference of the scaled velocities w_x and w_y, and D⁻¹ the diagonal
-/// matrix with the entries 1 (normal) and [`ContactSystem::tangential_diagonal`] (tangential). Returns 0 if x and y are
-/// the same.
+/// impulses x and y (impulses divided by the root of the effective mass): Δ·AΔ / Δ·D⁻¹Δ. AΔ is the difference of the
+/// scaled velocities w_x and w_y that belong to x and y, and D⁻¹ is the diagonal matrix with the entries 1 (normal) and
+/// [`ContactSystem::tangential_diagonal`] (tangential). Returns 0 if x and y are equal.
 fn curvature<S: ContactSystem>(
     system: &S,
     [y, w_y]: [&ScaledVector; 2],
@@ -113,7 +114,8 @@ fn curvature<S: ContactSystem>(
     if squared > 0.0 { energy / squared } else { 0.0 }
 }
 
-/// Extrapolates scaled impulses: writes next + momentum · (next − now) to `result`.
+/// Extrapolates a vector of impulses or velocities: writes next + momentum · (next − now) to `result`. `momentum` is a
+/// dimensionless factor.
 fn extrapolate(next: &ScaledVector, now: &ScaledVector, momentum: f64, result: &mut ScaledVector) {
     result.clear();
     let ahead = |next: f64, now: f64| next + momentum * (next - now);

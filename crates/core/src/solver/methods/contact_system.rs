@@ -3,8 +3,8 @@
 //! **Scaled variables.** A contact has the effective masses m_n and m_t along its normal and tangent, kg, the shifted
 //! normal impulse p = P_n + C₀Δt (normal impulse plus cohesion force times time step, N·s), the tangential impulse P_t,
 //! N·s, the tangential velocity v_t, m/s, and the normal velocity plus the restitution term, u_n = v_n + ρ v_n^{n−1},
-//! m/s (restitution ρ times the normal velocity before the step). A step's problem is to find impulses, and velocities
-//! that are affine in the impulses, with
+//! m/s (restitution ρ times v_n^{n−1}, the normal velocity before the step). A step's problem is to find impulses, and
+//! velocities that are affine in the impulses, with
 //!
 //! > p = max(0, p − m_n u_n),  P_t = clamp(P_t − m_t v_t, ±bound(p)),
 //!
@@ -16,7 +16,7 @@
 //!
 //! > s_n = max(0, s_n − w_n),  s_t = clamp(s_t − w_t m_t/m_n, ±bound(s_n)).
 //!
-//! A method written for this trait needs no access to the bodies.
+//! A method that is written for the trait `ContactSystem` needs no access to the bodies.
 
 use super::pass::{sweep, tested_sweep};
 use super::stopping::{SolveReport, StallWatch};
@@ -37,7 +37,8 @@ pub type ScaledVector = Vec<[f64; 2]>;
 pub(crate) struct WorkVectors {
     /// Vectors of scaled impulses or velocities for intermediate results, as many as any method needs.
     pub pairs: [ScaledVector; 8],
-    /// One dimensionless weight per contact, computed by [`ContactSystem::splitting`].
+    /// One dimensionless weight per contact, computed by [`ContactSystem::splitting`]: the weights limit the step
+    /// lengths with which all contacts can be updated at once without divergence.
     pub weights: Vec<f64>,
 }
 
@@ -65,13 +66,16 @@ pub trait ContactSystem {
         self.len() == 0
     }
 
-    /// Copies the present scaled impulses s of all contacts to `impulses`, which is cleared first.
+    /// Copies the present scaled impulses of all contacts (impulses divided by the root of the effective mass, √J) to
+    /// `impulses`, which is cleared first.
     fn read(&self, impulses: &mut ScaledVector);
 
-    /// Sets the scaled impulses, which may have any sign and size, and computes the velocities that follow from them.
+    /// Sets the scaled impulses of all contacts (impulses divided by the root of the effective mass, √J), which may
+    /// have any sign and size, and computes the velocities that follow from them.
     fn write(&mut self, impulses: &[[f64; 2]]);
 
-    /// Copies the present scaled velocities w of all contacts to `velocities`, which is cleared first.
+    /// Copies the present scaled velocities of all contacts (velocities times the root of the effective mass, √J) to
+    /// `velocities`, which is cleared first.
     fn velocities(&self, velocities: &mut ScaledVector);
 
     /// Returns the ratio m_n/m_t of a contact's effective masses along normal and tangent, dimensionless. It is the
@@ -82,15 +86,15 @@ pub trait ContactSystem {
     /// Returns the friction coefficient μ of a contact, dimensionless.
     fn friction(&self, contact: usize) -> f64;
 
-    /// Returns the largest scaled tangential impulse, in √J, that friction allows with a scaled normal impulse `normal`
-    /// ≥ 0, in √J.
+    /// Returns the largest tangential impulse that friction allows at a contact whose normal impulse plus cohesion
+    /// impulse is `normal` ≥ 0. Both are scaled impulses (impulses divided by the root of the effective mass, √J).
     fn friction_bound(&self, contact: usize, normal: f64) -> f64;
 
-    /// Computes a dimensionless weight d > 0 per contact. Let A be the matrix that maps scaled impulses s to scaled
-    /// velocities w, and D the diagonal matrix with the entries d (normal) and d m_t/m_n (tangential) of each contact,
-    /// with the effective masses m_n and m_t along normal and tangent. The weights are such that D⁻¹ − A is positive
-    /// semi-definite. So a projected gradient step s − D w for all contacts at once cannot diverge. Clears `weights`
-    /// first.
+    /// Computes a dimensionless weight d > 0 per contact. Let A be the matrix that maps scaled impulses s (impulses
+    /// divided by the root of the effective mass) to scaled velocities w (velocities times this root), and D the
+    /// diagonal matrix with the entries d (normal) and d m_t/m_n (tangential) of each contact, with the effective
+    /// masses m_n and m_t along normal and tangent. The weights are such that D⁻¹ − A is positive semi-definite. So a
+    /// projected gradient step s − D w for all contacts at once cannot diverge. Clears `weights` first.
     fn splitting(&self, weights: &mut Vec<f64>);
 
     /// Performs one Gauss–Seidel sweep from the present impulses. The resulting impulses satisfy the bounds of the
@@ -108,16 +112,17 @@ pub trait ContactSystem {
     fn is_settled(&self, before: &[[f64; 2]], settings: &SolverSettings) -> bool;
 }
 
-/// The contact problem of a step, accessed in scaled variables. Impulses change the velocities of bodies; the matrix
-/// that maps impulses to contact velocities is never computed.
+/// The contact problem of a step, accessed in scaled variables: impulses divided by the root of the contact's effective
+/// mass, and velocities times this root. Impulses change the velocities of bodies; the matrix that maps impulses to
+/// contact velocities is never computed.
 #[derive(Debug)]
 pub struct BodySystem<'a, M: Model> {
     problem: &'a mut StepProblem<M>,
 }
 
 impl<'a, M: Model> BodySystem<'a, M> {
-    /// Creates the system of a contact problem. Contacts are numbered like the rows of the problem: contacts with fixed
-    /// bodies come first.
+    /// Creates the system of a contact problem. Its contacts are numbered in the order in which the problem stores
+    /// them: contacts with fixed bodies first, then contacts between grains.
     pub fn new(problem: &'a mut StepProblem<M>) -> Self {
         let StepProblem { rows, root_masses, .. } = &mut *problem;
         root_masses.clear();
@@ -280,8 +285,9 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
     }
 }
 
-/// Number of iterations between two computations of the residual that are not part of the stopping test. A shorter
-/// interval costs more; with a longer interval a solve that fails may miss its impulses with the smallest residual.
+/// Number of iterations between two computations of the residual that look for the best impulses so far and for a
+/// stalled solve, independently of the stopping test. A shorter interval costs more. A solve that fails returns the
+/// best impulses that were found in this way; with a longer interval it may miss better impulses.
 const LOOK_INTERVAL: u32 = 16;
 
 /// Returns trial impulses projected on the contact law: the nearest allowed normal impulse, and the nearest tangential
@@ -317,7 +323,8 @@ pub(crate) fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
     (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// The scaled impulses with the smallest residual of a solve so far, and the history of the residual.
+/// The impulses with the smallest residual of a solve so far (impulses divided by the root of the effective mass, √J),
+/// and the history of the residual.
 pub(crate) struct BestIterate<'a> {
     impulses: &'a mut ScaledVector,
     residual: f64,
@@ -333,7 +340,8 @@ impl<'a> BestIterate<'a> {
 
     /// Every [`LOOK_INTERVAL`] iterations, computes the residual of the present impulses of the system, which are given
     /// as `impulses`, and records them if their residual is the smallest so far. `sweeps` is the number of iterations
-    /// so far. Returns true if the solve should stop because it has stalled or an onlooker ends it.
+    /// so far. Returns true if the solve should stop because its residual no longer decreases (it has stalled), or
+    /// because an onlooker (a callback that watches the progress) ends it.
     pub(crate) fn look<S: ContactSystem>(
         &mut self,
         system: &S,

@@ -1,5 +1,6 @@
-//! The repeated solves of one step under a convex friction model, which keeps friction bounds or opening speeds fixed
-//! during each solve (`problem::friction`). All methods share this code.
+//! The repeated solves of one step under a convex friction model (`problem::friction`). Such a model keeps one number
+//! per contact fixed during each solve: a friction bound, or an opening speed that is added to the normal velocity. All
+//! methods share this code.
 
 use super::pass::{settles_in, sweep};
 use super::stopping::SolveReport;
@@ -13,9 +14,10 @@ use crate::solver::settings::{FrictionModel, SolverSettings};
 /// More sweeps cost more than the second solve that they save.
 const SWEEPS_FOR_BOUNDS: [u32; 2] = [4, 46];
 
-/// Solves a problem with `solve_once` as often as the settings require. Recomputes the friction bounds or opening
-/// speeds of the friction model before each further solve. The step counts as solved if the last solve has converged;
-/// the earlier solves only provide bounds or speeds.
+/// Solves a problem with `solve_once` as often as the settings require. Before each further solve, recomputes the
+/// numbers that the friction model keeps fixed during a solve: friction bounds, or opening speeds that are added to
+/// normal velocities. The step counts as solved if the last solve has converged; the earlier solves only provide these
+/// numbers.
 pub(super) fn solve_models<M: Model>(
     problem: &mut StepProblem<M>,
     settings: &SolverSettings,

@@ -25,13 +25,13 @@ use crate::contact::{ContactLaw, Lanes, law};
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
-/// The friction model of a step, and its *lagged numbers*: one number per contact (friction bound or opening speed)
-/// that stays fixed during a solve.
+/// The friction model of a step, and its *lagged numbers*: one number per contact that stays fixed during a solve,
+/// either a friction bound or an opening speed (a speed added to the normal velocity), m/s.
 #[derive(Clone, Debug)]
 pub(crate) struct LaggedFriction {
     pub model: FrictionModel,
-    /// Lagged number of each contact, m/s: a friction bound or an opening speed that stays fixed during a solve. Empty
-    /// under Coulomb's law.
+    /// Lagged number of each contact, m/s, which stays fixed during a solve: a friction bound (divided by the effective
+    /// mass) or an opening speed (a speed added to the normal velocity). Empty under Coulomb's law.
     pub now: Vec<f64>,
 }
 
@@ -43,16 +43,19 @@ impl Default for LaggedFriction {
 
 /// The projection of a contact's trial impulses onto the impulses that a friction model allows.
 pub(crate) trait FrictionProjection: Sized {
-    /// True if the model needs a number per contact (friction bound or opening speed) that stays fixed during a solve.
+    /// True if the model needs a number per contact that stays fixed during a solve: a friction bound or an opening
+    /// speed (a speed added to the normal velocity).
     const LAGS: bool;
     /// True if the projection supports contacts with different friction coefficients in one problem.
     const TAKES_PAIRS: bool = false;
     /// True if sweeps with this projection support walls that a force drives.
     const TAKES_DRIVES: bool = true;
 
-    /// Returns the allowed shifted normal and tangential impulses (σ, λ_t), m/s, that are nearest to `trial` in the
-    /// metric diag(1, m_n/m_t), with the effective masses m_n and m_t along normal and tangent. `lagged` is the
-    /// contact's friction bound or opening speed, m/s, which stays fixed during the solve; Coulomb's law ignores it.
+    /// Returns the allowed impulses (σ, λ_t) that are nearest to `trial` in the metric diag(1, m_n/m_t): normal impulse
+    /// plus cohesion impulse σ and tangential impulse λ_t, both divided by the effective mass, m/s. m_n and m_t are the
+    /// effective masses along normal and tangent. `lagged`, m/s, stays fixed during the solve: the contact's friction
+    /// bound (`tresca`), or its opening speed, which is added to the normal velocity (`associated`, `desaxce`).
+    /// Coulomb's law ignores it.
     fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2];
 }
 
@@ -101,8 +104,9 @@ impl<const ALL_RUBS: bool> FrictionProjection for CoulombFriction<ALL_RUBS> {
     }
 }
 
-/// Returns trial impulses projected on Coulomb's law. All impulses are divided by the effective mass, m/s. The result is the shifted normal impulse σ on σ ≥ 0, and the tangential
-/// impulse λ_t on the friction bound of the projected σ.
+/// Projects trial impulses on Coulomb's law. Returns the normal impulse plus cohesion impulse σ, which is the trial
+/// value or, if this is negative, 0, and the tangential impulse λ_t, which is limited to the friction bound that
+/// belongs to σ. All impulses are divided by the effective mass, m/s.
 #[inline(always)]
 pub(crate) fn project_by_coulomb<M: Model, T: Lanes>(
     law: &ContactLaw,
@@ -115,8 +119,9 @@ pub(crate) fn project_by_coulomb<M: Model, T: Lanes>(
     [shifted, law::coulomb(tangential, law.friction_bound(shifted))]
 }
 
-/// The projection of the friction model `tresca`: σ ≥ 0, and |λ_t| at most a friction bound, m/s, that stays fixed
-/// during a solve.
+/// The projection of the friction model `tresca`: σ ≥ 0 for the normal impulse plus cohesion impulse σ, and |λ_t| at
+/// most a friction bound for the tangential impulse λ_t. All are divided by the effective mass, m/s, and the bound
+/// stays fixed during a solve.
 pub(crate) enum BoundedFriction {}
 
 impl FrictionProjection for BoundedFriction {
@@ -128,8 +133,8 @@ impl FrictionProjection for BoundedFriction {
     }
 }
 
-/// The projection of the friction models `associated` and `desaxce` on the friction cone. These models add to the
-/// normal velocity of a contact an opening speed, m/s, that stays fixed during a solve.
+/// The projection of the friction models `associated` and `desaxce` on the friction cone. An opening speed, m/s, which
+/// stays fixed during a solve, is added to the normal velocity of a contact; under `associated` it is 0.
 pub(crate) enum ConeFriction {}
 
 impl FrictionProjection for ConeFriction {
@@ -146,7 +151,7 @@ impl FrictionProjection for ConeFriction {
 impl<M: Model> StepProblem<M> {
     /// Sets the friction model of a problem whose contacts and velocities are already set up. Computes the numbers that
     /// stay fixed during a solve: the friction bounds of `tresca` from the present impulses, or the opening speeds of
-    /// `desaxce` from the velocities at the beginning of the step.
+    /// `desaxce`, which are added to normal velocities, from the velocities at the beginning of the step.
     pub(crate) fn begin_friction(&mut self, model: FrictionModel) {
         self.friction.model = model;
         self.friction.now.clear();
@@ -165,15 +170,15 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Makes Coulomb's law the friction model again, and deletes the friction bounds or opening speeds of the previous
-    /// friction model.
+    /// Makes Coulomb's law the friction model again, and deletes the friction bounds or opening speeds (added to normal
+    /// velocities) of the previous friction model.
     pub(crate) fn forget_bounds(&mut self) {
         self.friction.model = FrictionModel::Coulomb;
         self.friction.now.clear();
     }
 
-    /// Recomputes the friction bounds of `tresca` or the opening speeds of `desaxce` from the present impulses and
-    /// velocities.
+    /// Recomputes the friction bounds of `tresca` or the opening speeds of `desaxce`, which are added to normal
+    /// velocities, from the present impulses and velocities.
     pub(crate) fn renew_friction(&mut self) {
         match self.friction.model {
             FrictionModel::Tresca => self.lag_by(bound),
@@ -182,8 +187,9 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the friction bound or opening speed of each contact to the result of `lagged_of`, a function of the contact
-    /// law, the row (data of the contact) and its tangential velocity, m/s.
+    /// Sets the number of each contact that stays fixed during a solve, m/s (a friction bound or an opening speed (a
+    /// speed added to the normal velocity)), to the result of `lagged_of`: a function of the contact law, the row (data
+    /// of the contact) and its tangential velocity, m/s.
     fn lag_by(&mut self, lagged_of: impl Fn(&ContactLaw, &Row<M>, f64) -> f64) {
         let mut lagged = std::mem::take(&mut self.friction.now);
         lagged.clear();
@@ -194,14 +200,14 @@ impl<M: Model> StepProblem<M> {
     }
 }
 
-/// Returns the friction bound g of a contact under `tresca`, m/s: the bound of Coulomb's law for the contact's present
-/// shifted normal impulse.
+/// Returns the friction bound of a contact under `tresca`, divided by the effective mass, m/s: the bound of Coulomb's
+/// law for the contact's present normal impulse plus cohesion impulse.
 fn bound<M: Model>(law: &ContactLaw, row: &Row<M>, _: f64) -> f64 {
     law.friction_bound(row.shifted_impulse)
 }
 
-/// Returns the opening speed of a contact under `desaxce`, m/s: the friction coefficient times the magnitude of the
-/// tangential velocity.
+/// Returns the opening speed of a contact under `desaxce`, m/s, which is added to its normal velocity: the friction
+/// coefficient times the magnitude of the tangential velocity.
 fn opening<M: Model>(law: &ContactLaw, _: &Row<M>, tangential_velocity: f64) -> f64 {
     law.friction * tangential_velocity.abs()
 }

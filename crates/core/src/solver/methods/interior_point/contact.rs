@@ -1,24 +1,26 @@
 //! A contact in the interior point method, and its contribution to a Newton step.
 //!
-//! A friction model allows the impulses p = (σ, λ), shifted normal and tangential impulse, m/s, with G p + h ≥ 0. The
-//! matrix G has the row (1, 0) for σ ≥ 0, and the rows (κ, ±1) for the two bounds of friction. If the friction bound
-//! grows with σ, the slope κ is the friction coefficient μ and h = 0; if the bound g stays fixed during the solve, κ =
-//! 0 and h is g in the rows of friction. With slacks x = G p + h and multipliers y, one of each per row k of G, the
-//! solution satisfies
+//! A friction model allows the impulses p = (σ, λ) with G p + h ≥ 0: σ is the shifted normal impulse (normal impulse
+//! plus cohesion impulse) and λ the tangential impulse, both divided by the effective mass, m/s. The matrix G has the
+//! row (1, 0) for σ ≥ 0, and the rows (κ, ±1) for the two bounds of friction. If the friction bound grows with σ, the
+//! slope κ is the friction coefficient μ and h = 0; if the bound g stays fixed during the solve, κ = 0 and h is g in
+//! the rows of friction. With slacks x = G p + h and multipliers y, one of each per row k of G, the solution satisfies
 //!
 //! > (w, v) = Aᵀy,  x ≥ 0, y ≥ 0, x_k y_k = 0,
 //!
-//! where w is the normal velocity plus the restitution term (and, under `desaxce`, an opening speed), and v the
-//! tangential velocity, m/s. A = G, except in Coulomb's law, where the multipliers of friction have no component along
-//! the normal. A Newton step aims at products x_k y_k equal to the targets e_k. Let δp, δx and δy be the changes of p,
-//! x and y in the step, δu the change of the contact's velocity (v_n, v_t), and D the diagonal matrix of the ratios
-//! y_k/x_k. The step satisfies for each contact
+//! where w is the normal velocity plus the restitution term (restitution times the normal velocity before the step)
+//! and, under `desaxce`, plus an opening speed that stays fixed during a solve. v is the tangential velocity, m/s. A =
+//! G, except in Coulomb's law, where the multipliers of friction have no component along the normal. A Newton step aims
+//! at products x_k y_k equal to the targets e_k. Let δp, δx and δy be the changes of p, x and y in the step, δu the
+//! change of the contact's velocity (v_n, v_t), and D the diagonal matrix of the ratios y_k/x_k. The step satisfies for
+//! each contact
 //!
 //! > S δp = b − δu,  S = AᵀD G + ε,  b = Aᵀ(e/x) − (w, v),
 //! > δx = G δp,  δy = e/x − y − D δx,
 //!
-//! with a small compliance ε that keeps S regular. ε changes the path of the iterates but not the solution. On the
-//! cone, the two slacks can replace p as variables, and S is diagonal in them.
+//! with a small compliance ε that keeps S regular. ε changes the path of the iterates but not the solution. If the
+//! allowed impulses form a cone, |λ| ≤ μσ, the slacks of its two sides can replace p as variables, and S is diagonal in
+//! them.
 //!
 //! Slacks are separate variables with their own initial values and steps. If they were recomputed from the impulses, or
 //! updated by a difference of two changes, a small slack would be only rounding error. For the same reason the velocity
@@ -26,31 +28,36 @@
 
 use crate::contact::law;
 
-/// Number of slacks of a contact: one for the condition that the shifted normal impulse is not negative, and two for
-/// the bounds of friction.
+/// Number of slacks of a contact: one for the condition that the normal impulse plus cohesion impulse is not negative,
+/// and two for the two bounds of the tangential impulse. A slack is the distance from such a bound.
 pub(super) const PAIRS: usize = 3;
 
-/// The set of impulses that a friction model allows at a contact, as constraints with slacks. The impulses are the
-/// shifted normal impulse σ and the tangential impulse λ, m/s.
+/// The set of impulses that a friction model allows at a contact, as constraints with slacks (distances from the bounds
+/// of the constraints). The impulses are the shifted normal impulse σ (normal impulse plus cohesion impulse) and the
+/// tangential impulse λ, both divided by the effective mass, m/s.
 pub(super) trait Shape {
-    /// Index of the first of the three slacks that a contact with this set of impulses uses. Slack 0 belongs to the
-    /// condition that the shifted normal impulse is not negative, slacks 1 and 2 to the bounds of friction.
+    /// Index of the first slack that a contact with this set of impulses uses. There are three slacks: slack 0 is the
+    /// distance of the normal impulse plus cohesion impulse from 0, and slacks 1 and 2 are the distances of the
+    /// tangential impulse from its two bounds.
     const FIRST: usize;
-    /// Index after the last of the three slacks that a contact with this set of impulses uses.
+    /// Index after the last slack that a contact with this set of impulses uses. There are three slacks, which are the
+    /// distances of the impulses from their bounds.
     const END: usize;
-    /// True if the Newton steps use the two slacks of the friction bounds as variables instead of the normal and
-    /// tangential impulse.
+    /// True if the Newton steps use two slacks as variables instead of the normal and tangential impulse: the distances
+    /// of the tangential impulse from its two bounds.
     const CONE: bool;
-    /// True if the friction bound grows with the normal impulse but the multipliers of friction act only along the
-    /// tangent, as in Coulomb's law. The problem is then not convex.
+    /// True for Coulomb's law: the friction bound grows with the normal impulse, but the multipliers of the friction
+    /// bounds are velocities along the tangent only, so that a sliding contact does not open. The problem is then not
+    /// convex.
     const LEANS: bool = false;
     /// Regularisation ε: a compliance added to each contact, relative to the compliance of a contact whose bodies touch
-    /// nothing else. With a smaller ε, rounding errors in the factorisation would cancel the gain. With a larger ε,
-    /// impulses that only balance each other would change too little in a step.
+    /// nothing else. With a smaller ε, rounding errors in the factorisation would cost as much accuracy as the smaller
+    /// ε gains. With a larger ε, impulses that only balance each other would change too little in a step.
     const COMPLIANCE: f64 = 1e-11;
 }
 
-/// Allowed impulses of a contact without friction: the shifted normal impulse σ is at least 0.
+/// Allowed impulses of a contact without friction: the shifted normal impulse σ (normal impulse plus cohesion impulse)
+/// is at least 0.
 pub(super) enum HalfLine {}
 
 impl Shape for HalfLine {
@@ -59,8 +66,9 @@ impl Shape for HalfLine {
     const CONE: bool = false;
 }
 
-/// Allowed impulses of the friction model `tresca`: σ ≥ 0 for the shifted normal impulse σ, and |λ| ≤ g for the
-/// tangential impulse λ, with a friction bound g that stays fixed during a solve.
+/// Allowed impulses of the friction model `tresca`: σ ≥ 0 for the shifted normal impulse σ (normal impulse plus
+/// cohesion impulse), and |λ| ≤ g for the tangential impulse λ, with a friction bound g that stays fixed during a
+/// solve.
 pub(super) enum Strip {}
 
 impl Shape for Strip {
@@ -70,8 +78,9 @@ impl Shape for Strip {
 }
 
 /// Allowed impulses of the friction models `associated` and `desaxce`: |λ| ≤ μσ, with the tangential impulse λ, the
-/// friction coefficient μ and the shifted normal impulse σ. An opening speed that stays fixed during a solve is added
-/// to the normal velocity.
+/// friction coefficient μ and the shifted normal impulse σ (normal impulse plus cohesion impulse). `desaxce` also adds
+/// an opening speed, which is estimated before a solve and stays fixed during it, to the normal velocity of the
+/// contact.
 pub(super) enum Cone {}
 
 impl Shape for Cone {
@@ -80,8 +89,9 @@ impl Shape for Cone {
     const CONE: bool = true;
 }
 
-/// Allowed impulses of Coulomb's law: σ ≥ 0 for the shifted normal impulse σ, and |λ| ≤ μσ for the tangential impulse
-/// λ, with the friction coefficient μ. The multipliers of friction act only along the tangent.
+/// Allowed impulses of Coulomb's law: σ ≥ 0 for the shifted normal impulse σ (normal impulse plus cohesion impulse),
+/// and |λ| ≤ μσ for the tangential impulse λ, with the friction coefficient μ. The multipliers of the two bounds of λ
+/// are velocities along the tangent only, so that a sliding contact does not open.
 pub(super) enum Leaning {}
 
 impl Shape for Leaning {
@@ -95,25 +105,31 @@ impl Shape for Leaning {
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PathContact {
-    /// Shifted normal impulse σ and tangential impulse λ, m/s.
+    /// Shifted normal impulse σ (normal impulse plus cohesion impulse) and tangential impulse λ, both divided by the
+    /// effective mass, m/s.
     pub impulse: [f64; 2],
-    /// Slacks of the constraints, m/s: of the shifted normal impulse σ ≥ 0, and of the two bounds of friction.
+    /// Slacks of the constraints, m/s, in the unit of impulses divided by the effective mass: the distance of the
+    /// normal impulse plus cohesion impulse from 0, and the distances of the tangential impulse from its two bounds.
     pub slack: [f64; PAIRS],
-    /// Multipliers of the constraints, m/s, in the order of the slacks.
+    /// Multipliers of the constraints, m/s, in the order of `slack`: first of the condition that the normal impulse
+    /// plus cohesion impulse is not negative, then of the two bounds of the tangential impulse. The product of a
+    /// multiplier and its slack is 0 at the solution.
     pub multiplier: [f64; PAIRS],
-    /// Friction bound g, which stays fixed during a solve, m/s.
+    /// Largest tangential impulse under `tresca`, divided by the effective mass, m/s. It stays fixed during a solve. 0
+    /// for the models whose friction bound grows with the normal impulse.
     pub bound: f64,
-    /// Opening speed of the friction model, which is added to the normal velocity w and stays fixed during a solve,
-    /// m/s.
+    /// Opening speed, m/s, that the friction model `desaxce` adds to the normal velocity of the contact. It is
+    /// estimated before a solve and stays fixed during it. 0 for all other models.
     pub lag: f64,
-    /// Velocities (w, v) at the present impulses, m/s: w is the normal velocity plus the restitution term and the
-    /// opening speed `lag`, v the tangential velocity.
+    /// Velocities (w, v) at the present impulses, m/s: w is the normal velocity plus the opening speed `lag` and the
+    /// restitution term (restitution times the normal velocity before the step), v is the tangential velocity.
     pub velocity: [f64; 2],
     /// Regularisation ε of this contact, relative to the compliance of a contact whose bodies touch nothing else.
     pub compliance: f64,
     /// Mobility of each variable of the Newton step: its change per change of the contact's velocity, dimensionless. It
-    /// is the inverse of a diagonal entry of the contact's matrix S in the Newton step. The variables are the normal
-    /// and tangential impulse, or on the friction cone the slacks of the two bounds of friction.
+    /// is the inverse of a diagonal entry of the matrix that maps changes of the variables to changes of velocities.
+    /// The variables are the normal and tangential impulse, or on the friction cone the slacks of the two friction
+    /// bounds (distances from the bounds).
     pub mobility: [f64; PAIRS],
 }
 
@@ -124,7 +140,7 @@ pub(super) struct PathStep {
     pub multiplier: [f64; PAIRS],
 }
 
-/// Coefficients that are the same for all contacts of a solve.
+/// Slope of the friction bound and ratio of the effective masses, which are the same for all contacts of a solve.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContactNumbers {
     /// Slope of the friction bound: the friction coefficient μ if the bound grows with the normal impulse, and 0 if the
@@ -136,14 +152,15 @@ pub(super) struct ContactNumbers {
 
 impl ContactNumbers {
     /// Returns the compliance, dimensionless, of a contact whose bodies touch nothing else, to impulses that change
-    /// only one of the two slacks of the cone. Such impulses (normal, tangential) have the direction (1/κ, ±1)/2, with
-    /// κ the slope of the friction bound.
+    /// only one of the two slacks κσ ± λ of the friction cone |λ| ≤ κσ (slope κ, normal impulse σ, tangential impulse
+    /// λ). Such impulses (σ, λ) have the direction (1/κ, ±1)/2.
     fn along_slack(&self) -> f64 {
         0.25 * (1.0 / (self.slope * self.slope) + self.tangential_compliance)
     }
 
-    /// Returns the component of the velocity (v_n, v_t), normal and tangential, along variable `pair` of the Newton
-    /// step: along a slack if the allowed impulses form a cone, otherwise along the normal or tangential impulse.
+    /// Returns the component of the normal and tangential velocity (v_n, v_t) along the variable of the Newton step
+    /// with the index `pair`. If the allowed impulses form a cone, variables 1 and 2 are the slacks of the two friction
+    /// bounds; otherwise variable 0 is the normal and variable 1 the tangential impulse.
     #[inline(always)]
     fn along<S: Shape>(&self, pair: usize, [normal, tangential]: [f64; 2]) -> f64 {
         match (S::CONE, pair) {
@@ -156,8 +173,8 @@ impl ContactNumbers {
 }
 
 impl PathContact {
-    /// Returns the index after the last slack that this contact uses: with a fixed friction bound of 0, the contact has
-    /// no slacks of friction.
+    /// Returns the index after the last slack that this contact uses. With a fixed friction bound of 0, only slack 0 is
+    /// used, which belongs to the normal impulse, because the tangential impulse is 0.
     #[inline(always)]
     pub(super) fn end<S: Shape>(&self) -> usize {
         if !S::CONE && !S::LEANS && self.bound == 0.0 { 1 } else { S::END }
@@ -180,8 +197,9 @@ impl PathContact {
         };
     }
 
-    /// Returns the change of the contact's impulses in a Newton step per change of its velocity with opposite sign, a
-    /// 2×2 matrix S⁻¹ for (normal, tangential), dimensionless.
+    /// Returns the matrix S⁻¹ of the contact in a Newton step, 2×2, dimensionless: if the contact's normal and
+    /// tangential velocity change by δu, its normal and tangential impulse, divided by the effective mass, change by
+    /// −S⁻¹ δu.
     #[inline(always)]
     pub(super) fn stiffness<S: Shape>(&self, numbers: ContactNumbers) -> [[f64; 2]; 2] {
         let [normal, one, other] = self.mobility;
@@ -256,7 +274,7 @@ impl PathContact {
 
     /// Returns the Newton step of impulses, slacks and multipliers, m/s, that follows from the change `change` of the
     /// normal and tangential velocity, m/s. `targets` are the products of slacks and multipliers at which the step
-    /// aims.
+    /// aims, (m/s)².
     #[inline(always)]
     pub(super) fn direction<S: Shape>(
         &self,
@@ -302,17 +320,17 @@ impl PathContact {
         }
     }
 
-    /// Moves the contact's impulses, slacks and multipliers to the central path of the interior point method, near the
-    /// impulses that an update of the natural map would give: every product of a slack and its multiplier becomes
-    /// `centre`, (m/s)². `trial` are the normal and tangential trial impulses of this update, m/s, before they are
-    /// projected on the allowed impulses.
+    /// Moves the contact's impulses, slacks and multipliers to the central path of the interior point method: every
+    /// product of a slack and its multiplier becomes `centre`, (m/s)². The chosen point of the path is near the
+    /// impulses to which the friction model would project `trial`, the normal and tangential trial impulses (present
+    /// impulses divided by the effective mass, minus velocities), m/s.
     ///
-    /// Let τ = `centre`. The new shifted normal impulse σ and its multiplier u must have the product τ, and the
-    /// difference σ − u must be the normal trial impulse. These two conditions give a quadratic equation. With a fixed
-    /// friction bound g, the smaller slack x and the larger slack 2g − x must result in the velocity τ/x − τ/(2g − x).
-    /// The second term is neglected, which again leaves a quadratic equation. On the cone the slacks at the point of
-    /// the cone that is nearest to the trial, and their multipliers, are moved away from 0 by the same quadratic
-    /// equation.
+    /// Let τ = `centre`. The new normal impulse plus cohesion impulse σ and its multiplier u must have the product τ,
+    /// and the difference σ − u must be the normal trial impulse. These two conditions give a quadratic equation. With
+    /// a fixed friction bound g, the smaller slack x of the tangential impulse and its larger slack 2g − x must result
+    /// in the velocity τ/x − τ/(2g − x). The second term is neglected, which again leaves a quadratic equation. If the
+    /// allowed impulses form a cone, the slacks at the point of the cone that is nearest to the trial impulses, and
+    /// their multipliers, are moved away from 0 by the same quadratic equation.
     pub(super) fn centre<S: Shape>(
         &mut self,
         numbers: ContactNumbers,

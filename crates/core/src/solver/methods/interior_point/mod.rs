@@ -1,18 +1,19 @@
 //! A primal–dual interior point method with a sparse direct factorisation.
 //!
 //! The solution of a convex friction model (`problem::friction`) consists of the allowed impulses p = (σ, λ) of all
-//! contacts (shifted normal and tangential impulse, m/s) that minimise
+//! contacts (normal impulse plus cohesion impulse σ, and tangential impulse λ, divided by the effective mass, m/s) that
+//! minimise
 //!
 //! > ½‖V‖²_M + Σ m_ij s·σ,  V = V_free + M⁻¹ Hᵀ m (p − c),
 //!
 //! with V the velocities of the bodies, M their inertias, ½‖V‖²_M = ½ V·MV their kinetic energy, V_free their
 //! velocities without contacts, H the map from V to contact velocities, m the effective masses m_ij of the contacts,
-//! kg, s the opening speed that the friction model keeps fixed during a solve, m/s, and c the capture speed, m/s. The
-//! velocities V of the solution are unique. Each constraint of the impulses has a slack and a multiplier (`contact`),
-//! whose product is 0 at the solution. The method follows the *central path*, on which all products are equal and
-//! decrease (S. Mehrotra, 1992, for predictor and corrector; J. Gondzio, 1996, for further corrections). V is always
-//! computed from the impulses, so that rounding errors do not add up. Impulses are eliminated from each Newton step.
-//! One linear system for the change δV of the velocities remains,
+//! kg, s the opening speed that the friction model keeps fixed during a solve, m/s, and c the capture speed, m/s (the
+//! opening speed that cohesion cancels in one step). The velocities V of the solution are unique. Each constraint of
+//! the impulses has a slack and a multiplier (`contact`), whose product is 0 at the solution. The method follows the
+//! *central path*, on which all products are equal and decrease (S. Mehrotra, 1992, for predictor and corrector; J.
+//! Gondzio, 1996, for further corrections). V is always computed from the impulses, so that rounding errors do not add
+//! up. Impulses are eliminated from each Newton step. One linear system for the change δV of the velocities remains,
 //!
 //! > (M + Hᵀ m S⁻¹ H) δV = Hᵀ m S⁻¹ b,
 //!
@@ -22,12 +23,12 @@
 //! more iterations on a larger pile.
 //!
 //! If steps become short near the end, as on dense piles, which are hyperstatic, proximal multipliers (`proximal`)
-//! finish the solve. If the path does not lead to a solution, proximal multipliers are tried from impulses far from a
-//! solution.
+//! finish the solve. If the path does not lead to a solution, proximal multipliers are tried from the impulses with the
+//! smallest residual so far, which may be far from a solution.
 //!
-//! A solve begins with a few sweeps, and one update of the natural map from their impulses. Its first interior point is
-//! the point of the path nearest to the result; the smaller the error of the impulses is, the nearer this point is to
-//! the end of the path.
+//! A solve begins with a few sweeps. Then the contact laws are applied once to all contacts, which projects their
+//! impulses. The first interior point is a point of the path near the projected impulses; if this projection changes
+//! the impulses less, the point is nearer to the end of the path.
 //!
 //! The problem of Coulomb's law is not convex, and its path may turn back (`path`).
 
@@ -50,8 +51,8 @@ use crate::solver::problem::StepProblem;
 use crate::solver::settings::{FrictionModel, SolverSettings};
 use crate::world::FrictionCone;
 
-/// Work memory of the interior point method for each number of degrees of freedom of a body (1 to 3). Memory that is
-/// not used allocates nothing.
+/// Work memory of the interior point method, one part for each number of degrees of freedom of a body (1 to 3). A part
+/// that is not used allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct InteriorMemory {
     one: PathWorkspace<1>,
@@ -112,8 +113,9 @@ fn convex<M: Model, S: Shape>(
 }
 
 /// Follows the central path of Coulomb's law as far as possible, and then lets `go_on` continue with another method.
-/// The path is not used in two cases: with the compressive cone, which has a corner at σ = c (shifted normal impulse =
-/// capture speed) that the path cannot pass, and if contacts have different friction coefficients.
+/// The path is not used in two cases. In the compressive cone, cohesion does not raise the friction bound, so the bound
+/// has a corner at a normal force of 0, which the path cannot pass. In the other case, contacts have different friction
+/// coefficients.
 fn coulomb<M: Model>(
     problem: &mut StepProblem<M>,
     memory: &mut InteriorMemory,

@@ -39,16 +39,17 @@ const WORTH_A_SOLVE: f64 = 0.02;
 /// Number of consecutive factorisations without a new smallest residual, after which an attempt to follow the central
 /// path of a convex model ends.
 const PATIENCE: u32 = 15;
-/// Residual of the natural map, dimensionless, at or below which proximal multipliers try to finish the solve. They are
-/// not used for the friction models with a cone (`associated`, `desaxce`), for which the central path does not slow
-/// down.
+/// Residual under the friction model of the solve, dimensionless, at or below which proximal multipliers try to finish
+/// the solve. They are not used for `associated` and `desaxce`, whose allowed impulses form a cone, because the central
+/// path of these models does not slow down near its end.
 const POLISH_FROM: f64 = 1e-6;
 /// Condition for another attempt with proximal multipliers after a failed attempt: the residual must be at most this
 /// fraction of the residual at the failure.
 const POLISH_AGAIN: f64 = 0.1;
-/// Ratio of the velocity error at the end of the central path to the velocity error after [`SWEEPS_INSTEAD`] sweeps,
-/// below which the result of the path is kept although it misses the tolerance. With a larger ratio, huge impulses
-/// would count as a solution of a problem that has no solution.
+/// Maximum ratio of two velocity errors at which the result of the central path is kept although it misses the
+/// tolerance: the error at the end of the path, divided by the error after [`SWEEPS_INSTEAD`] sweeps. At a larger ratio
+/// the result of the sweeps is used. With a larger maximum, huge impulses would count as a solution of a problem that
+/// has no solution.
 const FAR_NEARER: f64 = 1e-2;
 /// Number of Gauss–Seidel sweeps whose result is used if the central path does not lead to a solution.
 const SWEEPS_INSTEAD: u32 = 100;
@@ -60,27 +61,30 @@ const STARTS: u32 = 4;
 const FOLDED_STARTS: u32 = 4;
 /// Number of sweeps between two attempts to follow the central path of Coulomb's law.
 const SWEEPS_BETWEEN: u32 = 30;
-/// Limit of an attempt to follow the central path of Coulomb's law: it ends after this number of factorisations that
-/// have not halved the residual.
+/// Limit of an attempt to follow the central path of Coulomb's law: it ends if the residual does not halve within this
+/// number of factorisations.
 const FOLDED_PATIENCE: u32 = 8;
 /// Number of consecutive short steps after which an attempt to follow the central path of Coulomb's law ends.
 const SHORT_STEPS: u32 = 3;
 /// Step length, as a fraction of the full Newton step, below which a step along the central path of Coulomb's law
 /// counts as short.
 const SHORT_STEP: f64 = 0.05;
-/// Step length, as a fraction of the full Newton step, below which the contacts that limit the step get a larger
-/// regularisation (a compliance added to a contact).
+/// Step length, as a fraction of the full Newton step, below which the contacts that limit the step, and the other
+/// contacts of their bodies, get a larger regularisation (a compliance added to a contact).
 const LONG_STEP: f64 = 0.3;
 /// Minimum and maximum regularisation of a contact that limits a step: a compliance added to the contact, relative to
 /// the compliance of a contact whose bodies touch nothing else.
 const SOFT: [f64; 2] = [1e-3, 1.0];
-/// Factor by which the regularisation (added compliance) of a contact that limits a step grows per step.
+/// Factor by which the regularisation (added compliance) of a contact grows per step, if a contact of one of its bodies
+/// limits the length of the step.
 const SOFTENING: f64 = 30.0;
-/// Factor by which the regularisation (added compliance) of all other contacts falls per step.
+/// Factor by which the regularisation (added compliance) of a contact falls per step, if no contact of its bodies
+/// limits the length of the step.
 const HARDENING: f64 = 0.5;
 
 impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
-    /// Takes a step along the central path. Returns the step length and the residual of the natural map after the step.
+    /// Takes a step along the central path. Returns the step length, as a fraction of the full Newton step, and the
+    /// residual after the step under the friction model of the solve, dimensionless.
     pub(super) fn advance(&mut self) -> (f64, f64) {
         let share = self.newton_step();
         self.report.factorisations += 1;

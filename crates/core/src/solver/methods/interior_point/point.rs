@@ -1,5 +1,5 @@
-//! The state of a solve by the interior point method: its first point on the central path, the largest impulses that
-//! count as a solution, and the tests that end the solve.
+//! The state of a solve by the interior point method: its first point on the central path, the limit above which
+//! impulses do not count as a solution, and the tests that end the solve.
 
 use std::marker::PhantomData;
 
@@ -20,20 +20,24 @@ pub(super) const SWEEPS_FIRST: u32 = 4;
 /// Error of the impulses, in multiples of the tolerance of the stopping test, at or below which a few sweeps try to
 /// finish the solve.
 const SWEEPS_FROM: f64 = 10.0;
-/// Largest normal impulse that a solution may have, divided by the largest impulse or velocity at the start of a solve.
-/// From zero initial impulses on a pile of 100 layers, impulses grow by a factor of 10⁴.
+/// Largest normal impulse that a solution may have, divided by the largest impulse or speed of a contact at the start
+/// of a solve (impulses are divided by the effective mass, so that both are in m/s). Without this limit, diverging
+/// impulses could count as a solution. In a problem with a solution, a pile of 100 layers, impulses grow by a factor of
+/// 10⁴ from zero initial impulses.
 const LARGEST_IMPULSE: f64 = 1e7;
 /// Number of sweeps that try to finish a solve when the central path is near its end.
 const SWEEPS_LAST: u32 = 2;
 
 /// Product of slack and multiplier at the first start on the central path, divided by the mean square of the change
-/// that an update of the natural map would make to the impulses. With a smaller product, contacts would change between
-/// open, stick and slip only slowly; with a larger product, good initial impulses (warm start) would have no advantage.
+/// that one simultaneous update of all contacts by their laws would make to the impulses. With a smaller product,
+/// contacts would change between open, stick and slip only slowly; with a larger product, good initial impulses (warm
+/// start) would have no advantage.
 const CENTRE: f64 = 1e3;
 /// Factor by which the product of slack and multiplier is larger at each further start on the central path.
 const FURTHER_UP: f64 = 1e3;
-/// Fraction of the root mean square change of the impulses below which a friction bound g counts as 0. The interval
-/// from −g to g would otherwise be too narrow for positive slacks at both of its ends.
+/// A friction bound g counts as 0 if it is below this fraction of the root mean square change that one simultaneous
+/// update of all contacts by their laws would make to the initial impulses. The interval from −g to g would otherwise
+/// be too narrow for positive slacks at both of its ends.
 const LEAST_BOUND: f64 = 1e-10;
 
 /// Work memory of a solve whose bodies have `D` degrees of freedom.
@@ -49,9 +53,11 @@ pub(super) struct PathWorkspace<const D: usize> {
     pub targets: Vec<[f64; PAIRS]>,
     pub step: Vec<PathStep>,
     pub other_step: Vec<PathStep>,
-    /// Impulses (shifted normal, tangential) of all contacts with the smallest residual so far, m/s.
+    /// Impulses of all contacts with the smallest residual so far: normal impulse plus cohesion impulse, and tangential
+    /// impulse, divided by the effective mass, m/s.
     pub best: Vec<[f64; 2]>,
-    /// Impulses (shifted normal, tangential) of all contacts at the start of the solve, m/s.
+    /// Impulses of all contacts at the start of the solve: normal impulse plus cohesion impulse, and tangential
+    /// impulse, divided by the effective mass, m/s.
     pub first: Vec<[f64; 2]>,
     /// Impulses and velocities of all contacts in the proximal multiplier method.
     pub near: Vec<ProximalContact>,
@@ -69,9 +75,11 @@ pub(super) struct InteriorPoint<'a, M: Model, S, const D: usize> {
     pub workspace: &'a mut PathWorkspace<D>,
     pub numbers: ContactNumbers,
     pub report: SolveReport,
-    /// Largest shifted normal impulse, m/s, with which a result counts as a solution.
+    /// Limit above which a result does not count as a solution: the largest normal impulse plus cohesion impulse of a
+    /// contact, divided by the effective mass, m/s.
     pub largest_impulse: f64,
-    /// The smallest residual of the natural map so far; `workspace.best` has the impulses with this residual.
+    /// The smallest residual so far under the friction model of the solve, dimensionless; `workspace.best` has the
+    /// impulses with this residual.
     pub best: f64,
     pub shape: PhantomData<S>,
 }
@@ -105,7 +113,8 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
     }
 
     /// Returns true if the error of the present impulses is at most `times` the tolerance. The error is the velocity
-    /// error if the stopping test limits the velocity error, otherwise `left`, the residual of the natural map.
+    /// error if the stopping test limits the velocity error, otherwise `left`, the residual under the friction model of
+    /// the solve.
     pub(super) fn is_within(&self, left: f64, times: f64) -> bool {
         let tolerance = times * self.settings.tolerance;
         match self.settings.stop {
@@ -116,7 +125,7 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
 
     /// Tries to finish the solve by a few sweeps, if the error is small enough: unlike the central path, sweeps set
     /// impulses exactly to their bounds. Returns true if the stopping test is then met; otherwise returns to the
-    /// present point of the path. `left` is the residual of the natural map.
+    /// present point of the path. `left` is the residual under the friction model of the solve.
     pub(super) fn finishes(&mut self, left: f64) -> bool {
         if !self.is_within(left, SWEEPS_FROM) || !self.is_bounded() {
             return false;
@@ -148,15 +157,15 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         self.keep(natural_map(self.problem));
     }
 
-    /// Returns true if no impulse at the present point of the central path is larger than a solution may have. On a
-    /// path that does not lead to a solution, impulses grow without limit. Relative to these impulses all changes
+    /// Returns true if no normal impulse at the present point of the central path is larger than a solution may have.
+    /// On a path that does not lead to a solution, impulses grow without limit. Relative to these impulses all changes
     /// become small, as if the solve converged.
     pub(super) fn is_bounded(&self) -> bool {
         let contacts = &self.workspace.contacts;
         contacts.iter().all(|contact| contact.impulse[0] <= self.largest_impulse)
     }
 
-    /// Returns true if no impulse of the problem is larger than a solution may have.
+    /// Returns true if no normal impulse of the problem is larger than a solution may have.
     pub(super) fn has_bounded_rows(&self) -> bool {
         self.problem.rows().all(|(_, row)| row.shifted_impulse <= self.largest_impulse)
     }
@@ -172,9 +181,9 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         self.problem.write_impulses(self.workspace.best.iter().copied());
     }
 
-    /// Starts the central path at its point nearest to the impulses that one update of the natural map gives.
-    /// `starts_before` is the number of earlier starts in this solve, each of which moves the next start further from
-    /// the end of the path.
+    /// Starts at a point of the central path near the impulses that one simultaneous update of all contacts by their
+    /// laws gives. `starts_before` is the number of earlier starts in this solve, each of which moves the next start
+    /// further from the end of the path.
     pub(super) fn start(&mut self, starts_before: u32) {
         let Self { problem, workspace, numbers, .. } = self;
         let opening_lags = problem.friction.model != FrictionModel::Tresca && S::CONE;

@@ -1,12 +1,13 @@
 //! Proximal multipliers with a semi-smooth Newton method and exact line search. They finish a solve if the steps of the
 //! interior point method become short, and are tried if the path of that method does not lead to a solution.
 //!
-//! A contact has the present impulses p (shifted normal and tangential, m/s), the velocities (w, v) (normal with
-//! restitution term, and tangential, m/s), and the effective mass m, kg; m_n and m_t are its effective masses along
-//! normal and tangent. Let ε be a compliance relative to the compliance 1/m_ij of a contact (effective mass m_ij), R
-//! the diagonal matrix diag(1, m_n/m_t), ‖y‖²_R = y·Ry, Π the projection on the allowed impulses in the metric R, and y
-//! = p − R⁻¹(w, v)/ε the trial impulses. The bodies have the velocities V, the inertias M, and the velocities V_free
-//! without contacts; H maps V to contact velocities. The function
+//! A contact has the present impulses p (normal impulse plus cohesion impulse, and tangential impulse, divided by the
+//! effective mass, m/s), the velocities (w, v), m/s (w: normal velocity plus restitution term, v: tangential velocity),
+//! and the effective mass m, kg; m_n and m_t are its effective masses along normal and tangent. Let ε be a compliance
+//! relative to the compliance 1/m_ij of a contact (effective mass m_ij), R the diagonal matrix diag(1, m_n/m_t), ‖y‖²_R
+//! = y·Ry, Π the projection on the allowed impulses in the metric R, and y = p − R⁻¹(w, v)/ε the trial impulses. The
+//! bodies have the velocities V, the inertias M, and the velocities V_free without contacts; H maps V to contact
+//! velocities. The function
 //!
 //! > F(V) = ½‖V − V_free‖²_M + Σ (m ε/2) (‖y‖²_R − ‖y − Π(y)‖²_R)
 //!
@@ -14,12 +15,13 @@
 //!
 //! > ∇F = M(V − V_free) − Σ Hᵀ m Π(y),  M + Σ (m/ε) Hᵀ J R⁻¹ H,
 //!
-//! J the derivative of Π. The Hessian is positive definite, with the blocks of the interior point's systems. At the
-//! minimum of F, V agrees with the impulses Π(y), and the update p ← Π(y) brings the impulses nearer to the solution
-//! (R. T. Rockafellar, 1976; with Newton's method inside X. Li, D. Sun, K.-C. Toh, 2018; for contacts A. Castro and
-//! others, 2022). Π is piecewise linear, so F is quadratic as long as no contact changes its piece of Π, and a full
-//! step without such a change reaches the minimum. Along a Newton step the derivative F′ is piecewise linear and
-//! increasing; its root, the step length, is found by Newton's method.
+//! where J is the derivative of Π. The Hessian is positive definite. Like the matrix of the interior point method it
+//! has a block for each body and for each pair of bodies in contact. At the minimum of F, V agrees with the impulses
+//! Π(y), and the update p ← Π(y) brings the impulses nearer to the solution (R. T. Rockafellar, 1976; with Newton's
+//! method inside X. Li, D. Sun, K.-C. Toh, 2018; for contacts A. Castro and others, 2022). Π is piecewise linear, so F
+//! is quadratic as long as no contact changes its piece of Π, and a full step without such a change reaches the
+//! minimum. Along a Newton step the derivative F′ is piecewise linear and increasing; its root, the step length, is
+//! found by Newton's method.
 //!
 //! V is not recomputed from the impulses: each step adds its changes to the velocities of contacts and to M(V −
 //! V_free), because a small ε magnifies rounding errors.
@@ -31,30 +33,35 @@ use super::system::{all_inertias, for_each_change, push_all};
 use crate::solver::kinematics::Model;
 use crate::solver::problem::natural_map;
 
-/// Initial compliance ε, relative to the compliance 1/m_ij of a contact (effective mass m_ij), of a solve by proximal
-/// multipliers that starts far from a solution.
+/// Initial value of the compliance ε with which proximal multipliers regularise each contact, relative to the
+/// compliance 1/m_ij of a contact (effective mass m_ij), in a solve that starts far from a solution.
 const FAR: f64 = 0.1;
-/// Initial compliance ε, relative to the compliance 1/m_ij of a contact (effective mass m_ij), of a solve by proximal
-/// multipliers that starts near the end of the central path of the interior point method.
+/// Initial value of the compliance ε with which proximal multipliers regularise each contact, relative to the
+/// compliance 1/m_ij of a contact (effective mass m_ij), in a solve that starts near the end of the central path of the
+/// interior point method.
 const CLOSE: f64 = 1e-5;
-/// Minimum compliance ε, relative to the compliance 1/m_ij of a contact (effective mass m_ij). With a smaller ε,
-/// rounding errors would grow more than the error of the impulses would fall.
+/// Minimum of the compliance ε with which proximal multipliers regularise each contact, relative to the compliance
+/// 1/m_ij of a contact (effective mass m_ij). With a smaller ε, rounding errors would grow more than the error of the
+/// impulses would fall.
 const LEAST: f64 = 1e-10;
-/// Factor by which the compliance ε is multiplied each time the minimum of the objective function F has been found.
+/// Factor by which the compliance ε, with which proximal multipliers regularise each contact, is multiplied each time
+/// the minimum of the objective function of the bodies' velocities has been found.
 const FACTOR: f64 = 0.1;
-/// Limit of a solve by proximal multipliers that started far from a solution: it ends after this number of
-/// factorisations that have not halved the residual.
+/// Limit of a solve by proximal multipliers that started far from a solution: it ends if the residual does not halve
+/// within this number of factorisations.
 const PATIENCE: u32 = 40;
 /// Maximum number of factorisations of a solve by proximal multipliers that starts near the end of the central path of
 /// the interior point method.
 const FEW: u32 = 16;
-/// Ratio of the squared norm of the gradient of the objective function (in the metric of the inverse inertias) to its
-/// first value at the present compliance, at or below which the minimum counts as found and the compliance is reduced.
+/// Limit at or below which the minimum of the objective function counts as found, and the compliance is reduced. The
+/// limit is for the squared norm of the gradient (in the metric of the inverse inertias), divided by its first value at
+/// the present compliance.
 const NEAR_MINIMUM: f64 = 1e-4;
-/// Maximum number of evaluations of the derivative F′ of the objective function in a line search.
+/// Maximum number of evaluations in a line search. Each evaluation computes the derivative of the objective function by
+/// the step length along the Newton step.
 const TRIALS: u32 = 40;
-/// Ratio of the derivative F′ of the objective function to its value at the beginning of a line search, at or below
-/// which F′ counts as 0.
+/// Fraction of the initial derivative of the objective function along the Newton step, at or below which the derivative
+/// counts as 0 in a line search.
 const ROOT: f64 = 1e-9;
 
 impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
@@ -141,15 +148,17 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         push_all(problem, &graph.elimination, impulses, momenta);
     }
 
-    /// Sets the impulses of the problem to the result of `impulse` for each contact, m/s, and recomputes the velocities
-    /// of the bodies.
+    /// Sets the impulses of the problem to the result of `impulse` for each contact, and recomputes the velocities of
+    /// the bodies. The result is the normal impulse plus cohesion impulse, and the tangential impulse, divided by the
+    /// effective mass, m/s.
     fn take_near(&mut self, impulse: impl Fn(&ProximalContact) -> [f64; 2]) {
         let Self { problem, workspace, .. } = self;
         problem.write_impulses(workspace.near.iter().map(impulse));
     }
 
-    /// Sets the impulses of the problem to the trial impulses, projected on the allowed impulses. Returns the residual
-    /// of the natural map at these impulses.
+    /// Sets the impulses of the problem to the trial impulses (present impulses minus velocities divided by the
+    /// dimensionless compliance `compliance`), projected on the allowed impulses. Returns the residual of the new
+    /// impulses under the friction model of the solve, dimensionless.
     fn take_allowed(&mut self, compliance: f64) -> f64 {
         let numbers = self.numbers;
         self.take_near(|contact| {
@@ -158,9 +167,9 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         natural_map(self.problem)
     }
 
-    /// Writes −∇F, the negative gradient of the objective function F (J) by the velocities of the bodies, to the
-    /// right-hand side of the linear system. Returns the squared norm ∇F·M⁻¹∇F of the gradient, in joules, with M the
-    /// inertias of the bodies.
+    /// Writes −∇F to the right-hand side of the linear system: the negative gradient of the objective function F (J) of
+    /// the proximal multipliers with respect to the velocities of the bodies. Returns the squared norm ∇F·M⁻¹∇F of the
+    /// gradient, in joules, with M the inertias of the bodies.
     fn gradient(&mut self, compliance: f64) -> f64 {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, vector, near, momenta, .. } = &mut **workspace;
@@ -180,8 +189,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         squared
     }
 
-    /// Takes a Newton step towards the minimum of the objective function, from its present gradient. A line search
-    /// determines the step length.
+    /// Takes a Newton step of the bodies' velocities towards the minimum of the objective function of the proximal
+    /// multipliers, from its present gradient. A line search determines the step length.
     fn step_near(&mut self, compliance: f64) {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, system, vector, near, .. } = &mut **workspace;
@@ -211,8 +220,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         }
     }
 
-    /// Returns the step length at which the objective function has its minimum along the Newton step (exact line
-    /// search).
+    /// Returns the step length at which the objective function of the proximal multipliers has its minimum along the
+    /// Newton step (exact line search).
     fn least_on_line(&self, compliance: f64) -> f64 {
         let Self { problem, workspace, numbers, .. } = self;
         let PathWorkspace { graph, vector, near, momenta, .. } = &**workspace;

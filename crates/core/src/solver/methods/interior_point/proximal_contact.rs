@@ -1,4 +1,5 @@
-//! Data and projection of a contact in the proximal multiplier method. The symbols are explained in `proximal`.
+//! Data of a contact in the proximal multiplier method, and the projection of its impulses on the impulses that its
+//! friction model allows. The module `proximal` explains the symbols.
 
 use super::contact::{ContactNumbers, Shape};
 use crate::contact::law;
@@ -7,25 +8,28 @@ use crate::solver::linear::Block;
 /// Impulses, velocities and friction bound of a contact in the proximal multiplier method.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ProximalContact {
-    /// Impulses p: shifted normal and tangential impulse (σ, λ), m/s.
+    /// Impulses p = (σ, λ) divided by the effective mass, m/s: shifted normal impulse σ (normal impulse plus cohesion
+    /// impulse) and tangential impulse λ.
     pub impulse: [f64; 2],
-    /// Velocities (w, v), m/s: w is the normal velocity plus the restitution term and the opening speed of the friction
-    /// model, v the tangential velocity.
+    /// Velocities (w, v), m/s: w is the normal velocity plus the restitution term (restitution times the normal
+    /// velocity before the step) and the opening speed that `desaxce` adds, v is the tangential velocity.
     pub velocity: [f64; 2],
-    /// Change of the velocities (w, v) in a Newton step of length 1, m/s.
+    /// Change of the contact's normal and tangential velocity in a Newton step of length 1, m/s.
     pub change: [f64; 2],
-    /// Friction bound g, which stays fixed during a solve, m/s.
+    /// Largest tangential impulse under `tresca`, divided by the effective mass, m/s. It stays fixed during a solve. 0
+    /// for the models whose friction bound grows with the normal impulse.
     pub bound: f64,
 }
 
-/// A region of trial impulses in which the derivative of the projection on the allowed impulses is constant.
+/// A region of trial impulses, which are the impulses before their projection on the allowed impulses. The derivative
+/// of the projection is constant in the region.
 #[derive(Clone, Copy)]
 pub(super) enum ProjectionPiece {
     /// One flag for the normal and one for the tangential impulse: true if the projected impulse equals the trial
     /// impulse, false if it is at a bound.
     Free([bool; 2]),
     /// The projected impulse is on an edge of the friction cone, λ = ±μσ with the given sign (tangential impulse λ,
-    /// friction coefficient μ, shifted normal impulse σ).
+    /// friction coefficient μ, shifted normal impulse σ of normal plus cohesion impulse).
     Edge(f64),
 }
 
@@ -51,9 +55,9 @@ impl ProjectionPiece {
 
 impl ProximalContact {
     /// Returns the trial impulses y = p − R⁻¹(w, v)/ε, m/s, after a Newton step whose length is the fraction `share` of
-    /// the full step: p are the impulses, m/s, (w, v) the velocities of the contact, m/s, ε its dimensionless
-    /// compliance (`compliance`), and R = diag(1, m_n/m_t) has the ratio of its effective masses along normal and
-    /// tangent.
+    /// the full step: p are the present impulses divided by the effective mass, m/s, (w, v) the velocities of the
+    /// contact, m/s, ε its dimensionless compliance (`compliance`), and R = diag(1, m_n/m_t) has the ratio of its
+    /// effective masses along normal and tangent.
     #[inline(always)]
     pub(super) fn trial(&self, numbers: ContactNumbers, compliance: f64, share: f64) -> [f64; 2] {
         let [normal, tangential] =
@@ -62,7 +66,8 @@ impl ProximalContact {
         [shifted - normal, across - tangential / numbers.tangential_compliance]
     }
 
-    /// Returns the projection of the trial impulses `trial` on the allowed impulses, m/s.
+    /// Returns the impulses, m/s, to which `trial` is projected: the impulses that the friction model allows and that
+    /// are nearest to the trial impulses `trial`. All are divided by the effective mass.
     #[inline(always)]
     pub(super) fn allowed<S: Shape>(&self, numbers: ContactNumbers, trial: [f64; 2]) -> [f64; 2] {
         if S::CONE {

@@ -2,10 +2,10 @@
 //! law.
 //!
 //! M are the inertias of the bodies, H maps velocities of bodies to velocities of contacts, m are the effective masses,
-//! and the matrix S⁻¹ of a contact is the change of its impulses per change of its velocity with opposite sign
-//! (`contact`). A driven wall is one more body, numbered after the grains: the first of its coordinates is its speed,
-//! with the inertia M + cΔt of its mass M, its damping coefficient c and the time step Δt (`problem::walls`), and its
-//! other coordinates are not coupled to anything.
+//! and −S⁻¹ of a contact maps the change of its velocity to the change of its impulses (`contact`). A wall that a force
+//! drives is one more body, numbered after the grains. The first of its coordinates is its speed. The inertia of this
+//! coordinate is the wall's mass plus cΔt, with the wall's damping coefficient c and the time step Δt
+//! (`problem::walls`). The other coordinates of the wall are not coupled to anything.
 
 use super::contact::Shape;
 use crate::solver::kinematics::Model;
@@ -23,8 +23,8 @@ pub(super) struct StepMatrix<const D: usize> {
 }
 
 impl<const D: usize> StepMatrix<D> {
-    /// Assembles the matrix and factorises it. `answers` has one 2×2 matrix per contact: the change of its impulses per
-    /// change of its velocity with opposite sign.
+    /// Assembles the matrix and factorises it. `answers` has one 2×2 matrix per contact: with a minus sign it maps the
+    /// change of the contact's velocity to the change of its impulses divided by the effective mass.
     pub(super) fn assemble<M: Model, S: Shape>(
         &mut self,
         problem: &StepProblem<M>,
@@ -86,11 +86,11 @@ impl<const D: usize> StepMatrix<D> {
     }
 }
 
-/// Gradients of a contact's normal and tangential velocity (v_n, v_t) by a body's velocity.
+/// Gradients of a contact's normal and tangential velocity (v_n, v_t) with respect to a body's velocity.
 type Gradients<const D: usize> = [[f64; D]; 2];
 
-/// Returns the gradients of a contact's normal and tangential velocity by the velocity of grain i. If the other body of
-/// the contact can move (grain or driven wall), also returns that body's number and gradients.
+/// Returns the gradients of a contact's normal and tangential velocity with respect to the velocity of grain i. If the
+/// other body of the contact can move (grain or driven wall), also returns that body's number and gradients.
 #[inline(always)]
 fn bodies_of<M: Model, const D: usize>(
     problem: &StepProblem<M>,
@@ -160,7 +160,8 @@ fn relative<const D: usize>(velocity: &[f64; D], on: &Gradients<D>) -> [f64; 2] 
     on.map(|gradient| (0..D).map(|axis| gradient[axis] * velocity[axis]).sum())
 }
 
-/// Iterates over the inertias of grains and driven walls in elimination order, kg.
+/// Iterates over the inertias of grains and driven walls in elimination order, kg, one per degree of freedom. The
+/// coordinate of a rotation is radius times angle, so its inertia is a mass, too.
 pub(super) fn all_inertias<M: Model, const D: usize>(
     problem: &StepProblem<M>,
     elimination: &Elimination,
@@ -175,16 +176,18 @@ pub(super) fn all_inertias<M: Model, const D: usize>(
     })
 }
 
-/// Returns the effective mass of a contact, kg, times the 2×2 matrix `answer`.
+/// Returns the stiffness of a contact, kg: its effective mass, kg, times the dimensionless 2×2 matrix `answer`, which
+/// with a minus sign maps the change of the contact's velocity to the change of its impulses divided by the effective
+/// mass.
 #[inline(always)]
 fn heavy(mass: f64, answer: Block<2>) -> Block<2> {
     answer.map(|row| row.map(|entry| mass * entry))
 }
 
 /// Returns the block, kg, that a contact adds to the matrix for two bodies. The first argument is the contact's
-/// stiffness, a 2×2 matrix, kg: the change of its impulses per change of its velocity with opposite sign. `one` and
-/// `other` are the gradients of the contact's velocity by the velocities of the two bodies. The block is the product of
-/// `one` transposed, the stiffness and `other`.
+/// stiffness, a 2×2 matrix, kg, which with a minus sign maps the change of the contact's velocity to the change of its
+/// impulses. `one` and `other` are the gradients of the contact's velocity with respect to the velocities of the two
+/// bodies. The block is the product of `one` transposed, the stiffness and `other`.
 #[inline(always)]
 fn stiffness<const D: usize>(
     [[nn, nt], [tn, tt]]: &Block<2>,

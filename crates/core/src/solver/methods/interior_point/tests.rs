@@ -1,5 +1,5 @@
 //! Tests of the interior point method with random contact problems that have a solution: proximal multipliers find the
-//! same velocities as the method's path, no matter whether they finish a solve or replace the path.
+//! same velocities as the central path of the method, no matter whether they finish a solve or replace the path.
 
 use super::*;
 use crate::contact::ContactLaw;
@@ -24,7 +24,7 @@ fn problem<M: Model>(seed: u64, model: FrictionModel) -> StepProblem<M> {
 }
 
 /// Solves one problem twice: by following the central path of the interior point method, and by proximal multipliers
-/// alone. Returns both results for the velocities, and the number of factorisations of the proximal multipliers.
+/// only. Returns both results for the velocities, and the number of factorisations of the proximal multipliers.
 fn both_ways<M: Model, S: Shape, const D: usize>(
     seed: u64,
     model: FrictionModel,
