@@ -57,7 +57,7 @@ pub struct MethodInfo {
     /// True if the method supports periodic borders that shear, so that the copies (images) of grains beyond a border
     /// move relative to the grains.
     pub takes_shear: bool,
-    /// True if the method supports pairs of materials with their own contact laws.
+    /// True if the method supports contact laws that differ between pairs of materials.
     pub takes_pairs: bool,
     /// True if the method supports rolling friction.
     pub takes_rolling: bool,
@@ -92,9 +92,9 @@ const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
 /// their own impulses in every iteration.
 const BOUND_BY_BOUND: &str = "the same, the bound of friction taken anew every iteration";
 
-/// Returns the properties of a method that supports periodic borders that shear and pairs of materials with their own
-/// contact laws. The method supports neither friction models other than Coulomb's law nor driven walls nor rolling
-/// friction.
+/// Returns the properties of a method that supports periodic borders that shear, and contact laws that differ between
+/// pairs of materials. The method supports neither friction models other than Coulomb's law nor driven walls nor
+/// rolling friction.
 const fn known(
     method: Method,
     order: MethodOrder,

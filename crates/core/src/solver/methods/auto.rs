@@ -2,12 +2,13 @@
 //!
 //! Convex problems (the friction models other than Coulomb's law, and grains without friction) are solved by the
 //! interior point method, which works at any size. For other problems Newton's method is tried first, or conjugate
-//! gradients if a force drives a wall. A pile at rest takes 2 factorisations in the median step, and 22 in the first
-//! step of 10,000 grains; sweeps do not solve such a pile if its cohesion is strong. A step of a flowing pile takes 12
-//! factorisations in the median at 138 grains and more than 100 at 2,000 grains. At 2,000 flowing grains conjugate
-//! gradients leave a smaller error at the same cost. So `auto` stops Newton's method the earlier the larger a problem
-//! is, and does not try it on a large flowing pile. With the stopping test `impulse-per-mass`, `auto` always chooses
-//! Gauss–Seidel, because studies with this test are about the error of Gauss–Seidel sweeps.
+//! gradients if a force drives a wall. For a pile at rest Newton's method takes 2 factorisations in the median step,
+//! and 22 in the first step of 10,000 grains; sweeps do not solve the steps of such a pile if its cohesion is strong.
+//! For a flowing pile Newton's method takes 12 factorisations in the median step at 138 grains and more than 100 at
+//! 2,000 grains. At 2,000 flowing grains conjugate gradients leave a smaller error at the same cost. So `auto` stops
+//! Newton's method after fewer factorisations without progress if a problem is larger, and does not try it on a large
+//! flowing pile. With the stopping test `impulse-per-mass`, `auto` always chooses Gauss–Seidel, because studies with
+//! this test are about the error of Gauss–Seidel sweeps.
 
 use super::newton::NewtonEffort;
 use super::{Memory, SolveReport, solve_by, wedged};
@@ -16,24 +17,25 @@ use crate::solver::method::Method;
 use crate::solver::problem::StepProblem;
 use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 
-/// Patience of Newton's method times the number of contacts of a problem, so that the patience falls with the size of
-/// the problem. The *patience* is the number of factorisations that have not halved the residual, after which the
-/// method stops. It is limited by [`LEAST_PATIENCE`] and [`MOST_PATIENCE`].
+/// Product of the patience of Newton's method and the number of contacts of a problem: a larger problem has a smaller
+/// patience. The *patience* is a number of factorisations: the method stops if the residual does not halve within it.
+/// It is limited by [`LEAST_PATIENCE`] and [`MOST_PATIENCE`].
 ///
-/// Both measurements are for a time step Δt of 1e-3 s. At 2,000 flowing grains (3,900 contacts) a patience of 5, 10 and
-/// 20 factorisations leaves a velocity error of 1.4e-2, 1.0e-2 and 0.8e-2 √(g d) (gravity g, mean diameter d) in
-/// computing times with the ratio 1 : 2 : 3. At 138 grains (260 contacts) and Bond number 100, a patience of 20 does
-/// not solve some steps that a patience of 99 solves. Because of these unsolved steps the pile slumps.
+/// The value is based on two measurements with a time step Δt of 1e-3 s. At 2,000 flowing grains (3,900 contacts) a
+/// patience of 5, 10 and 20 factorisations leaves a velocity error of 1.4e-2, 1.0e-2 and 0.8e-2 √(g d) (gravity g, mean
+/// diameter d) in computing times with the ratio 1 : 2 : 3. At 138 grains (260 contacts) and Bond number 100, a
+/// patience of 20 does not solve some steps that a patience of 99 solves. Because of these unsolved steps the pile
+/// slumps.
 const PATIENCE_OF_CONTACTS: usize = 20_000;
 
-/// Minimum patience of Newton's method, without cohesion and with cohesion: the number of factorisations that have not
-/// halved the residual, after which the method stops. A cohesive contact that breaks because of an unsolved step stays
-/// broken: a pile of 10,000 grains at Bond number 100 and a time step of 5e-3 s falls with a patience of 5, which does
-/// not solve the first step. With a patience of 10 the first step is solved in 22 factorisations, and the pile does not
-/// fall.
+/// Minimum patience of Newton's method, first for problems without cohesion, then with cohesion: the method stops if
+/// the residual does not halve within this number of factorisations. A cohesive contact that breaks because of an
+/// unsolved step stays broken: a pile of 10,000 grains at Bond number 100 and a time step of 5e-3 s falls with a
+/// patience of 5, which does not solve the first step. With a patience of 10 the first step is solved in 22
+/// factorisations, and the pile does not fall.
 const LEAST_PATIENCE: [usize; 2] = [5, 10];
-/// Maximum patience of Newton's method: the number of factorisations that have not halved the residual, after which the
-/// method stops.
+/// Maximum patience of Newton's method: the method stops if the residual does not halve within this number of
+/// factorisations.
 const MOST_PATIENCE: usize = 100;
 
 /// Minimum number of contacts of a flowing pile that `auto` solves by conjugate gradients. With fewer contacts Newton's
@@ -52,8 +54,8 @@ const SLIDING_SPEED: f64 = 0.02;
 /// a tenth shorter.
 const SWEEPS_AFTER: u32 = 400;
 
-/// Maximum number of sweeps of conjugate gradients if a force drives a wall. For 234 cohesive grains under shear, one
-/// step in six is not even solved by 5,000 sweeps.
+/// Maximum number of sweeps of conjugate gradients if a force drives a wall. A larger maximum does not solve every
+/// step, either: for 234 cohesive grains under shear, one step in six is still unsolved after 5,000 sweeps.
 const SWEEPS_OF_DRIVEN: u32 = 1_000;
 
 /// Returns the method that solves a problem: the method that the settings name, or if that is `auto`, the method that

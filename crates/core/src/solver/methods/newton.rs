@@ -1,10 +1,10 @@
 //! Semi-smooth Newton method for the velocities of bodies, with a sparse direct factorisation.
 //!
-//! The contact law is a fixed point of projections (`contact::law`). A contact has the reduced impulses σ (shifted
-//! normal) and λ_t (tangential), m/s, the velocities v_n and v_t along its normal n and tangent t, the effective masses
-//! m_n and m_t along them, and the friction coefficient μ; u = v_n + ρ v_n^{n−1} is the normal velocity plus the
-//! restitution term (restitution ρ times the normal velocity before the step). Regularised with a dimensionless
-//! compliance ε the law becomes
+//! The contact law is a fixed point of projections (`contact::law`). A contact has the impulses σ (normal impulse plus
+//! cohesion impulse) and λ_t (tangential), both divided by the effective mass, m/s, the velocities v_n and v_t along
+//! its normal n and tangent t, the effective masses m_n and m_t along them, and the friction coefficient μ; u = v_n + ρ
+//! v_n^{n−1} is the normal velocity plus the restitution term (restitution ρ times v_n^{n−1}, the normal velocity
+//! before the step). Regularised with a dimensionless compliance ε the law becomes
 //!
 //! > σ' = max(σ − u/ε, 0),  λ_t' = clamp(λ_t − v_t m_t/(m_n ε), ±μσ'),
 //!
@@ -15,12 +15,13 @@
 //! > M (V − V_free) = Σ m_ij [ n (σ' − c) + t λ_t' ],
 //!
 //! with the inertias M of the bodies, their velocities V_free without contacts, the effective mass m_ij of a contact
-//! and the capture speed c, m/s. This is one sparse system with a block per body, of a size equal to the body's degrees
-//! of freedom: masses plus contact stiffnesses m_ij/ε. A slipping contact, λ_t' = ±μσ', adds the unsymmetric term n +
-//! (±μ) t. The exact solution is a fixed point for any ε. With a small ε the method converges in few steps; with a
-//! larger ε it also converges for some problems whose predicted states keep changing. A rolling moment is one more
-//! clamp, ψ' = clamp(ψ − v_r/(W ε), ±μ_r σ'), with its own predicted state; ψ is the rolling impulse, v_r the rolling
-//! velocity, W its compliance and μ_r the coefficient of rolling friction (`problem::rolling`). After each step
+//! and the capture speed c, m/s (the opening speed that cohesion cancels in one step). This is one sparse system with a
+//! block per body, whose size is the body's number of degrees of freedom. Its matrix is the sum of the masses and the
+//! contact stiffnesses m_ij/ε. A slipping contact, λ_t' = ±μσ', adds the unsymmetric term n + (±μ) t. The exact
+//! solution is a fixed point for any ε. With a small ε the method converges in few steps; with a larger ε it also
+//! converges for some problems whose predicted states keep changing. A rolling moment is one more clamp, ψ' = clamp(ψ −
+//! v_r/(W ε), ±μ_r σ'), with its own predicted state; ψ is the rolling impulse, v_r the rolling velocity, W its
+//! compliance and μ_r the coefficient of rolling friction (`problem::rolling`). After each step
 //!
 //! 1. the impulses are projected on the law, and the velocities are computed from them;
 //! 2. a few Gauss–Seidel sweeps correct wrong predictions;
@@ -47,26 +48,30 @@ use crate::solver::onlooker::{SolveProgress, is_ended};
 use crate::solver::problem::{StepProblem, residual};
 use crate::solver::settings::SolverSettings;
 
-/// Compliance ε of the first Newton step, relative to the compliance 1/m_ij of a contact (effective mass m_ij).
+/// Initial value of the compliance ε, with which Newton's method regularises the contact law, relative to the
+/// compliance 1/m_ij of a contact (effective mass m_ij).
 const FIRST_COMPLIANCE: f64 = 1e-7;
-/// Minimum compliance ε, relative to the compliance 1/m_ij of a contact (effective mass m_ij). With a smaller ε,
-/// rounding errors in the factorisation cancel the gain.
+/// Minimum of the compliance ε, with which Newton's method regularises the contact law, relative to the compliance
+/// 1/m_ij of a contact (effective mass m_ij). With a smaller ε, rounding errors in the factorisation cost as much
+/// accuracy as the smaller ε gains.
 const SMALLEST_COMPLIANCE: f64 = 1e-7;
-/// Maximum compliance ε, relative to the compliance 1/m_ij of a contact (effective mass m_ij). With a larger ε a Newton
-/// step is no better than sweeps, so a few sweeps replace the next Newton step.
+/// Maximum of the compliance ε, with which Newton's method regularises the contact law, relative to the compliance
+/// 1/m_ij of a contact (effective mass m_ij). With a larger ε a Newton step is no better than sweeps, so a few sweeps
+/// replace the next Newton step.
 const LARGEST_COMPLIANCE: f64 = 0.1;
-/// Factor by which the compliance ε is multiplied after a Newton step whose result is kept.
+/// Factor by which the compliance ε, with which Newton's method regularises the contact law, is multiplied after a
+/// Newton step whose result is kept.
 const AFTER_SUCCESS: f64 = 0.2;
-/// Factor by which the compliance ε is multiplied after a Newton step whose result is dropped because its residual is
-/// too large.
+/// Factor by which the compliance ε, with which Newton's method regularises the contact law, is multiplied after a
+/// Newton step whose result is dropped because its residual is too large.
 const AFTER_FAILURE: f64 = 10.0;
 /// Number of sweeps before the first factorisation: many steps of a pile at rest need no more.
 const SWEEPS_FIRST: u32 = 4;
 /// Number of sweeps after each factorisation: they correct wrongly predicted contact states (open, stick, slip) at a
 /// fraction of the cost of a factorisation.
 const SWEEPS_AFTER: u32 = 4;
-/// Number of sweeps that replace a Newton step if even the largest compliance ε gives no improvement. The number is
-/// doubled each time, up to [`MOST_SWEEPS_BETWEEN`].
+/// Number of sweeps that replace a Newton step if even the largest compliance ε, with which Newton's method regularises
+/// the contact law, gives no improvement. The number is doubled each time, up to [`MOST_SWEEPS_BETWEEN`].
 const SWEEPS_BETWEEN: u32 = 20;
 const MOST_SWEEPS_BETWEEN: u32 = 200;
 /// Number of factorisations at the beginning of a solve that are not followed by non-linear elimination (a separate
@@ -79,7 +84,7 @@ const FACTORISATIONS_FIRST: u32 = 8;
 /// Limits of Newton's method, and of the conjugate gradients that follow if it fails.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NewtonEffort {
-    /// Number of factorisations that have not halved the smallest residual, after which Newton's method stops.
+    /// Newton's method stops if the residual does not halve within this number of factorisations.
     pub patience: u32,
     /// Maximum number of sweeps of conjugate gradients after Newton's method has failed. The maximum number of sweeps
     /// of the settings applies, too.
@@ -87,8 +92,8 @@ pub(super) struct NewtonEffort {
 }
 
 impl NewtonEffort {
-    /// Limits of a solve that may use all sweeps of the settings: a patience of 100 factorisations, and conjugate
-    /// gradients up to the maximum number of sweeps of the settings.
+    /// Limits of a solve that may use all sweeps of the settings. Newton's method stops if the residual does not halve
+    /// within 100 factorisations. Then conjugate gradients may use all remaining sweeps.
     pub(super) const FULL: Self = Self { patience: 100, sweeps_after: u32::MAX };
 }
 
@@ -99,8 +104,8 @@ const HISTORY: usize = 6;
 /// Maximum residual of a Newton step whose result is kept, divided by the largest of the last [`HISTORY`] residuals.
 const ENOUGH: f64 = 0.99;
 
-/// Work memory of Newton's method for each number of degrees of freedom of a body (1 to 3). Memory that is not used
-/// allocates nothing.
+/// Work memory of Newton's method, one part for each number of degrees of freedom of a body (1 to 3). A part that is
+/// not used allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NewtonMemory {
     one: NewtonWorkspace<1>,
@@ -115,12 +120,15 @@ struct NewtonWorkspace<const D: usize> {
     matrix: BlockMatrix<D>,
     vector: Vec<[f64; D]>,
     guesses: Vec<Guess>,
-    /// Predicted states of the rolling moments of all contacts; empty without rolling friction.
+    /// For each contact, the predicted state of its rolling moment: below its bound, at its bound, or 0 because the
+    /// contact is open. Empty without rolling friction.
     rolling_guesses: Vec<Guess>,
     alone: NonlinearElimination,
-    /// Impulses (shifted normal, tangential) of all contacts after the last step whose result was kept, m/s.
+    /// Impulses of all contacts after the last step whose result was kept: normal impulse plus cohesion impulse, and
+    /// tangential impulse, divided by the effective mass, m/s.
     saved: Vec<[f64; 2]>,
-    /// Impulses (shifted normal, tangential) of all contacts with the smallest residual so far, m/s.
+    /// Impulses of all contacts with the smallest residual so far: normal impulse plus cohesion impulse, and tangential
+    /// impulse, divided by the effective mass, m/s.
     best: Vec<[f64; 2]>,
 }
 
@@ -239,8 +247,9 @@ impl<M: Model, const D: usize> Newton<'_, M, D> {
         self.problem.form_velocities();
     }
 
-    /// Computes the impulses of all contacts from the velocities of the linear equations by the regularised law, and
-    /// projects them on the contact law.
+    /// Computes the impulses of all contacts by the contact law that is regularised with the dimensionless compliance
+    /// `compliance`, from the velocities that the linear equations give. Projects these impulses on the bounds of the
+    /// contact law.
     fn take_impulses(&mut self, compliance: f64) {
         let NewtonWorkspace { graph, vector, guesses, rolling_guesses, .. } = &*self.workspace;
         let places = &graph.elimination.place_of;

@@ -11,14 +11,15 @@ use crate::solver::problem::{Rolling, Row};
 pub(super) enum Guess {
     Open,
     Stick,
-    /// The contact slips: the tangential impulse is at its bound and has this sign; 0 if the bound itself is 0.
+    /// The contact slips: the tangential impulse is at its bound. The number is the sign of the impulse, 1 or −1, or 0
+    /// if the bound itself is 0.
     Slip(f64),
 }
 
 impl Guess {
-    /// Predicts the state of a contact from trial impulses: `shifted` is the shifted normal impulse σ, `trial` is the
-    /// tangential impulse λ_t or the rolling impulse ψ, and `bound` is the largest |`trial`| that this σ allows, all in
-    /// m/s.
+    /// Predicts the state of a contact from trial impulses, which are not yet projected on the contact law: `shifted`
+    /// is the normal impulse plus cohesion impulse, `trial` is the tangential or the rolling impulse, and `bound` is
+    /// the largest |`trial`| that `shifted` allows. All are divided by the effective mass, m/s.
     fn new(shifted: f64, trial: f64, bound: f64) -> Self {
         if shifted <= 0.0 {
             return Self::Open;
@@ -69,24 +70,24 @@ pub(super) struct RollingTerms<'a> {
 
 /// Contribution of a contact to the linear equations of one of its bodies in a Newton step.
 pub(super) struct Terms<const D: usize> {
-    /// Gradient of the contact's normal velocity v_n by the body's velocity.
+    /// Gradient of the contact's normal velocity v_n with respect to the body's velocity.
     normal: [f64; D],
-    /// Gradient of the contact's tangential velocity v_t by the body's velocity.
+    /// Gradient of the contact's tangential velocity v_t with respect to the body's velocity.
     tangent: [f64; D],
-    /// Gradient of the contact's rolling velocity v_r by the body's velocity; 0 without rolling friction.
+    /// Gradient of the contact's rolling velocity v_r with respect to the body's velocity; 0 without rolling friction.
     rolling: [f64; D],
-    /// Direction of the contact impulse that responds to the normal velocity: the normal n, or n ± μt if the contact
-    /// slips (tangent t, friction coefficient μ). If the rolling moment is at its bound, ±μ_r times the gradient of the
-    /// rolling velocity is added (coefficient of rolling friction μ_r).
+    /// Direction of the impulse with which the contact responds to a change of its normal velocity: the normal n, or n
+    /// ± μt if the contact slips (tangent t, friction coefficient μ). If the rolling moment is at its bound, ±μ_r times
+    /// the gradient of the rolling velocity is added (coefficient of rolling friction μ_r).
     answer: [f64; D],
-    /// Stiffness of the contact's response to the normal velocity, kg.
+    /// Stiffness of the contact: impulse (N·s) per normal velocity (m/s) with which the contact responds, kg.
     normal_stiffness: f64,
-    /// Stiffness of the contact's response to the tangential velocity, kg.
+    /// Stiffness of the contact: impulse (N·s) per tangential velocity (m/s) with which the contact responds, kg.
     tangential_stiffness: f64,
-    /// Stiffness of the contact's response to the rolling velocity, kg.
+    /// Stiffness of the contact: impulse (N·s) per rolling velocity (m/s) with which the contact responds, kg.
     rolling_stiffness: f64,
-    /// Right-hand side of the body's equations: the change of the contact's impulse on the body at the present
-    /// velocities, kg·m/s.
+    /// Right-hand side of the body's equations, kg·m/s: the change of the contact's impulse on the body that the
+    /// regularised contact law requires at the present velocities.
     load: [f64; D],
 }
 
@@ -167,8 +168,9 @@ impl<const D: usize> Terms<D> {
         }
     }
 
-    /// Adds to `block` the stiffness by which the contact couples the equations of this body to the velocity of its
-    /// other body. `other` is the contribution of the contact to the equations of that other body.
+    /// Adds to `block` the stiffness by which a contact couples the equations of the body of `self` to the velocity of
+    /// the body of `other`. Both are contributions of the same contact; for the diagonal block of a body they are the
+    /// same contribution.
     #[inline(always)]
     pub(super) fn add<M: Model>(&self, block: &mut [[f64; D]; D], other: &Self) {
         for (row, entries) in block.iter_mut().enumerate() {

@@ -65,7 +65,8 @@ fn tested<M: Model, P: FrictionProjection>(
     is_settled(problem, change, mean_mass, settings, squares, residual, of_velocities)
 }
 
-/// Performs one sweep over all contacts under Coulomb's law. Returns the change of the impulses if `MEASURE` is set.
+/// Performs one sweep over all contacts under Coulomb's law. Returns the change of the impulses, which is measured if
+/// `MEASURE` is set and otherwise 0.
 pub fn sweep<M: Model, const MEASURE: bool>(problem: &mut StepProblem<M>) -> ImpulseChange {
     if problem.has_one_simple_law() {
         sweep_by::<M, CoulombFriction<true>, MEASURE>(problem, false)
@@ -74,7 +75,9 @@ pub fn sweep<M: Model, const MEASURE: bool>(problem: &mut StepProblem<M>) -> Imp
     }
 }
 
-/// Performs one sweep over all contacts under the friction model `P`; from the last contact to the first if `backward`.
+/// Performs one sweep over all contacts under the friction model with the projection `P`: from the last contact to the
+/// first if `backward` is set, otherwise from the first to the last. Returns the change of the impulses, which is
+/// measured if `MEASURE` is set and otherwise 0.
 pub(super) fn sweep_by<M: Model, P: FrictionProjection, const MEASURE: bool>(
     problem: &mut StepProblem<M>,
     backward: bool,
@@ -90,8 +93,9 @@ pub(super) fn sweep_by<M: Model, P: FrictionProjection, const MEASURE: bool>(
     pass::<M, P, MEASURE, false>(problem, backward)
 }
 
-/// Performs the same sweep as `pass`, compiled for the AVX instructions: the same operations in the same order, so that
-/// the result is bitwise the same. The three-operand encoding of AVX saves copies that the older encoding needs.
+/// Performs one sweep over all contacts by a call of `pass` that is compiled for the AVX instructions of the processor.
+/// The operations and their order do not depend on the instructions, so the result is bitwise the same. The
+/// three-operand encoding of AVX saves copies that the older encoding needs.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx")]
 fn pass_with_avx<M: Model, P: FrictionProjection, const MEASURE: bool>(
@@ -101,8 +105,9 @@ fn pass_with_avx<M: Model, P: FrictionProjection, const MEASURE: bool>(
     pass::<M, P, MEASURE, false>(problem, backward)
 }
 
-/// Performs one sweep over all contacts. If walls are driven (`problem::walls`), the impulse of a contact changes the
-/// velocity of its wall at once, and each contact is solved with the compliance of its wall as well as of its grain.
+/// Performs one sweep over all contacts. Returns the change of the impulses, which is measured if `MEASURE` is set and
+/// otherwise 0. If walls are driven (`problem::walls`), the impulse of a contact changes the velocity of its wall at
+/// once, and each contact is solved with the compliance of its wall as well as of its grain.
 #[inline(always)]
 fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool>(
     problem: &mut StepProblem<M>,

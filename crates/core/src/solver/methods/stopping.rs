@@ -148,8 +148,8 @@ impl Default for StallWatch {
 impl StallWatch {
     /// Computes the residual each time the number of sweeps has doubled. Returns true if the solve should stop: because
     /// an onlooker (a callback that watches the progress) ends it, or because the solve has stalled and its stopping
-    /// test limits the residual or the velocity error. With the other stopping tests, which belong to published
-    /// schemes, a stalled solve continues.
+    /// test limits the residual or the velocity error. The stopping tests that limit the change of the impulses in a
+    /// sweep belong to published schemes; with them a stalled solve continues.
     pub(super) fn look(
         &mut self,
         sweeps: u32,

@@ -14,8 +14,8 @@ use crate::contact::{ContactLaw, Lanes};
 use crate::solver::kinematics::Model;
 use crate::solver::problem::{FixedRow, PairRow, Rolling, Row};
 
-/// The data that the update of a contact needs, except the impulses: normal, restitution term (m/s) and effective mass
-/// (kg). With several SIMD lanes, one contact per lane.
+/// The data that the update of a contact needs, except the impulses: normal, restitution term (restitution times the
+/// normal velocity before the step, m/s) and effective mass (kg). With several SIMD lanes, one contact per lane.
 #[derive(Clone, Copy)]
 pub(crate) struct Local<M: Model, T: Lanes> {
     pub normal: M::Normal<T>,
@@ -64,16 +64,18 @@ impl<T: Lanes> ImpulseChange<T> {
 }
 
 impl<M: Model, T: Lanes> Local<M, T> {
-    /// Returns the normal and tangential velocities of grains at contacts with fixed bodies, defined as in
-    /// [`FixedRow::velocity`], m/s.
+    /// Returns the normal and tangential velocity of a grain at its contact with a fixed body, m/s. `surface_speed`,
+    /// m/s, is the speed of the fixed body's surface along the tangent; the tangential velocity is relative to it. With
+    /// several SIMD lanes, one contact per lane.
     #[inline(always)]
     pub(crate) fn velocity(&self, surface_speed: T, i: &M::Body<T>) -> [T; 2] {
         let [normal, tangential] = M::velocity(self.normal, i);
         [normal, tangential - surface_speed]
     }
 
-    /// Solves contacts of grains with fixed bodies: updates the impulses (shifted normal, tangential), m/s, and the
-    /// velocities of the grains. `project` projects trial impulses on the allowed impulses.
+    /// Solves contacts of grains with fixed bodies: updates the impulses (normal impulse plus cohesion impulse, and
+    /// tangential impulse, divided by the effective mass, m/s) and the velocities of the grains. `project` projects
+    /// trial impulses on the allowed impulses.
     #[inline(always)]
     pub(crate) fn solve_fixed<const MEASURE: bool>(
         &self,
@@ -88,9 +90,10 @@ impl<M: Model, T: Lanes> Local<M, T> {
         change.add::<M, MEASURE>(self.effective_mass, pushed);
     }
 
-    /// Solves contacts between grains i and j: updates the impulses (shifted normal, tangential), m/s, and the
-    /// velocities of the grains. `share` is the mass ratio m_ij/m_i: effective mass divided by the mass of grain i.
-    /// `project` projects trial impulses on the allowed impulses.
+    /// Solves contacts between grains i and j: updates the impulses (normal impulse plus cohesion impulse, and
+    /// tangential impulse, divided by the effective mass, m/s) and the velocities of the grains. `share` is the mass
+    /// ratio m_ij/m_i: effective mass divided by the mass of grain i. `project` projects trial impulses on the allowed
+    /// impulses.
     #[inline(always)]
     pub(crate) fn solve_pair<const MEASURE: bool>(
         &self,
@@ -106,9 +109,9 @@ impl<M: Model, T: Lanes> Local<M, T> {
         change.add::<M, MEASURE>(self.effective_mass, pushed);
     }
 
-    /// Updates the impulses (shifted normal, tangential) of contacts that have the given normal and tangential
-    /// velocities. Returns the change of the two impulses, m/s. `project` projects trial impulses on the allowed
-    /// impulses.
+    /// Updates the impulses (normal impulse plus cohesion impulse, and tangential impulse, divided by the effective
+    /// mass, m/s) of contacts that have the given normal and tangential velocities. Returns the change of the two
+    /// impulses, m/s. `project` projects trial impulses on the allowed impulses.
     #[inline(always)]
     fn update(
         &self,

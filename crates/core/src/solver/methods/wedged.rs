@@ -4,12 +4,12 @@
 //! Discs in a ring, or in a box that is too small for them, can press on each other with any force if friction prevents
 //! sliding, without any effect on velocities: such wedged impulses are in the null space of the problem. A warm start
 //! keeps the wedged impulses of an unsolved step. Products of these huge impulses and the rounding errors of velocities
-//! then look like an error of the solve. The path of the interior point method leads to the middle of the set of all
-//! wedged impulses. If the friction bounds are computed from these impulses, the middle moves with each solve. An
-//! example is three discs in a ring, with the normal impulse σ and the tangential impulse |λ| = σ tan 30° at each
-//! contact, and a bound for |λ| of the friction coefficient μ times the σ of the solve before: the impulses at the
-//! middle are multiplied by μ in each solve. So above a certain μ impulses would grow from step to step until rounding
-//! stops the solve.
+//! then look like an error of the solve. The path of the interior point method leads to the middle (the analytic
+//! centre) of the set of all wedged impulses. If the friction bounds are computed from these impulses, the middle moves
+//! with each solve. An example is three discs in a ring: they are in equilibrium with any normal impulse σ if each
+//! contact has the tangential impulse |λ| = σ tan 30°. If the bound of |λ| is the friction coefficient μ times the σ of
+//! the solve before, each solve multiplies the impulses at the middle by μ. So above a certain μ impulses would grow
+//! from step to step until rounding stops the solve.
 
 use glam::DVec2;
 

@@ -14,27 +14,28 @@ use crate::solver::problem::{Row, errors, project_by_coulomb, squared_impulse};
 /// Number of contacts per block: the number of f64 in a register of AVX2. Wider blocks would leave more lanes idle.
 pub(super) const LANES: usize = 4;
 
-/// The velocity of a body as blocks of contacts store it, one entry per degree of freedom; further entries are not
-/// used. The alignment keeps the velocity within one cache line.
+/// The velocity of a body as blocks of contacts store it: one entry for each degree of freedom of the body, of which
+/// there are at most three. The remaining entries are not used. The alignment keeps the velocity within one cache line.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
 pub(super) struct BodySlot([f64; LANES]);
 
 impl BodySlot {
-    /// Creates the memory slot for the velocity of a body.
+    /// Copies the velocity of a body to a new memory slot.
     pub(super) fn of<M: Model>(body: &M::Body<f64>) -> Self {
         let [x, y, spin] = M::coordinates(body);
         Self([x, y, spin, 0.0])
     }
 
-    /// Copies the velocity from the slot to a body.
+    /// Copies the velocity from this memory slot to a body.
     pub(super) fn store<M: Model>(&self, body: &mut M::Body<f64>) {
         let [x, y, spin, _] = self.0;
         M::set(body, [x, y, spin]);
     }
 }
 
-/// Four contacts, with the fields of [`Row`] lane by lane: four cache lines, of which a sweep writes one.
+/// Four contacts, one per SIMD lane: each field of [`Row`] (the data of a contact) is an array of four numbers. A block
+/// fills four cache lines, of which a sweep writes one.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct ContactBlock {
@@ -51,9 +52,10 @@ pub(super) struct ContactBlock {
 }
 
 impl ContactBlock {
-    /// Creates the block of up to four rows (the data of one contact each). Each row is given with the slots that store
-    /// the velocities of its grains, and with its mass ratio (effective mass divided by the mass of the first grain) or
-    /// surface speed (m/s). Idle lanes use the first slot.
+    /// Creates the block of up to four rows (the data of one contact each). Each row is given with the indices of the
+    /// memory slots that store the velocities of its grains. It is also given with its mass ratio (effective mass
+    /// divided by the mass of the first grain) or, for a contact with a fixed body, the speed of the body's surface,
+    /// m/s. Idle lanes use the first slot.
     pub(super) fn of<'a, M: Model>(
         rows: impl Iterator<Item = (&'a Row<M>, [u32; 2], f64)>,
     ) -> Self {
@@ -79,7 +81,7 @@ impl ContactBlock {
         block
     }
 
-    /// Copies the impulses from the block to the rows of its contacts.
+    /// Copies the impulses from the block to the rows (the data of one contact each) of its contacts.
     pub(super) fn store<'a, M: Model>(&self, rows: impl Iterator<Item = &'a mut Row<M>>) {
         for (lane, row) in rows.enumerate() {
             row.shifted_impulse = self.shifted_impulse[lane];
@@ -159,15 +161,16 @@ fn scatter<S: Simd, M: Model>(
     }
 }
 
-/// Blocks of the contacts of a tile, or of the contacts between tiles. Blocks of contacts with fixed bodies come first.
+/// Blocks of the contacts of a tile (a group of contacts that shares no grain with another tile), or of the contacts
+/// between tiles. Blocks of contacts with fixed bodies come first.
 pub(super) struct Blocks<'a> {
     pub all: &'a mut [ContactBlock],
     /// Number of blocks of contacts with fixed bodies.
     pub fixed: usize,
 }
 
-/// Solves blocks one after the other: first contacts with fixed bodies, then contacts between grains. Returns the
-/// change of the impulses if `MEASURE` is set.
+/// Solves blocks of four contacts one after the other: first contacts with fixed bodies, then contacts between grains.
+/// Returns the change of the impulses, which is measured if `MEASURE` is set and otherwise 0.
 #[inline(always)]
 pub(super) fn solve_blocks<S: Simd, M: Model, const MEASURE: bool>(
     simd: S,

@@ -34,15 +34,18 @@ const WORTH_THREADS: usize = 4096;
 #[derive(Clone, Debug, Default)]
 pub(super) struct BlockMemory {
     layout: TileLayout,
-    /// Change of the impulses of each tile's contacts in a sweep.
+    /// For each tile (a group of contacts that shares no grain with another tile), the change of the impulses of its
+    /// contacts in a sweep.
     changes: Vec<ImpulseChange>,
-    /// For each tile, a sum over its contacts: squared errors of the natural map, or squared impulses, (N·s)².
+    /// For each tile (a group of contacts that shares no grain with another tile), a sum over its contacts, (N·s)²: of
+    /// the squared errors of their impulses for the residual, or of their squared impulses.
     sums: Vec<f64>,
 }
 
 impl BlockMemory {
-    /// Calls `add_up` for the blocks of each tile, and for the blocks of contacts between tiles. Returns the sum of the
-    /// results, added in this order.
+    /// Calls `add_up` for the blocks of contacts of each tile (a group of contacts that shares no grain with another
+    /// tile), and for the blocks of the contacts between tiles. Returns the sum of the results, added in the order of
+    /// the tiles, with the contacts between tiles last.
     fn sum(
         &mut self,
         threads: bool,
@@ -54,7 +57,8 @@ impl BlockMemory {
     }
 }
 
-/// Solves a prepared problem by Gauss–Seidel sweeps over tiles and colours.
+/// Solves a prepared problem by Gauss–Seidel sweeps over tiles (groups of contacts near each other) and colours (groups
+/// of contacts that share no grain).
 pub(super) fn solve<M: Model>(
     problem: &mut StepProblem<M>,
     memory: &mut BlockMemory,
@@ -63,7 +67,9 @@ pub(super) fn solve<M: Model>(
     solve_at::<M>(Level::new(), problem, memory, settings)
 }
 
-/// Solves a prepared problem by sweeps over tiles and colours, with the vector instructions that `level` names.
+/// Solves a prepared problem by Gauss–Seidel sweeps over tiles (groups of contacts near each other) and colours (groups
+/// of contacts that share no grain), with the vector instructions that `level` names. If these groups of the problem
+/// are not valid, solves one contact after the other.
 fn solve_at<M: Model>(
     level: Level,
     problem: &mut StepProblem<M>,
@@ -84,7 +90,8 @@ fn solve_at<M: Model>(
 /// [`Tiled::store`] copies them back, `problem` has old impulses and velocities.
 struct Tiled<'a, M: Model> {
     level: Level,
-    /// True if there are several tiles, several threads, and enough work for several threads.
+    /// True if several threads sweep over the contacts at the same time: there are several threads, several tiles
+    /// (groups of contacts that share no grain with another tile), and enough contacts.
     threads: bool,
     law: ContactLaw,
     problem: &'a mut StepProblem<M>,
@@ -93,8 +100,8 @@ struct Tiled<'a, M: Model> {
 }
 
 impl<'a, M: Model> Tiled<'a, M> {
-    /// Arranges the contacts of a problem in blocks of four. Returns `None` if the problem's tiles or colours are not
-    /// valid.
+    /// Arranges the contacts of a problem in blocks of four. Returns `None` if the problem's groups of contacts are not
+    /// valid: a grain does not exist, or two contacts that would be solved at the same time share a grain.
     fn new(
         level: Level,
         problem: &'a mut StepProblem<M>,
@@ -135,7 +142,8 @@ impl<'a, M: Model> Tiled<'a, M> {
         report
     }
 
-    /// Performs one sweep over all contacts. Returns the change of the impulses if `MEASURE` is set.
+    /// Performs one sweep over all contacts. Returns the change of the impulses, which is measured if `MEASURE` is set
+    /// and otherwise 0.
     fn sweep<const MEASURE: bool>(&mut self) -> ImpulseChange {
         let Self { level, threads, law, memory, .. } = self;
         let (level, law) = (*level, &*law);
@@ -187,8 +195,8 @@ impl<'a, M: Model> Tiled<'a, M> {
         blocks.iter().zip(places).map(of_block).sum()
     }
 
-    /// Copies the present impulses from the blocks to the rows of the problem, and the velocities from the slots to its
-    /// bodies.
+    /// Copies the present impulses from the blocks of four contacts to the rows of the problem (the data of one contact
+    /// each), and the velocities from the memory slots to the problem's bodies.
     fn store(&mut self) {
         self.memory.layout.store::<M>(self.problem);
     }
@@ -198,8 +206,8 @@ fn blocks_of(tiles: &[ContactTile]) -> usize {
     tiles.iter().map(|tile| tile.blocks).sum()
 }
 
-/// Calls `visit` for each tile with its blocks of contacts and its slots of bodies, on several threads if `threads` is
-/// set.
+/// Calls `visit` for each tile (a group of contacts that shares no grain with another tile) with its blocks of contacts
+/// and the memory slots of its bodies' velocities. Uses several threads if `threads` is set.
 fn for_each_tile<T: Send>(
     threads: bool,
     tiles: &[ContactTile],
@@ -243,54 +251,64 @@ struct ContactTile {
 }
 
 /// Data of a grain that are needed only while contacts are arranged in blocks: the memory slot of its velocity, the
-/// tile that uses this slot, and the last colour with a contact of the grain.
+/// tile (a group of contacts that shares no grain with another tile) that uses this slot, and the last colour (a group
+/// of contacts that share no grain) with a contact of the grain.
 #[derive(Clone, Copy, Debug)]
 struct GrainMark {
     slot: u32,
-    /// Number of the grain's tile, from 1; 0 for the contacts between tiles.
+    /// Number of the tile (a group of contacts that shares no grain with another tile) that contains the grain's
+    /// contacts, from 1; 0 if only contacts between tiles contain the grain.
     tile: u32,
-    /// Number of the last colour in which a contact of the grain was found.
+    /// Number of the last colour (group of contacts that share no grain) in which a contact of the grain was found.
     colour: u32,
 }
 
 const UNSEEN: GrainMark = GrainMark { slot: NOBODY, tile: 0, colour: 0 };
 
-/// The tile that is being filled with blocks of contacts: its number and its first velocity slot.
+/// The tile (a group of contacts that shares no grain with another tile) that is being filled with blocks of contacts:
+/// its number and its first velocity slot.
 #[derive(Clone, Copy)]
 struct BlockPlace {
-    /// Number of the tile, from 1; 0 for the contacts between tiles.
+    /// Number of the tile (a group of contacts that shares no grain with another tile), from 1; 0 for the contacts
+    /// between tiles.
     tile: u32,
-    /// Index of the tile's first velocity slot, from which the slot indices in its blocks are counted.
+    /// Index of the first memory slot for a velocity that the tile (a group of contacts that shares no grain with
+    /// another tile) uses. The slot indices in the blocks of the tile are counted from this slot.
     first_slot: u32,
 }
 
-/// The contacts of a problem arranged in blocks of four, and the velocities of its bodies arranged in slots. The memory
-/// is reused for the next step.
+/// The contacts of a problem arranged in blocks of four, and the velocities of its bodies arranged in memory slots. The
+/// memory is reused for the next step.
 #[derive(Clone, Debug, Default)]
 struct TileLayout {
-    /// Tiles, in the order in which their blocks and slots are stored.
+    /// Tiles (groups of contacts that share no grain with another tile), in the order in which their blocks of contacts
+    /// and velocity slots are stored.
     tiles: Vec<ContactTile>,
-    /// Blocks of contacts tile by tile, and within a tile colour by colour. Their slot indices are counted from the
-    /// tile's first slot. The blocks of contacts between tiles come last; their slot indices are counted from the first
-    /// of all slots.
+    /// Blocks of four contacts, sorted by tile (a group of contacts that shares no grain with another tile), and within
+    /// a tile by colour (a group of contacts that share no grain). The indices of velocity slots in a block are counted
+    /// from the first slot of its tile. The blocks of the contacts between tiles come last; their slot indices are
+    /// counted from the first of all slots.
     blocks: Vec<ContactBlock>,
-    /// Number of blocks that belong to no tile and whose contacts are with fixed bodies.
+    /// Number of blocks of contacts between grains and fixed bodies that belong to no tile (no group of contacts that
+    /// one thread solves).
     fixed_between: usize,
-    /// Velocities of the bodies tile by tile, in the order in which blocks first use them. The first slot of a tile is
-    /// a placeholder for idle lanes.
+    /// Velocities of the bodies, sorted by tile (a group of contacts that shares no grain with another tile), and
+    /// within a tile in the order in which its blocks of contacts first use them. The first slot of a tile is a
+    /// placeholder for idle SIMD lanes.
     slots: Vec<BodySlot>,
-    /// For each block, the range of the row numbers of its contacts in the problem.
+    /// For each block of contacts, the range of the numbers of its contacts in the problem.
     places: Vec<Range<u32>>,
-    /// For each velocity slot, the index of its grain, or [`NOBODY`].
+    /// For each memory slot of a velocity, the index of its grain, or [`NOBODY`] for a placeholder.
     grains: Vec<u32>,
     marks: Vec<GrainMark>,
     colours: u32,
 }
 
 impl TileLayout {
-    /// Calls `visit` for each tile, with its blocks (four contacts each) and slots (velocities of bodies), on several
-    /// threads if `threads` is set. Then calls `visit` for the blocks between tiles. Stores the results of the tiles in
-    /// `results` and returns the result of the blocks between tiles.
+    /// Calls `visit` for each tile (a group of contacts that shares no grain with another tile), with its blocks (four
+    /// contacts each) and slots (velocities of bodies), on several threads if `threads` is set. Then calls `visit` for
+    /// the blocks of the contacts between tiles. Stores the results of the tiles in `results` and returns the result
+    /// for the contacts between tiles.
     fn visit<T: Send>(
         &mut self,
         threads: bool,
@@ -303,8 +321,8 @@ impl TileLayout {
         visit(Blocks { all: between, fixed: *fixed_between }, slots)
     }
 
-    /// Arranges the contacts of a problem in blocks of four. Returns `None` if a grain does not exist, or if two tiles
-    /// or two contacts of a colour share a grain.
+    /// Arranges the contacts of a problem in blocks of four. Returns `None` if a grain does not exist, or if a grain is
+    /// in two groups or twice in a group whose contacts would be solved at the same time.
     fn fill<M: Model>(&mut self, problem: &StepProblem<M>) -> Option<()> {
         self.tiles.clear();
         self.blocks.clear();
@@ -337,10 +355,12 @@ impl TileLayout {
         Some(())
     }
 
-    /// Groups the contacts of a tile (a region of the scene) into blocks of contacts that are solved at once, and adds these
-    /// blocks to `self.blocks`. If `tile` is larger than the number of the last tile, does the same for the contacts
-    /// between tiles. `place` has the number of the tile and the index of its first velocity. Returns the number of
-    /// blocks of contacts with fixed bodies, or `None` if the index of a contact or a grain is out of range.
+    /// Arranges the contacts of a tile (a group of contacts that shares no grain with another tile) in blocks of four,
+    /// and appends the blocks to `self.blocks`. `tile` is the index of the tile, from 0; the index after the last tile
+    /// selects the contacts between tiles. `place` has the number of the tile, from 1 (0 for the contacts between
+    /// tiles), and the index of its first velocity slot. Returns the number of blocks of contacts with fixed bodies.
+    /// Returns `None` if a contact or a grain does not exist, or if two tiles or two contacts of a colour (a group of
+    /// contacts that share no grain) share a grain.
     fn add_all<M: Model>(
         &mut self,
         problem: &StepProblem<M>,
@@ -364,10 +384,11 @@ impl TileLayout {
         Some(fixed_blocks)
     }
 
-    /// Adds the blocks of a colour. `rows` are the rows (the data of one contact each) of the colour, numbered from
-    /// `first`, each with its mass ratio (effective mass divided by the mass of the first grain) or, against a fixed
-    /// body, its surface speed (m/s). Returns `None` if a grain does not exist, or belongs to another contact of the
-    /// colour or to another tile.
+    /// Adds the blocks of the contacts of a colour (a group of contacts that share no grain). `rows` are the rows of
+    /// the colour (the data of one contact each), numbered from `first`. Each row is given with its mass ratio
+    /// (effective mass divided by the mass of the first grain) or, if `are_pairs` is false, with the speed of the fixed
+    /// body's surface, m/s. Returns `None` if a grain does not exist, or belongs to another contact of the colour or to
+    /// another tile (a group of contacts that one thread solves).
     fn add<'a, M: Model>(
         &mut self,
         rows: impl ExactSizeIterator<Item = (&'a Row<M>, f64)> + Clone,
@@ -405,7 +426,8 @@ impl TileLayout {
         Some(())
     }
 
-    /// Copies the impulses from the blocks to the rows, and the velocities from the slots to the bodies.
+    /// Copies the impulses from the blocks of four contacts to the rows of the problem (the data of one contact each),
+    /// and the velocities from the memory slots to the problem's bodies.
     fn store<M: Model>(&self, problem: &mut StepProblem<M>) {
         let ContactRows { fixed, pairs, .. } = &mut problem.rows;
         for (block, place) in self.blocks.iter().zip(&self.places) {

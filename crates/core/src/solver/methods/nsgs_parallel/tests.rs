@@ -1,5 +1,6 @@
-//! Tests of Gauss–Seidel by tiles with random contact problems: with any width of the vector registers and any number
-//! of threads the result is bitwise the same as if one contact is solved after the other.
+//! Tests of Gauss–Seidel by tiles (groups of contacts that different threads can solve) with random contact problems:
+//! with any width of the vector registers and any number of threads the result is bitwise the same as if one contact is
+//! solved after the other.
 
 use rayon::ThreadPoolBuilder;
 
@@ -12,8 +13,9 @@ use crate::solver::settings::StopTest;
 use crate::solver::{Line, Plane, SmoothPlane, SpinningPlane};
 use crate::world::FrictionCone::{self, Compressive, Shifted};
 
-/// Returns a problem with random contacts, sorted by tiles and colours. The indices of the two bodies of a contact
-/// differ by less than 64.
+/// Returns a problem with random contacts, sorted by tiles (groups of contacts that share no grain with another tile)
+/// and colours (groups of contacts that share no grain). The indices of the two bodies of a contact differ by less than
+/// 64.
 fn problem<M: Model>(
     seed: u64,
     bodies: usize,
