@@ -29,7 +29,7 @@ fn open(cache: &Path) -> Robot {
 }
 
 /// Waits until the eight other piles for one of the compared simulations are complete. Returns the mean of their slumps
-/// at this simulated time, s, half of its 95 % interval, and the number of piles.
+/// at the simulated time `time_secs` (s), half the width of its 95 % interval, and the number of piles.
 fn mean(robot: &mut Robot, world: usize, time_secs: f64) -> (f64, f64, usize) {
     let begun = Instant::now();
     loop {

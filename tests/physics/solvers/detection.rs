@@ -192,7 +192,7 @@ fn three_steps(scene: &Scene, threads: usize) -> ([u32; 3], Vec<Impulse>, Grains
 }
 
 /// Checks that parallel sweeps on two threads give bitwise the same result as the method `nsgs` on one thread, if
-/// `nsgs` visits the contacts in the order of the colours.
+/// `nsgs` visits the contacts in the order of the colours (groups of contacts that share no grain).
 fn assert_a_sweep_like_any_other(mut scene: Scene) {
     (scene.solver.method, scene.solver.stop) = (Method::NsgsParallel, StopTest::Residual);
     let parallel = three_steps(&scene, 2);

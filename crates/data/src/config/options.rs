@@ -150,8 +150,8 @@ impl Serialize for Config {
     }
 }
 
-/// Serialises the settings of a configuration, without the source of its scene. Settings that the configuration does
-/// not give are not written.
+/// Wrapper of a configuration that serialises only its settings, not the source of its scene. Settings that the
+/// configuration does not give are not written.
 struct GivenSettings<'a>(&'a Config);
 
 impl Serialize for GivenSettings<'_> {

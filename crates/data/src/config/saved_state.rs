@@ -85,7 +85,7 @@ impl SavedState {
     /// Reads a saved run from the bytes of a file; `path` is used only in error messages.
     ///
     /// # Errors
-    /// As [`SavedState::open`].
+    /// If the bytes are damaged, were written by another version, or are not a saved run.
     pub fn from_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Self> {
         SEAL.read(bytes, path.as_ref())
     }

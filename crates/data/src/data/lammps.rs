@@ -4,10 +4,10 @@
 //! because OVITO draws bonds only between particles and otherwise refuses the frame.
 //!
 //! Columns have the names that these readers expect. MDAnalysis finds the lines of a frame of grains by counting lines,
-//! and neither MDAnalysis nor ASE accepts grains without z or with unknown elements. The frames of grains therefore
-//! contain only the items that every dump has. The description of the run is at the beginning of the file of contacts,
-//! and the times of frames are in the files of contacts and walls. Numbers are written in the shortest form that reads
-//! back as the same number.
+//! so these frames contain only the sections (`ITEM: …`) that every dump has. Neither MDAnalysis nor ASE accepts grains
+//! without z or with unknown elements, so grains have the coordinate z = 0 and the name of a chemical element. The
+//! description of the run is at the beginning of the file of contacts, and the times of frames are in the files of
+//! contacts and walls. Numbers are written in the shortest form that reads back as the same number.
 
 use std::fmt::Write as _;
 use std::fs::File;

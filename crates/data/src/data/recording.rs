@@ -14,8 +14,7 @@ use crate::error::{Error, Result};
 use crate::scene::{DataSettings, FormatName};
 use crate::sim::{ForceSums, Moment, Observables, Simulation};
 
-/// Default simulated time between two frames, s: 25 frames per simulated second. Pictures have the same default
-/// interval.
+/// Default simulated time between two frames, s: 25 frames per simulated second, as for pictures.
 const DEFAULT_EVERY_SECS: f64 = 0.04;
 /// Largest number of messages that may wait for the writing thread. If it is larger, waiting frames take more memory.
 /// If it is smaller, the run must wait whenever the disk is busy for a short time.
@@ -105,8 +104,8 @@ impl Recording {
     /// no recording, a new recording is started.
     ///
     /// # Errors
-    /// As [`Recording::start`]. Also fails if a file differs from the format of this version, or if rows or frames
-    /// counted in `mark` are missing. Then no recorded data are changed.
+    /// If the folder cannot be written to, if another process is recording into it, if a file differs from the format
+    /// of this version, or if rows or frames counted in `mark` are missing. Then no recorded data are changed.
     pub fn go_on(
         folder: &Path,
         formats: &[FormatName],
@@ -125,7 +124,7 @@ impl Recording {
     /// Checks that [`Recording::go_on`] will succeed.
     ///
     /// # Errors
-    /// As [`Recording::go_on`].
+    /// The error that [`Recording::go_on`] would return.
     pub fn check(
         folder: &Path,
         formats: &[FormatName],

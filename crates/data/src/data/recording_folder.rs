@@ -51,7 +51,7 @@ impl RecordingFolder {
     /// Locks a folder to resume its recording, and removes the drafts (incomplete files) that a killed process left.
     ///
     /// # Errors
-    /// As [`RecordingFolder::of`].
+    /// If the folder cannot be written to, if another process is recording into it, or if a draft cannot be removed.
     pub fn to_go_on(path: &Path) -> Result<Self> {
         let folder = Self::lock(path)?;
         let mut left = files_of_a_recording(path)?;

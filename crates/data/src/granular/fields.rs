@@ -80,7 +80,8 @@ impl Fields {
     /// are spread into this grid.
     ///
     /// # Errors
-    /// As [`Fields::of`].
+    /// If the width is not a finite length > 0 or would need too many cells, or if a number of the snapshot is not
+    /// finite.
     pub fn in_box(moment: &Moment, width: f64, [least, most]: [DVec2; 2]) -> Result<Self> {
         if !(width > 0.0 && width.is_finite()) {
             return Err(Error::value("width", width, "a finite length > 0 in m"));

@@ -65,15 +65,20 @@ columns! {
         /// force on the grain, and ℓ leads from the contact point to the grain's centre. The mean over all grains,
         /// weighted by a, is the stress of the pile. NaN without a cell.
         stress_xx: f64, "N/m";
-        /// Stress component σ_xy: x component of the forces, y component of the branch vectors.
+        /// Stress component σ_xy: x component of the contact forces, y component of the branch vectors ℓ, which lead
+        /// from the contact points to the centre of the grain.
         stress_xy: f64, "N/m";
-        /// Stress component σ_yx: y component of the forces, x component of the branch vectors.
+        /// Stress component σ_yx: y component of the contact forces, x component of the branch vectors ℓ, which lead
+        /// from the contact points to the centre of the grain.
         stress_yx: f64, "N/m";
-        /// Stress component σ_yy: y components of both the forces and the branch vectors.
+        /// Stress component σ_yy: y components of the contact forces and of the branch vectors ℓ, which lead from the
+        /// contact points to the centre of the grain.
         stress_yy: f64, "N/m";
-        /// Pressure p = (σ_1 + σ_2)/2, half the trace of the stress σ.
+        /// Pressure p = (σ_1 + σ_2)/2: the mean of the principal stresses σ_1 and σ_2, which is half the trace of the
+        /// stress σ.
         pressure: f64, "N/m";
-        /// Deviatoric stress q = (σ_1 − σ_2)/2 of the symmetric part of the stress σ, never negative.
+        /// Deviatoric stress q = (σ_1 − σ_2)/2, never negative: half the difference of the principal values σ_1 ≥ σ_2
+        /// of the symmetric part of the stress σ.
         deviator: f64, "N/m";
         /// Area of the grain's disc divided by the area of the grain's cell; NaN if the cell is at a free surface or a
         /// hole.
@@ -127,24 +132,29 @@ columns! {
         /// i. ℓ leads to the centre of grain i from the centre of the other grain, or from the touched point of a body
         /// that no grain moves.
         stress_xx: f64, "N/m";
-        /// Stress component σ_xy: x component of the forces, y component of the branch vectors.
+        /// Stress component σ_xy: x component of the contact forces, y component of the branch vectors ℓ, which lead to
+        /// the centre of grain i.
         stress_xy: f64, "N/m";
-        /// Stress component σ_yx: y component of the forces, x component of the branch vectors. It equals σ_xy if the
-        /// torques on each grain balance.
+        /// Stress component σ_yx: y component of the contact forces, x component of the branch vectors ℓ, which lead to
+        /// the centre of grain i. It equals σ_xy if the torques on each grain balance.
         stress_yx: f64, "N/m";
-        /// Stress component σ_yy: y components of both the forces and the branch vectors.
+        /// Stress component σ_yy: y components of the contact forces and of the branch vectors ℓ, which lead to the
+        /// centre of grain i.
         stress_yy: f64, "N/m";
-        /// Pressure p = (σ_1 + σ_2)/2, half the trace of the stress σ.
+        /// Pressure p = (σ_1 + σ_2)/2: the mean of the principal stresses σ_1 and σ_2, which is half the trace of the
+        /// stress σ.
         pressure: f64, "N/m";
-        /// Deviatoric stress q = (σ_1 − σ_2)/2 of the symmetric part of the stress σ, never negative.
+        /// Deviatoric stress q = (σ_1 − σ_2)/2, never negative: half the difference of the principal values σ_1 ≥ σ_2
+        /// of the symmetric part of the stress σ.
         deviator: f64, "N/m";
         /// Direction of the largest compression, anticlockwise from the x axis, at least 0 and below 180.
         principal_direction: f64, "degree";
-        /// Kinetic pressure (1/2A) Σ m |v − v̄|²: the part of the pressure that is the momentum carried by the
-        /// fluctuations of grains. No stress component contains it. The mean flow v̄ at a grain is a linear fit to the
-        /// velocities of all grains less than 3 mean diameters away, including the grain itself. With n of them, the
-        /// factor n/(n − 3) corrects for the fit. With fewer than 7, v̄ is the velocity of the centre of mass of all
-        /// grains.
+        /// Kinetic pressure (1/2A) Σ m |v − v̄|², a sum over all grains with the mass m and the velocity v of each
+        /// grain, the mean flow v̄ at the grain and the area A of the pile: the part of the pressure that is the
+        /// momentum carried by the fluctuations of grains. No stress component contains it. The mean flow v̄ at a grain
+        /// is a linear fit to the velocities of all grains less than 3 mean diameters away, including the grain itself.
+        /// With n of them, the factor n/(n − 3) corrects for the fit. With fewer than 7, v̄ is the velocity of the
+        /// centre of mass of all grains.
         kinetic_pressure: f64, "N/m";
         /// Fabric component F_xx. The fabric F is the mean of n ⊗ n over all contacts with the normals n; its trace is
         /// 1.
@@ -160,8 +170,8 @@ columns! {
         fabric_direction: f64, "degree";
         /// Mean number of contacts per grain, with other grains, fixed discs and boundaries.
         coordination: f64, "1";
-        /// Mean number of contacts per grain without rattlers. Only contacts count that bear a force and do not involve
-        /// a rattler.
+        /// Mean number of contacts per grain without rattlers (grains that transmit no force). Only contacts count that
+        /// bear a force and do not involve a rattler.
         coordination_without_rattlers: f64, "1";
         /// Number of rattlers: grains that transmit no force, because they have fewer than two force-bearing contacts
         /// with bodies that are not rattlers.
@@ -171,7 +181,8 @@ columns! {
         /// Area of the discs whose cells are closed (not at a free surface or a hole), divided by the area of these
         /// cells.
         solid_fraction_cells: f64, "1";
-        /// Number of grains with closed cells: the pores around such a grain are too small for a mean grain.
+        /// Number of grains with closed cells: the pores around such a grain are too small for another grain of the
+        /// mean radius.
         closed_cells: u32, "1";
         /// Fraction of the contacts that slip.
         sliding_share: f64, "1";
@@ -188,15 +199,17 @@ columns! {
         /// Mean magnitude ⟨|N|⟩ of the normal forces N of contacts that bear a force: the unit of the relative normal
         /// forces f = N/⟨|N|⟩.
         mean_normal_force: f64, "N";
-        /// Second moment ⟨f²⟩ of the relative normal forces f: 1 if all forces are equal, 2 if they are distributed
-        /// exponentially.
+        /// Second moment ⟨f²⟩ of the relative normal forces f = N/⟨|N|⟩ (normal force N divided by its mean magnitude):
+        /// 1 if all forces are equal, 2 if they are distributed exponentially.
         normal_force_second_moment: f64, "1";
-        /// Third moment ⟨|f|³⟩ of the relative normal forces f: 1 if all forces are equal, 6 if they are distributed
-        /// exponentially.
+        /// Third moment ⟨|f|³⟩ of the relative normal forces f = N/⟨|N|⟩ (normal force N divided by its mean
+        /// magnitude): 1 if all forces are equal, 6 if they are distributed exponentially.
         normal_force_third_moment: f64, "1";
-        /// Largest magnitude |f| of the relative normal forces.
+        /// Largest magnitude |f| of the relative normal forces f = N/⟨|N|⟩ (normal force N divided by its mean
+        /// magnitude).
         largest_normal_force: f64, "1";
-        /// Fraction of the force-bearing contacts with a relative normal force |f| above 1: the strong network.
+        /// Fraction of the force-bearing contacts whose normal force is larger in magnitude than the mean magnitude of
+        /// the normal forces: the strong network.
         strong_share: f64, "1";
     }
 }

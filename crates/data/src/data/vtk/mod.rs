@@ -82,7 +82,8 @@ const VECTORS: [(&str, [&str; 2]); 4] = [
     ("point", ["x", "y"]),
     ("force", ["fx", "fy"]),
 ];
-/// Number that is written for a flag whose property the contact law does not define.
+/// Number that is written for a flag without a value: it is neither true nor false, because the contact law does not
+/// define the property.
 const NEITHER: i8 = -1;
 
 /// Length of a slot, the space for one entry in a `.pvd` file (list of frames), bytes. It is large enough for any time
