@@ -143,8 +143,8 @@ pub(crate) fn check_name(
     Err(Error::value(field(), name, allowed))
 }
 
-/// Checks the materials of a world with this many boundaries and fixed discs, and the contact laws of pairs of
-/// materials.
+/// Checks the materials of a world and the contact laws of pairs of materials. `boundaries` and `fixed_discs` are the
+/// numbers of these bodies in the world, which limit the indices that a material may list.
 pub(super) fn check_materials(
     materials: &[Material],
     pairs: &[MaterialPair],

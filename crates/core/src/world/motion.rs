@@ -31,8 +31,8 @@ pub struct Motion {
     /// Force or pressure that moves the bodies, in addition to their prescribed motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive: Option<Drive>,
-    /// Speed of the surface along itself, m/s. The shape itself stays at rest, as with a conveyor belt. A positive
-    /// speed is along the outward normal turned by +90°, which is anticlockwise around a disc or a polygon.
+    /// Speed of the surface along itself, m/s, as of a conveyor belt. It does not move the shape. A positive speed is
+    /// along the outward normal turned by +90°, which is anticlockwise around a disc or a polygon.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub surface_speed: f64,
     /// Time since the motion began, s.

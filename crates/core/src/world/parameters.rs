@@ -15,7 +15,8 @@ words! {
     }
 }
 
-/// Default of the debonding distance δ_c (opening at which a bond of the law `range` breaks), in mean diameters.
+/// Default of the debonding distance δ_c (opening at which a bond of the law `range` breaks), in mean diameters. With a
+/// larger distance, a bond takes more work to break: C₀·δ_c with the cohesion force C₀ (N) and δ_c in m.
 pub const DEBONDING_DISTANCE: f64 = 0.01;
 
 /// Default of the touch tolerance (largest gap at which grains touch), in mean diameters. With a smaller tolerance,

@@ -210,7 +210,8 @@ impl Periodic {
         DVec2::new(offset.x - self.lean(periods_in(self.y, offset.y)), offset.y)
     }
 
-    /// Returns how many cell heights the cell that contains the height `y` (m) is above the cell of the simulation.
+    /// Returns the number of cell heights by which a point at the height `y` (m) is above its image in the cell: 0 in
+    /// the cell itself, 1 in the periodic image directly above it.
     pub(super) fn cells_above(self, y: f64) -> f64 {
         periods_in(self.y, y - wrapped(self.y, y))
     }

@@ -100,8 +100,9 @@ pub struct ProblemNumbers {
     /// contacts have their own coefficients ([`RowNumbers`]), the largest capture speed of all pairs of materials for
     /// grains of the mean mass.
     pub capture_speed: f64,
-    /// Friction cone, which determines the part of the normal force that bounds friction. Without cohesion both cones
-    /// are the same, and this is the shifted cone.
+    /// Friction cone: the bound of friction, which is μ (N + C₀) in the shifted cone and μ max(N, 0) in the compressive
+    /// cone (μ: friction coefficient, N: normal force, C₀: cohesion force). Without cohesion both bounds are the same,
+    /// and this is the shifted cone.
     pub cone: FrictionCone,
 }
 

@@ -52,8 +52,8 @@ impl RowGroups {
 /// kind (with fixed bodies, or between grains), the interleaved order is the order of detection.
 const STREAMS: usize = 8;
 
-/// Number of colours (groups of contacts that share no grain) for which each grain stores a bit. If a grain has so many
-/// neighbours that a contact finds no free colour, the contact gets a colour of its own.
+/// Number of colours (groups of contacts that share no grain) for which each grain stores a bit, in one integer of 128
+/// bits. If a grain has so many neighbours that a contact finds no free colour, the contact gets a colour of its own.
 const COLOURS: u32 = u128::BITS;
 
 /// Sorts the contacts of a step into the order of the sweep. The memory is reused for the next step.

@@ -199,8 +199,8 @@ impl ErrorSums {
     /// Adds a contact's contribution to the sums from which the velocity error is computed. The sum S, which is 0 at
     /// the solution, increases by the effective mass times `of_contact`, (m/s)². The sums of squared shortfalls
     /// increase by the square of `lacking`, m/s: the increase of normal velocity that the contact needs to satisfy its
-    /// law. For a contact that a motion of all grains along `way_out` opens, `lacking` is first divided by the cosine
-    /// between this direction and the normal.
+    /// law. For a contact that a motion of all grains away from the fixed bodies, along `way_out`, opens, `lacking` is
+    /// first divided by the cosine between this direction and the normal.
     #[inline(always)]
     fn add<M: Model>(
         &mut self,

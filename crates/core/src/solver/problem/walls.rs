@@ -52,8 +52,8 @@ pub struct Surface {
     pub velocity: DVec2,
     /// Velocity of the body at the contact at the beginning of the step, m/s.
     pub before: DVec2,
-    /// Additional speed of the surface along the tangent, m/s, if the surface runs around a body that does not move, as
-    /// a conveyor belt does.
+    /// Additional speed of the surface along the tangent relative to the body, m/s, if the surface runs around the
+    /// body, as a conveyor belt does; else 0.
     pub round: f64,
     /// Angular velocity at which the surface turns, rad/s: the angular velocity of the body, plus, for a disc whose
     /// surface runs around it like a belt, the surface speed divided by the disc's radius.
