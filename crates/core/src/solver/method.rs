@@ -1,10 +1,10 @@
-//! The list of methods that find the impulses of a step, and the properties of each method.
+//! The list of methods that find the contact impulses of a time step, and the properties of each method.
 
 use crate::setting::words;
 
 words! {
-    /// A method that finds the impulses of a step, with its name on the command line, in scene files and in the panels
-    /// of the user interface.
+    /// A method that finds the contact impulses of a time step, with its name on the command line, in scene files and
+    /// in the panels of the user interface.
     pub enum Method {
         Nsgs = "nsgs", "non-linear Gauss-Seidel: one contact after the other, exact for each";
         NsgsParallel = "nsgs-parallel",
@@ -35,7 +35,7 @@ words! {
     }
 }
 
-/// Properties of a method that finds the impulses of a step.
+/// Properties of a method that finds the contact impulses of a time step.
 #[derive(Clone, Copy, Debug)]
 pub struct MethodInfo {
     /// The method.

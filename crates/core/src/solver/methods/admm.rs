@@ -34,8 +34,8 @@ use crate::solver::problem::{Row, StepProblem};
 use crate::solver::settings::SolverSettings;
 
 /// Initial compliance ε, the inverse of the penalty that couples body velocities and contact velocities, relative to
-/// the compliance 1/m_ij of a contact (effective mass m_ij). With a smaller ε the difference between these two
-/// velocities costs more.
+/// the compliance 1/m_ij of a contact (effective mass m_ij). A smaller ε penalises the difference between these two
+/// velocities more.
 const FIRST_COMPLIANCE: f64 = 0.03;
 /// Number of iterations between two decisions whether the compliance ε, the inverse of the penalty that couples body
 /// velocities and contact velocities, is changed. A change requires a new factorisation, which costs as much as about
@@ -76,7 +76,8 @@ impl Clone for AdmmMemory {
 struct Directions<const D: usize> {
     elimination: Elimination,
     matrix: BlockMatrix<D>,
-    /// Right-hand side of the linear equations; after their solution, the body velocities V in elimination order, m/s.
+    /// Right-hand side of the linear equations; after their solution, the body velocities V in elimination order (the
+    /// order of the bodies in the factorised matrix), m/s.
     vector: Vec<[f64; D]>,
     /// Contact velocities z (normal, tangential), m/s, which a penalty couples to the body velocities. They do not
     /// contain the restitution term (restitution times the normal velocity before the step).
@@ -231,7 +232,7 @@ impl<const D: usize> Directions<D> {
         let (mut of_velocities, mut of_impulses) = (0.0, 0.0);
         let mut targets = std::mem::take(&mut self.targets);
         for (number, target) in targets.iter_mut().enumerate() {
-            // The body velocities V contain neither the slide of periodic images nor the motion of surfaces.
+            // The body velocities V contain neither the shear velocity of periodic images nor the speed of surfaces.
             let is_pair = problem.rows.is_pair(number);
             let [away, along] = match is_pair {
                 true => M::slide_along(problem.rows.get(number).normal),
@@ -263,7 +264,7 @@ impl<const D: usize> Directions<D> {
         }
         self.targets = targets;
         let balance: f64 = of_impulses / of_velocities;
-        // If nothing changes, ε is kept.
+        // If no impulse or velocity changes, the compliance is kept.
         if balance.is_finite() && balance > 0.0 { balance.sqrt().sqrt() } else { 1.0 }
     }
 

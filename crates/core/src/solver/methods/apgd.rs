@@ -30,8 +30,9 @@ use super::contact_system::{BestIterate, ContactSystem, ScaledVector, WorkVector
 use super::stopping::{SolveReport, is_tested};
 use crate::solver::settings::SolverSettings;
 
-/// Factor by which the curvature bound L exceeds the curvature found in a step that was too long. It is slightly above
-/// 1, because the next step has about the same curvature.
+/// Factor by which a new bound L of the curvature of the minimised function exceeds the curvature that was found in a
+/// step that was too long for the previous bound. The factor is slightly above 1, because the next step has about the
+/// same curvature.
 const MARGIN: f64 = 1.05;
 
 /// Solves a contact system by accelerated projected gradients, from its present impulses. Every product of the system's

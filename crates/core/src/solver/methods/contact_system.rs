@@ -32,7 +32,8 @@ use crate::world::FrictionCone;
 /// (`problem::rolling`).
 pub type ScaledVector = Vec<[f64; 2]>;
 
-/// Work memory of methods on a [`ContactSystem`]. The memory is reused for the next solve; its contents are not.
+/// Work memory of methods on a [`ContactSystem`]. The memory is reused for the next solve, which overwrites its
+/// contents.
 #[derive(Debug, Default)]
 pub(crate) struct WorkVectors {
     /// Vectors of scaled impulses or velocities for intermediate results, as many as any method needs.
@@ -51,9 +52,10 @@ impl Clone for WorkVectors {
 
 /// The contact problem of one step in scaled variables, which have the unit √J. The scaled impulses of a contact are
 /// its shifted normal impulse and its tangential impulse (N·s), divided by the root of its effective mass (kg). The
-/// scaled velocities are its normal velocity plus the restitution term, and its tangential velocity (m/s), multiplied
-/// by that root. The scaled velocities are an affine function of the scaled impulses, whose matrix is called A. The
-/// argument `contact` of a function is an index below [`ContactSystem::len`].
+/// scaled velocities are its normal velocity plus the restitution term (restitution times the normal velocity before
+/// the step), and its tangential velocity (m/s), multiplied by that root. The scaled velocities are an affine function
+/// of the scaled impulses, whose matrix is called A. The argument `contact` of a function is an index below
+/// [`ContactSystem::len`].
 pub trait ContactSystem {
     /// True if contacts have tangential impulses. If not, tangential entries are 0.
     const FRICTION: bool;
@@ -290,8 +292,9 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
 /// best impulses that were found in this way; with a longer interval it may miss better impulses.
 const LOOK_INTERVAL: u32 = 16;
 
-/// Returns trial impulses projected on the contact law: the nearest allowed normal impulse, and the nearest tangential
-/// impulse that this normal impulse allows. All impulses are scaled impulses, √J.
+/// Returns trial impulses, which are impulses that may violate the contact law, projected on the law: the nearest
+/// allowed normal impulse, and the nearest tangential impulse that this normal impulse allows. All impulses are divided
+/// by the root of the effective mass, √J.
 #[inline(always)]
 pub(crate) fn projected<S: ContactSystem>(
     system: &S,
@@ -323,8 +326,8 @@ pub(crate) fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
     (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// The impulses with the smallest residual of a solve so far (impulses divided by the root of the effective mass, √J),
-/// and the history of the residual.
+/// The impulses that gave the smallest residual of a solve so far (impulses divided by the root of the effective mass,
+/// √J), and the history of the residual.
 pub(crate) struct BestIterate<'a> {
     impulses: &'a mut ScaledVector,
     residual: f64,

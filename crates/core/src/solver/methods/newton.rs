@@ -127,8 +127,8 @@ struct NewtonWorkspace<const D: usize> {
     /// Impulses of all contacts after the last step whose result was kept: normal impulse plus cohesion impulse, and
     /// tangential impulse, divided by the effective mass, m/s.
     saved: Vec<[f64; 2]>,
-    /// Impulses of all contacts with the smallest residual so far: normal impulse plus cohesion impulse, and tangential
-    /// impulse, divided by the effective mass, m/s.
+    /// The impulses of all contacts that gave the smallest residual so far: normal impulse plus cohesion impulse, and
+    /// tangential impulse, divided by the effective mass, m/s.
     best: Vec<[f64; 2]>,
 }
 

@@ -96,8 +96,8 @@ pub(in crate::solver) fn sweep_until_settled<P>(
 }
 
 /// Returns true if the stopping test is met after a sweep with the impulse change `change`. The other arguments are the
-/// quantities that the four tests need: the mean mass of the grains (kg), the sum of the squared impulses of all
-/// contacts ((N·s)²), the residual, and the velocity error.
+/// quantities that the four kinds of stopping test need: the mean mass of the grains (kg), the sum of the squared
+/// impulses of all contacts ((N·s)²), the residual, and the velocity error.
 pub(super) fn is_settled<P>(
     problem: &mut P,
     change: ImpulseChange,

@@ -187,9 +187,9 @@ impl<M: Model> StepProblem<M> {
         }
     }
 
-    /// Sets the number of each contact that stays fixed during a solve, m/s (a friction bound or an opening speed (a
-    /// speed added to the normal velocity)), to the result of `lagged_of`: a function of the contact law, the row (data
-    /// of the contact) and its tangential velocity, m/s.
+    /// Sets the number of each contact that stays fixed during a solve, m/s (a friction bound, or an opening speed that
+    /// is added to the normal velocity), to the result of `lagged_of`: a function of the contact law, the row (data of
+    /// the contact) and its tangential velocity, m/s.
     fn lag_by(&mut self, lagged_of: impl Fn(&ContactLaw, &Row<M>, f64) -> f64) {
         let mut lagged = std::mem::take(&mut self.friction.now);
         lagged.clear();

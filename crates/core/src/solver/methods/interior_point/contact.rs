@@ -248,7 +248,7 @@ impl PathContact {
         }
         let force = (push(1) - push(2) - along(1)) - changed(1);
         if S::LEANS {
-            // If the contact slides, x = μσ ± λ would be the small difference of two large changes.
+            // If the contact slides, the change of the slack μσ ± λ would be the small difference of two large changes.
             let ratio = |pair: usize| self.multiplier[pair] / self.slack[pair];
             let grown = numbers.slope * normal;
             let soft = numbers.tangential_compliance * self.compliance;
@@ -362,7 +362,7 @@ impl PathContact {
     fn centre_on_cone(&mut self, numbers: ContactNumbers, trial: [f64; 2], centre: f64) {
         let ContactNumbers { slope, tangential_compliance, .. } = numbers;
         let nearest = law::nearest_on_cone(slope, tangential_compliance, trial);
-        // (w, v) at the nearest point of the cone, and the multipliers that belong to them.
+        // Normal and tangential velocity, m/s, at the nearest point of the cone, and the multipliers that belong to it.
         let normal_velocity = nearest[0] - trial[0];
         let velocity = tangential_compliance * (nearest[1] - trial[1]);
         let together = (normal_velocity / slope).max(velocity.abs());

@@ -45,24 +45,25 @@ const LEAST_BOUND: f64 = 1e-10;
 pub(super) struct PathWorkspace<const D: usize> {
     pub graph: ContactGraph,
     pub system: StepMatrix<D>,
-    /// Right-hand side of the linear system in elimination order; after the solution of the system, the change of the
-    /// velocities.
+    /// Right-hand side of the linear system in elimination order (the order of the bodies in the factorised matrix);
+    /// after the solution of the system, the change of the velocities.
     pub vector: Vec<[f64; D]>,
     /// Impulses, slacks and multipliers of all contacts.
     pub contacts: Vec<PathContact>,
     pub targets: Vec<[f64; PAIRS]>,
     pub step: Vec<PathStep>,
     pub other_step: Vec<PathStep>,
-    /// Impulses of all contacts with the smallest residual so far: normal impulse plus cohesion impulse, and tangential
-    /// impulse, divided by the effective mass, m/s.
+    /// The impulses of all contacts that gave the smallest residual so far: normal impulse plus cohesion impulse, and
+    /// tangential impulse, divided by the effective mass, m/s.
     pub best: Vec<[f64; 2]>,
     /// Impulses of all contacts at the start of the solve: normal impulse plus cohesion impulse, and tangential
     /// impulse, divided by the effective mass, m/s.
     pub first: Vec<[f64; 2]>,
     /// Impulses and velocities of all contacts in the proximal multiplier method.
     pub near: Vec<ProximalContact>,
-    /// Momentum changes of the bodies by contact impulses in the proximal multiplier method, in elimination order, kg
-    /// m/s: the inertia times the difference from the velocity without contacts.
+    /// Momentum changes of the bodies by contact impulses in the proximal multiplier method, in elimination order (the
+    /// order of the bodies in the factorised matrix), kg m/s: the inertia times the difference between
+    /// the velocity and the velocity without contacts.
     pub momenta: Vec<[f64; D]>,
     /// True for each body with a contact that limited the length of the last step.
     pub stopped: Vec<bool>,

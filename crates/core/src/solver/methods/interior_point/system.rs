@@ -66,8 +66,8 @@ impl<const D: usize> StepMatrix<D> {
         }
     }
 
-    /// Solves the linear system with the factors. `vector`, in elimination order, is the right-hand side on entry and
-    /// the solution on return.
+    /// Solves the linear system with the factors. `vector`, in elimination order (the order of the bodies in the
+    /// factorised matrix), is the right-hand side on entry and the solution on return.
     pub(super) fn solve<S: Shape>(&self, elimination: &Elimination, vector: &mut [[f64; D]]) {
         if S::LEANS {
             self.unsymmetric.solve(elimination, vector);
@@ -109,8 +109,9 @@ fn bodies_of<M: Model, const D: usize>(
     (on_i, problem.walls.driven_row(number).map(|known| of_wall(known.by)))
 }
 
-/// Adds to `momenta` the momentum changes of the bodies that follow from contact impulses, kg m/s, in elimination
-/// order. `impulses` are the impulses (normal, tangential) of each contact divided by its effective mass, m/s.
+/// Adds to `momenta` the momentum changes of the bodies that follow from contact impulses, kg m/s, in elimination order
+/// (the order of the bodies in the factorised matrix). `impulses` are the impulses (normal, tangential) of each contact
+/// divided by its effective mass, m/s.
 #[inline(always)]
 pub(super) fn push_all<M: Model, const D: usize>(
     problem: &StepProblem<M>,
@@ -129,7 +130,8 @@ pub(super) fn push_all<M: Model, const D: usize>(
 }
 
 /// Calls `visit` for each contact with its row number and the change of its normal and tangential velocity, m/s, that
-/// follows from `changes`, the changes of the bodies' velocities in elimination order.
+/// follows from `changes`, the changes of the bodies' velocities in elimination order (the order of the bodies in the
+/// factorised matrix).
 #[inline(always)]
 pub(super) fn for_each_change<M: Model, const D: usize>(
     problem: &StepProblem<M>,
@@ -160,8 +162,9 @@ fn relative<const D: usize>(velocity: &[f64; D], on: &Gradients<D>) -> [f64; 2] 
     on.map(|gradient| (0..D).map(|axis| gradient[axis] * velocity[axis]).sum())
 }
 
-/// Iterates over the inertias of grains and driven walls in elimination order, kg, one per degree of freedom. The
-/// coordinate of a rotation is radius times angle, so its inertia is a mass, too.
+/// Iterates over the inertias of grains and driven walls in elimination order (the order of the bodies in the
+/// factorised matrix), kg, one per degree of freedom. The coordinate of a rotation is radius times angle, so its
+/// inertia is a mass, too.
 pub(super) fn all_inertias<M: Model, const D: usize>(
     problem: &StepProblem<M>,
     elimination: &Elimination,

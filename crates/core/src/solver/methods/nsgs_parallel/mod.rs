@@ -322,7 +322,8 @@ impl TileLayout {
     }
 
     /// Arranges the contacts of a problem in blocks of four. Returns `None` if a grain does not exist, or if a grain is
-    /// in two groups or twice in a group whose contacts would be solved at the same time.
+    /// in two tiles (groups of contacts that different threads solve) or in two contacts of a colour (a group of
+    /// contacts that are solved at once).
     fn fill<M: Model>(&mut self, problem: &StepProblem<M>) -> Option<()> {
         self.tiles.clear();
         self.blocks.clear();
