@@ -143,8 +143,9 @@ impl State {
         self.world.periodic.map_or(0.0, |periodic| periodic.border_speed().abs())
     }
 
-    /// Moves the grains by their velocities: x^n = x^{n−1} + Δt v^n (Abramian & Staron 2020, eq. 12), and likewise the
-    /// angles if grains turn. Also moves walls and sheared borders, and advances the direction of gravity.
+    /// Moves the grains by their velocities: x^n = x^{n−1} + Δt v^n, with the position x and the velocity v of a grain,
+    /// the time step Δt, and n for the end of the step (Abramian & Staron 2020, eq. 12). Angles change likewise if
+    /// grains turn. Also moves walls and sheared borders, and advances the direction of gravity.
     pub(crate) fn integrate<M: Model>(&mut self, time_step_secs: f64) {
         let grains = &mut self.world.grains;
         for (position, velocity) in grains.positions.iter_mut().zip(&grains.velocities) {
@@ -238,9 +239,10 @@ impl State {
     }
 }
 
-/// Largest allowed mean diameter of a scene, in radii of the largest grain. The mean diameter is a number of the scene
-/// file. Pairs within the skin of the neighbour search are candidates for contacts, and the skin is proportional to the
-/// mean diameter, so a larger value would allow worlds in which nearly all pairs are candidates.
+/// Largest allowed mean diameter of a scene, in radii of the largest grain. The scene file gives the mean diameter; it
+/// is not computed from the grains. Pairs within the skin of the neighbour search are candidates for contacts, and the
+/// skin is proportional to the mean diameter, so a larger value would allow worlds in which nearly all pairs are
+/// candidates.
 const MOST_RADII_OF_DIAMETER: f64 = 200.0;
 
 /// Returns the search distances for contacts in a world. The error says which length is not valid, or so large that

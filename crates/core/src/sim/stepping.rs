@@ -29,7 +29,7 @@ pub struct StepResult {
     pub turned_bonds: u64,
 }
 
-/// Energies absorbed and released by bonds, J.
+/// Energies that bonds absorb and release in a step, J.
 ///
 /// A bond with the cohesion force C₀ (N) that is stretched by s (m) has absorbed the energy C₀ s. The bond releases
 /// this energy when it closes, and dissipates it when it breaks. So the work of a bond is −Δ(C₀ s). In the step in
@@ -41,7 +41,8 @@ pub struct StepResult {
 pub struct BondEnergies {
     /// Work of all bonds in this step, J.
     pub work: f64,
-    /// Energy Σ C₀ s stored in the bonds that exist after this step, J.
+    /// Energy stored in the bonds that exist after this step, J: the sum over these bonds of cohesion force times
+    /// stretch.
     pub stored: f64,
     /// Energy dissipated by the bonds that broke in this step, J.
     pub broken: f64,

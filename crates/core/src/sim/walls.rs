@@ -69,7 +69,8 @@ pub(crate) struct Walls {
 struct Wall {
     mover: Mover,
     velocity: RigidVelocity,
-    /// Velocity that the wall has just before the step. Restitution and shocks are relative to it.
+    /// Velocity that the wall has just before the step. Restitution and collisions use the velocity of a grain relative
+    /// to it.
     before: RigidVelocity,
     /// Additional speed of the surface along its tangent, m/s, as of a conveyor belt.
     surface_speed: f64,
@@ -323,7 +324,7 @@ impl Walls {
         candidates.follow(world, |boundary| of(&self.of_boundary, boundary), longest);
     }
 
-    /// Returns the speed of the fastest wall in the next step, m/s, if that step lasts `secs`.
+    /// Returns the speed of the fastest wall in the next step, m/s, if that step has the length `secs` (s).
     pub(crate) fn fastest_in(world: &World, candidates: &Candidates, secs: f64) -> f64 {
         let mut walls = Self::default();
         walls.begin(world, candidates, secs);

@@ -22,7 +22,7 @@
 //! > v_n = n·(v_i − v_j) − n_x w,  v_t = t·(v_i − v_j) + n_y w − s_i − s_j.
 //!
 //! The slide velocity w is known at the beginning of the step and is stored with the normal. Every function that
-//! computes a relative velocity receives w with the normal, so methods need no change. Impulses act on j itself, as in
+//! computes a relative velocity receives w with the normal, so solvers need no change. Impulses act on j itself, as in
 //! any other pair.
 
 use std::fmt::Debug;
@@ -102,8 +102,8 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     fn slide(_normal: Self::Normal<f64>) -> f64 {
         0.0
     }
-    /// Returns the normal and tangential components of the slide velocity w along x, (n_x w, −n_y w), m/s. Subtracted
-    /// from the velocity relative to body j they give the velocity (v_n, v_t) relative to the periodic image of j.
+    /// Returns the normal and tangential components, m/s, of the velocity w along x of the periodic image of body j
+    /// relative to j: (n_x w, −n_y w). The velocity relative to j minus these components is relative to the image.
     #[inline(always)]
     fn slide_along(normal: Self::Normal<f64>) -> [f64; 2] {
         let [x, y] = Self::components(normal);
@@ -113,12 +113,12 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     /// Returns the x and y components of a stored unit normal; 0 along axes that the model does not have.
     fn components<T: Lanes>(normal: Self::Normal<T>) -> [T; 2];
     /// Converts the normal and tangential velocity relative to body j to the velocity relative to the periodic image of
-    /// body j whose slide velocity is stored with the normal.
+    /// j (a copy of j beyond a border), which moves relative to j with the slide velocity that is stored in `_normal`.
     #[inline(always)]
     fn relative_to_image<T: Lanes>(_normal: Self::Normal<T>, velocity: [T; 2]) -> [T; 2] {
         velocity
     }
-    /// Returns the normal and tangential velocity of body i relative to body j at their contact, m/s.
+    /// Returns the normal and tangential velocity, m/s, of body i relative to body j, or to j's image across a border.
     fn relative_velocity<T: Lanes>(
         normal: Self::Normal<T>,
         i: &Self::Body<T>,

@@ -117,9 +117,9 @@ impl Elements {
         }
     }
 
-    /// Changes the velocities of the grains by the forces of a substep, computed from the present overlaps and the
-    /// velocities `start`. Fills `pushes` with three values for each contact: the effective mass (kg), the impulses
-    /// divided by this mass (m/s), and the velocity of the contact's wall (m/s).
+    /// Changes the velocities of the grains by the forces of a substep, computed from the present overlaps and from the
+    /// velocities `start` at the beginning of the substep. Fills `pushes` with three values for each contact: the
+    /// effective mass (kg), the impulses divided by this mass (m/s), and the velocity of the contact's wall (m/s).
     fn push<M: Model>(
         &self,
         stage: &mut Stage<'_, M>,

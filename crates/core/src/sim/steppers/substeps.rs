@@ -152,7 +152,7 @@ pub(super) fn set_drive_speeds<M: Model>(stage: &mut Stage<'_, M>) {
 
 /// State of a contact during a step that is divided into substeps.
 pub(super) struct Touching {
-    /// Present gap, m.
+    /// Present gap of the contact, m; negative for an overlap.
     pub gap: f64,
     /// Velocity of the contact's wall along the normal, m/s.
     pub wall_speed: f64,

@@ -133,8 +133,8 @@ pub(super) fn check_symmetry(blocks: &[EntryBlock], own: &[[[f64; 2]; 2]]) -> Re
 /// Piles of 300,000 discs have fewer entries.
 const MOST_ENTRIES: u64 = 20_000_000;
 
-/// The Delassus operator W and the free velocities q of a step's problem, with the contacts in the order of the
-/// problem's rows.
+/// The Delassus operator W and the free velocities q (velocities without contact impulses) of a step's contact problem,
+/// with the contacts in the order of the problem's rows.
 pub struct Assembled {
     /// The Delassus operator W, 1/kg: exactly symmetric, sorted by row and column, without entries of 0.
     pub matrix: Triplets,

@@ -55,7 +55,7 @@ struct DelassusBlock {
 struct DelassusRow {
     local: LocalBlock,
     /// Velocity q' of the contact if the shifted normal impulses (normal impulse plus cohesion impulse) and the
-    /// tangential impulses of all contacts are 0, m/s. Cohesion is part of q'.
+    /// tangential impulses of all contacts are 0, m/s. So the effect of the cohesion impulses is a part of q'.
     free: [f64; 2],
     /// Index of the contact's first block in `DelassusProblem::neighbours`. Its blocks end where the blocks of the next
     /// contact begin.
@@ -254,7 +254,7 @@ impl DelassusRow {
 ///
 /// # Errors
 /// Returns an error if the settings are not valid, have another stopping test than the residual, or name a method that
-/// needs bodies.
+/// needs data on the bodies, such as their masses.
 pub fn solve_delassus(
     problem: &mut DelassusProblem,
     settings: &SolverSettings,
@@ -402,7 +402,7 @@ mod tests {
 
     /// Checks that a problem without a solution is reported as stalled, and a similar problem with a solution as
     /// converged. The first problem has two contacts on opposite sides of one body, each closing at 1 m/s. For any
-    /// impulses u₀ + u₁ = −2 m/s, so the two velocities cannot both be ≥ 0.
+    /// impulses the sum of their two normal velocities is −2 m/s, so the velocities cannot both be ≥ 0.
     #[test]
     fn a_problem_without_solution_is_told_from_one_that_was_stopped_too_early() {
         let matrix = Triplets {

@@ -1,9 +1,9 @@
 //! Sparse LU factorisation of a matrix of D × D blocks, with one row and one column of blocks per body.
 //!
-//! The pattern of nonzero blocks is symmetric; their entries need not be symmetric. There is no pivoting between
-//! blocks: the matrices that Newton's method factorises are masses plus contact stiffnesses, whose diagonal blocks
-//! dominate unless friction is large. If a factorisation breaks down, its entries are not finite or Newton's method
-//! rejects the step.
+//! The pattern of nonzero blocks is symmetric; the entries of the blocks need not be symmetric. There is no pivoting
+//! between blocks: the matrices that Newton's method factorises are masses plus contact stiffnesses, whose diagonal
+//! blocks dominate unless friction is large. If a factorisation breaks down, the factors contain entries that are not
+//! finite, or Newton's method rejects the step that it computes with them.
 
 use super::elimination::Elimination;
 use crate::solver::kinematics::Model;
@@ -29,7 +29,8 @@ pub(crate) fn inertias<M: Model, const D: usize>(mass: f64) -> [f64; D] {
 /// A matrix, which [`BlockMatrix::factorise`] replaces by its factors. The memory is reused for the next matrix.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlockMatrix<const D: usize> {
-    /// Diagonal blocks in elimination order. [`BlockMatrix::factorise`] inverts them.
+    /// Diagonal blocks in elimination order. [`BlockMatrix::factorise`] replaces each block by the inverse of the
+    /// diagonal block of the upper factor.
     diagonal: Vec<Block<D>>,
     /// Blocks below the diagonal, in row b and column a, one per pair of positions a < b of the elimination order whose
     /// bodies are neighbours. A block has the same index as its entry in [`Elimination::later`], the lists that give

@@ -209,7 +209,8 @@ impl Elimination {
 /// tree.
 const NONE: u32 = u32::MAX;
 
-/// Work memory for computing a postorder, reused for the next elimination order.
+/// Work memory for computing a postorder: an order of the elimination tree in which each subtree is complete before the
+/// next subtree begins. The memory is reused for the next elimination order.
 #[derive(Clone, Debug, Default)]
 struct Postorder {
     /// For each position, the first entry of the linked list of its children in the elimination tree, or [`NONE`].
@@ -222,7 +223,7 @@ struct Postorder {
     /// For each position, the number of neighbours of the child in `heir` that are eliminated later than this child.
     most: Vec<usize>,
     stack: Vec<u32>,
-    /// The positions in postorder, last position first.
+    /// The positions of the elimination order in postorder, last position first.
     reversed: Vec<u32>,
 }
 

@@ -51,10 +51,10 @@ impl Clone for WorkVectors {
 }
 
 /// The contact problem of one step in scaled variables, which have the unit √J. The scaled impulses of a contact are
-/// its shifted normal impulse and its tangential impulse (N·s), divided by the root of its effective mass (kg). The
-/// scaled velocities are its normal velocity plus the restitution term (restitution times the normal velocity before
-/// the step), and its tangential velocity (m/s), multiplied by that root. The scaled velocities are an affine function
-/// of the scaled impulses, whose matrix is called A. The argument `contact` of a function is an index below
+/// its normal impulse plus cohesion impulse and its tangential impulse (N·s), divided by the root of its effective mass
+/// (kg). The scaled velocities are its normal velocity plus the restitution term (restitution times the normal velocity
+/// before the step), and its tangential velocity (m/s), multiplied by that root. The scaled velocities are an affine
+/// function of the scaled impulses, whose matrix is called A. The argument `contact` of a function is an index below
 /// [`ContactSystem::len`].
 pub trait ContactSystem {
     /// True if contacts have tangential impulses. If not, tangential entries are 0.

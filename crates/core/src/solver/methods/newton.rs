@@ -65,10 +65,11 @@ const AFTER_SUCCESS: f64 = 0.2;
 /// Factor by which the compliance ε, with which Newton's method regularises the contact law, is multiplied after a
 /// Newton step whose result is dropped because its residual is too large.
 const AFTER_FAILURE: f64 = 10.0;
-/// Number of sweeps before the first factorisation: many steps of a pile at rest need no more.
+/// Number of sweeps before the first factorisation: many time steps of a pile at rest are solved by these sweeps and
+/// need no factorisation.
 const SWEEPS_FIRST: u32 = 4;
-/// Number of sweeps after each factorisation: they correct wrongly predicted contact states (open, stick, slip) at a
-/// fraction of the cost of a factorisation.
+/// Number of sweeps after each factorisation. The sweeps correct wrongly predicted contact states (open, stick, slip)
+/// at a fraction of the cost of a factorisation.
 const SWEEPS_AFTER: u32 = 4;
 /// Number of sweeps that replace a Newton step if even the largest compliance ε, with which Newton's method regularises
 /// the contact law, gives no improvement. The number is doubled each time, up to [`MOST_SWEEPS_BETWEEN`].
@@ -98,8 +99,8 @@ impl NewtonEffort {
 }
 
 /// Number of previous residuals that limit the residual of the next Newton step: the result of the step is kept if its
-/// residual is below [`ENOUGH`] times the largest of them. So the residual may rise for a few steps before it falls.
-/// With 1 previous residual, useful steps are rejected; with 15, many useless steps are accepted.
+/// residual is below [`ENOUGH`] times the largest of these previous residuals. So the residual may rise for a few steps
+/// before it falls. With 1 previous residual, useful steps are rejected; with 15, many useless steps are accepted.
 const HISTORY: usize = 6;
 /// Maximum residual of a Newton step whose result is kept, divided by the largest of the last [`HISTORY`] residuals.
 const ENOUGH: f64 = 0.99;

@@ -126,8 +126,9 @@ const FIRST_LOOK: u32 = 512;
 /// Minimum ratio of the residual to the residual after half as many sweeps, from which the residual counts as no longer
 /// decreasing (flat).
 const FLAT: f64 = 0.95;
-/// Number of consecutive comparisons with a flat residual that end a solve, if its stopping test limits the residual or
-/// the velocity error. With 1, a solve whose residual only pauses would end, too.
+/// Number of consecutive comparisons that end a solve if each finds a flat residual (hardly smaller than at half as
+/// many sweeps). This applies to a solve whose stopping test limits the residual or the velocity error. With 1, a solve
+/// whose residual only pauses would end, too.
 const LOOKS_IN_VAIN: u32 = 2;
 
 /// History of the residual during a solve, to detect a stall.
@@ -170,7 +171,7 @@ impl StallWatch {
     }
 
     /// Returns true if a solve has stalled: it ended after `sweeps` sweeps without meeting its stopping test, and
-    /// `residual` is hardly smaller than the last recorded residual after at most half as many sweeps.
+    /// `residual` is hardly smaller than the last residual that was recorded after at most half of these sweeps.
     pub(super) fn has_stalled(&self, sweeps: u32, residual: f64) -> bool {
         let last_look = self.next_look / 2;
         let before = if 2 * last_look <= sweeps { self.looks[1] } else { self.looks[0] };

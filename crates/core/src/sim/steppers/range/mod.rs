@@ -60,7 +60,7 @@ fn look_ahead(state: &State, time_step_secs: f64) -> LookAhead {
     LookAhead { time_step_secs, distance, reach, in_touch: InTouch::Bonded }
 }
 
-/// Returns an upper bound for the distance that a grain moves in the present step, m.
+/// Returns an upper bound for the distance that any grain moves in a step of length `time_step_secs` (s), m.
 fn travel(state: &State, time_step_secs: f64) -> f64 {
     (state.fastest() + 2.0 * state.largest_acceleration() * time_step_secs) * time_step_secs
 }

@@ -180,8 +180,8 @@ impl PathContact {
         if !S::CONE && !S::LEANS && self.bound == 0.0 { 1 } else { S::END }
     }
 
-    /// Computes `mobility`, the response of the contact's variables in a Newton step, from the slacks, multipliers and
-    /// regularisation of the contact.
+    /// Computes `mobility`, the response of the contact's impulses (or slacks, if the allowed impulses form a cone) to
+    /// changes of its velocity in a Newton step, from the slacks, multipliers and regularisation of the contact.
     #[inline(always)]
     pub(super) fn stiffen<S: Shape>(&mut self, numbers: ContactNumbers) {
         let ratio = |pair: usize| self.multiplier[pair] / self.slack[pair];

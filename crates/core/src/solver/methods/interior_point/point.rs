@@ -15,7 +15,8 @@ use crate::solver::methods::stopping::SolveReport;
 use crate::solver::problem::{StepProblem, natural_map, velocity_error};
 use crate::solver::settings::{FrictionModel, SolverSettings, StopTest};
 
-/// Number of sweeps before the first factorisation: many steps of a pile at rest need no more.
+/// Number of sweeps before the first factorisation: many time steps of a pile at rest are solved by these sweeps and
+/// need no factorisation.
 pub(super) const SWEEPS_FIRST: u32 = 4;
 /// Error of the impulses, in multiples of the tolerance of the stopping test, at or below which a few sweeps try to
 /// finish the solve.
@@ -182,9 +183,9 @@ impl<'a, M: Model, S: Shape, const D: usize> InteriorPoint<'a, M, S, D> {
         self.problem.write_impulses(self.workspace.best.iter().copied());
     }
 
-    /// Starts at a point of the central path near the impulses that one simultaneous update of all contacts by their
-    /// laws gives. `starts_before` is the number of earlier starts in this solve, each of which moves the next start
-    /// further from the end of the path.
+    /// Sets all contacts to a point of the central path, from which the method starts, near the impulses that one
+    /// simultaneous update of all contacts by their laws gives. `starts_before` is the number of earlier starts in this
+    /// solve, each of which moves the next start further from the end of the path.
     pub(super) fn start(&mut self, starts_before: u32) {
         let Self { problem, workspace, numbers, .. } = self;
         let opening_lags = problem.friction.model != FrictionModel::Tresca && S::CONE;

@@ -29,7 +29,7 @@ pub(super) enum ProjectionPiece {
     /// impulse, false if it is at a bound.
     Free([bool; 2]),
     /// The projected impulse is on an edge of the friction cone, λ = ±μσ with the given sign (tangential impulse λ,
-    /// friction coefficient μ, shifted normal impulse σ of normal plus cohesion impulse).
+    /// friction coefficient μ, normal impulse plus cohesion impulse σ).
     Edge(f64),
 }
 

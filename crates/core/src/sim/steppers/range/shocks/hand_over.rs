@@ -13,7 +13,7 @@ use crate::world::World;
 /// Bond that was formed within the step by a shock (a collision that is solved in zero time).
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct ClosedBond {
-    /// Time from the shock to the end of the step, divided by the time step.
+    /// Time from the shock (collision) that closed the bond to the end of the step, divided by the time step.
     pub part: f64,
     /// Normal velocity that gravity had added, between the beginning of the step and the shock, to a grain that falls
     /// on a fixed body, m/s; 0 for other pairs.

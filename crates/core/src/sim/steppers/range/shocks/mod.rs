@@ -132,7 +132,7 @@ pub(super) fn pass<M: Model>(
     result
 }
 
-/// State of a pair of bodies in the calculation of a step's shocks.
+/// State of a pair of bodies in the calculation of a step's shocks (collisions).
 #[derive(Clone, Copy, Debug)]
 struct ShockPair {
     contact: Contact,
@@ -145,7 +145,7 @@ struct ShockPair {
     /// Gap along `normal` at the beginning of the step, m. After a meeting of the pair: the value for which
     /// [`ShockPair::gap_at`] is 0 at the time of the meeting.
     gap: f64,
-    /// Change of the gap because shocks have changed the paths of the two grains, m.
+    /// Change of the gap because shocks (collisions) have changed the paths of the two bodies, m.
     shift: f64,
     /// Relative velocity of the pair along `normal`, m/s, relative to the wall if the other body is a moving wall;
     /// below 0 if the gap closes.
@@ -197,13 +197,13 @@ enum NextImpact {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Role {
     Apart,
-    /// The pair touches, and is connected through touching pairs to a struck pair.
+    /// The pair touches, and touching pairs connect it to a struck pair, one that collides in this pass.
     Joined,
     /// The pair is struck: the next impact of each of its grains is the impact of this pair.
     Struck,
 }
 
-/// State of a grain in the calculation of a step's shocks.
+/// State of a grain in the calculation of a step's shocks (collisions).
 #[derive(Clone, Copy, Debug)]
 struct ShockBody {
     /// Change of the grain's path by its shocks (collisions), extrapolated back to the beginning of the step, one entry
@@ -244,9 +244,10 @@ pub(super) struct Shocks {
     /// Impulses of the shocks (collisions) of the step, N·s, each with the number of its contact and the contact
     /// normal.
     of_shocks: Vec<(usize, (DVec2, Impulse))>,
-    /// Impulses from the solution of the step after the shocks, N·s, one for each contact, with the contact normals.
+    /// Impulses from the solution of the step after its shocks (collisions), N·s, one for each contact, with the
+    /// contact normals.
     of_step: Vec<(DVec2, Impulse)>,
-    /// Largest error of a contact's impulse in a step that is solved to its residual tolerance, N·s.
+    /// Largest error that a contact's impulse has in a step that is solved to its residual tolerance, N·s.
     least: f64,
     /// Smallest product of effective mass and closing speed at which a touching contact is struck, N·s. It exceeds the
     /// errors that the solver's tolerance allows.

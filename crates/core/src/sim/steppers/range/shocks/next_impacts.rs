@@ -210,8 +210,8 @@ impl Shocks {
         }
     }
 
-    /// Returns the representative grain of the cluster of `grain`. A cluster is a set of grains that are struck
-    /// together.
+    /// Returns the index of the representative of the cluster of `grain`: one grain of the cluster, which identifies
+    /// the cluster. A cluster is a set of grains that are struck together.
     pub(super) fn root(&mut self, grain: usize) -> usize {
         let mut at = grain;
         while self.bodies[at].root as usize != at {
