@@ -18,7 +18,7 @@ pub struct ModelParts {
     pub sheared: bool,
     /// True if contacts have tangential (friction) impulses.
     pub friction: bool,
-    /// True if grains can rotate. Without friction no contact exerts a moment on a grain.
+    /// True if grains can rotate. If contacts have no friction, no contact changes the rotation of a grain.
     pub rotation: bool,
     /// True if contacts have rolling resistance.
     pub rolling: bool,
