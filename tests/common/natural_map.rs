@@ -11,11 +11,11 @@ pub struct Judged {
     pub normal_mass: f64,
     pub tangential_mass: f64,
     pub cohesion_impulse: f64,
-    /// Relative velocity (v_n, v_t) at the beginning of the step, m/s.
+    /// Relative velocity (v_n, v_t) (normal and tangential) at the beginning of the step, m/s.
     pub before: [f64; 2],
-    /// Relative velocity (v_n, v_t) at the end of the step, m/s.
+    /// Relative velocity (v_n, v_t) (normal and tangential) at the end of the step, m/s.
     pub after: [f64; 2],
-    /// Relative velocity (v_n, v_t) at the end of the step if no contact impulse acted, m/s.
+    /// Relative velocity (v_n, v_t) (normal and tangential) at the end of the step if no contact impulse acted, m/s.
     pub free: [f64; 2],
     /// Velocity that the contact law adds to the normal velocity v_n at the end of the step, m/s: the restitution ρ
     /// times the initial v_n or, for an open gap within the touch tolerance, the speed that closes the gap in one step.

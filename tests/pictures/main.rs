@@ -1,4 +1,5 @@
-//! Tests of pictures of stored states and of figures of studies, by comparison with stored pictures.
+//! Tests of pictures of stored states and of figures that are computed from many simulations, by comparison with stored
+//! pictures.
 
 #[path = "../common/program.rs"]
 mod program;

@@ -12,8 +12,8 @@ use crate::program::*;
 /// Ranges of the two parameters that are calibrated: the friction coefficient μ and the Bond number.
 const BOX: [[f64; 2]; 2] = [[0.2, 0.8], [0.0, 50.0]];
 
-/// Returns point `number` (μ, Bond) of a sequence that fills the ranges evenly: multiples of two irrational numbers,
-/// modulo 1.
+/// Returns point `number` (friction coefficient μ, Bond number) of a sequence that fills the ranges evenly: multiples
+/// of two irrational numbers, modulo 1.
 fn point(number: usize) -> Vec<f64> {
     let share = |ratio: f64| (0.5 + (number + 1) as f64 * ratio).fract();
     let shares = [0.754_877_666_246_693, 0.569_840_290_998_053].map(share);
@@ -26,8 +26,8 @@ fn target(runs: &[Vec<f64>], result: usize) -> [f64; 2] {
     [mean.mean, mean.standard_error]
 }
 
-/// Returns artificial results of a run, slump and angle: functions of μ and Bond that are not polynomials, plus
-/// correlated random errors whose size varies.
+/// Returns artificial results of a run, slump and angle: functions of the friction coefficient μ and the Bond number
+/// that are not polynomials, plus correlated random errors whose size varies.
 fn stand_in(point: &[f64], random: &mut Pcg64) -> Vec<f64> {
     let [friction, bond] = [point[0], point[1]];
     let slump = 0.05 + 0.5 * (-bond / 18.0).exp() * (1.0 - 0.6 * (friction - 0.3));
@@ -216,16 +216,17 @@ fn a_heap_has_the_slope_and_the_base_of_its_triangle() {
 pub const TEST: &str = "cargo test --release --test program calibrations_of_piles -- --ignored";
 const GRAINS: usize = 60;
 const RUNS: usize = 100;
-/// Number of initial states that are simulated at each point (μ, Bond), and how many of them each calibration uses.
+/// Number of initial states that are simulated for each pair of friction coefficient μ and Bond number, and how many of
+/// them each calibration uses.
 const STATES: [usize; 2] = [8, 2];
 /// Number of initial states that are simulated with the true parameters, and how many of them each calibration uses for
 /// its targets.
 const TARGET_STATES: [usize; 2] = [200, 50];
-/// True parameters, with which the calibration targets are computed: μ and Bond.
+/// True parameters, with which the calibration targets are computed: friction coefficient μ and Bond number.
 const TRUTH: [f64; 2] = [0.5, 15.0];
 
-/// Runs a small pile with the parameters `point` (μ, Bond) for half a second. Returns its slump and its angle of repose
-/// (degrees).
+/// Runs a small pile with the parameters `point` (friction coefficient μ, Bond number) for half a second. Returns its
+/// slump and its angle of repose (degrees).
 fn results_of(point: &[f64], seed: u64) -> Vec<f64> {
     let (grains, box_width_in_diameters) = (GRAINS, 10.5);
     let new = NewPile { grains, box_width_in_diameters, seed, ..NewPile::default() };
@@ -252,9 +253,10 @@ fn drawn([all, count]: [usize; 2], random: &mut Pcg64) -> Vec<usize> {
 }
 
 /// Checks how often the confidence region of a calibration contains the true parameters: at least in 18 of 20
-/// calibrations. Each calibrates μ and Bond to the slump and the angle of repose of piles made with [`TRUTH`]. All runs
-/// are computed once, and each calibration draws a random quarter of them: of the runs at each pair of μ and Bond, and
-/// of the runs with [`TRUTH`]. So two calibrations share a quarter of their runs. `SLUMP_REPORT=FILE` writes the results to a file.
+/// calibrations. Each calibrates the friction coefficient μ and the Bond number to the slump and the angle of repose of
+/// piles made with [`TRUTH`]. All runs are computed once, and each calibration draws a random quarter of them: of the
+/// runs at each pair of μ and Bond, and of the runs with [`TRUTH`]. So two calibrations share a quarter of their runs.
+/// `SLUMP_REPORT=FILE` writes the results to a file.
 #[test]
 #[ignore = "takes six core minutes"]
 fn calibrations_of_piles_contain_the_parameters_that_made_their_targets() {

@@ -93,8 +93,8 @@ fn a_number_that_is_typed_starts_the_pile_again_as_well() {
     assert!(robot.state().run.frame.playing && robot.state().run.frame.past.len() == 1);
 }
 
-/// Checks that a changed Δt restarts every scene, also scenes with walls driven by a force, with grains that do not move,
-/// or with one dimension.
+/// Checks that a changed time step Δt restarts every scene, also scenes with walls driven by a force, with grains that
+/// do not move, or with one dimension.
 #[test]
 fn every_scene_starts_again_with_the_new_value() {
     let mut robot = open(pile());

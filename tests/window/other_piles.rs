@@ -194,7 +194,8 @@ fn switched_off_there_is_no_thread() {
     assert!(robot.harness.query_by_label(OTHERS).is_none());
 }
 
-/// Returns the configuration of a pile with so many grains that its deposition takes a while.
+/// Returns the configuration of a pile with so many grains that it takes a while until they have fallen and come to
+/// rest.
 fn rain() -> Config {
     let mut config = pile();
     config.source.grains = Some(400);

@@ -12,7 +12,7 @@ use slump::live::{
 };
 use slump::sim::Settings;
 
-/// A window and the solver of its remote run, with the messages between them.
+/// A window and the solver of its remote run (the two exchange only bytes), with the messages between them.
 struct Remote<S = LiveStart> {
     live: Live,
     engine: RemoteEngine<S>,

@@ -288,7 +288,8 @@ proptest! {
 
 /// Checks a step that no velocity solves: it must be reported as unsolved, and its impulses must stay small. A disc is
 /// wedged between two discs at rest. Under the associated friction model it would have to leave each contact at an
-/// angle of more than atan μ from the tangent, which no velocity does.
+/// angle of more than atan μ from the tangent (μ: friction coefficient), which is not possible for both contacts at
+/// once.
 #[test]
 fn a_step_that_no_velocity_solves_says_so_and_leaves_no_huge_impulses() {
     let radius = 0.1;

@@ -151,7 +151,8 @@ fn a_grain_that_is_added_in_motion_is_one_of_the_scene() {
 
 /// Takes one step and checks the balances of momentum and energy. Returns two relative errors. The first is the largest
 /// momentum change of a grain that weight, body forces and contacts do not explain, divided by the largest body force
-/// times Δt. The second is the change of kinetic energy that the works do not explain, divided by the kinetic energy.
+/// times the time step Δt. The second is the change of kinetic energy that the work of all forces does not explain,
+/// divided by the kinetic energy.
 fn left_open(run: &mut Simulation) -> [f64; 2] {
     let before = run.world().grains.velocities.clone();
     let energy = run.observables().kinetic_energy;

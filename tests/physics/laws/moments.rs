@@ -1,5 +1,5 @@
 //! Tests of the reported states of contacts against exact results: status, forces, ages, unsolved steps and residuals.
-//! Further tests check in small piles how Δt and cohesion affect the slump (Abramian & Staron 2020, §3).
+//! Further tests check in small piles how the time step Δt and cohesion affect the slump (Abramian & Staron 2020, §3).
 
 use rayon::prelude::*;
 

@@ -122,8 +122,9 @@ fn a_rolling_disc_stops_after_the_exact_distance() {
     }
 }
 
-/// Returns a scene of two discs of different size that touch and spin without friction. Cohesion of Bond 3 (C₀ = 3 m_ij
-/// a, with the acceleration a of the setting `bond_acceleration`) pulls the discs together.
+/// Returns a scene of two discs of different size that touch and spin without friction. Cohesion with the Bond number 3
+/// (cohesion force C₀ = 3 m_ij a, with the effective mass m_ij and the acceleration a of the setting
+/// `bond_acceleration`) pulls the discs together.
 fn spinning_pair(method: Method, cone: FrictionCone) -> Scene {
     let (one, other) = (0.1, 0.06);
     let spinning = |place: f64, radius: f64, rate: f64| Grain {

@@ -1,11 +1,11 @@
 //! Tests of a disc on a slope, for every kind of fixed shape: Coulomb's threshold, sliding and rolling.
 //!
-//! The slope is a level shape under gravity that is inclined by the angle θ. Per mass, g cosθ presses the disc against
-//! the slope and g sinθ pulls it down the slope. A disc that cannot rotate sticks up to tanθ = μ, and above slides with
-//! the acceleration g (sinθ − μ cosθ). A solid disc that rotates rolls without slip up to tanθ = 3μ, with the
-//! acceleration ⅔ g sinθ. Above, it slides with g (sinθ − μ cosθ) while its angular velocity grows by 2μ g cosθ / r per
-//! second. The scheme gives these values exactly in every step and for every Δt, because one update solves one contact
-//! exactly.
+//! The slope is a level shape under gravity that is inclined by the angle θ (g: gravitational acceleration, μ: friction
+//! coefficient, r: radius of the disc). Per mass, g cosθ presses the disc against the slope and g sinθ pulls it down
+//! the slope. A disc that cannot rotate sticks up to tanθ = μ, and above slides with the acceleration g (sinθ − μ
+//! cosθ). A solid disc that rotates rolls without slip up to tanθ = 3μ, with the acceleration ⅔ g sinθ. Above, it
+//! slides with g (sinθ − μ cosθ) while its angular velocity grows by 2μ g cosθ / r per second. The scheme gives these
+//! values exactly in every step and for every time step Δt, because one update solves one contact exactly.
 
 use crate::common::*;
 

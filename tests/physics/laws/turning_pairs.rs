@@ -80,8 +80,8 @@ fn a_bond_that_turning_ends_is_counted_and_the_advice_helps() {
     }
 }
 
-/// Checks that the gap of two discs of radius r that circle at the angular velocity ω grows by ω²Δt² r in each step. So
-/// a bond that ends at a gap of zero and begins with the overlap s lasts s/(ω²Δt² r) steps.
+/// Checks that the gap of two discs of radius r that circle at the angular velocity ω grows by ω²Δt² r in each time
+/// step Δt. So a bond that ends at a gap of zero and begins with the overlap s lasts s/(ω²Δt² r) steps.
 #[test]
 fn the_gap_of_a_pair_grows_by_its_turning_in_each_step() {
     let (rate, dt) = (10.0, 1e-3);

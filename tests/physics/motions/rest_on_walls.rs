@@ -10,8 +10,8 @@ const DT: f64 = 1e-3;
 /// Overlap of disc and wall at the start, in radii. With this overlap, bonds exist from the start.
 const OVERLAP: f64 = 1e-4;
 
-/// Checks that a disc stays in the corner of a square drum that turns at 12 rad/s. The centrifugal acceleration of 2.4
-/// g presses the disc into the corner.
+/// Checks that a disc stays in the corner of a square drum that turns at 12 rad/s. The centrifugal acceleration, 2.4
+/// times the gravitational acceleration, presses the disc into the corner.
 #[test]
 fn a_disc_in_the_corner_of_a_drum_that_turns_stays_in_it() {
     let (radius, side, rate) = (0.01, 0.177, 12.0);
@@ -147,8 +147,9 @@ fn drift(scene: &Scene, contacts: usize) -> f64 {
     changes.fold(0.0, f64::max) / 0.5 / scene.mean_diameter
 }
 
-/// Checks that the change of the gaps in a run of `scene` is proportional to Δt² (second order), or as small as
-/// rounding errors. `contacts` is the number of contacts, and `what` the name of the case in the failure message.
+/// Checks that the change of the gaps in a run of `scene` is proportional to Δt² (second order in the time step Δt), or
+/// as small as rounding errors. `contacts` is the number of contacts, and `what` the name of the case in the failure
+/// message.
 #[track_caller]
 fn assert_of_second_order(scene: &Scene, contacts: usize, what: &str) {
     let [coarse, fine] = [1.0, 0.5].map(|part| {
@@ -246,7 +247,8 @@ fn rollers_that_do_not_rub_leave_what_lies_on_them_in_peace() {
     }
 }
 
-/// Checks that the gap of a frictionless disc that slides down a turning plane changes only to the second order in Δt.
+/// Checks that the gap of a frictionless disc that slides down a turning plane changes only to the second order in the
+/// time step Δt.
 #[test]
 fn a_disc_that_slides_along_a_wall_that_turns_keeps_its_gap_to_the_second_order() {
     let turning = MotionCourse::Rotation { pivot: DVec2::new(-1.0, 0.0), rate: -0.5, travel: None };

@@ -132,8 +132,8 @@ fn drum(radius: f64, sides: usize) -> Boundary {
 
 /// Checks a disc of radius r, which cannot rotate, in a drum of radius R that turns at the angular velocity Ω. The disc
 /// sticks to the wall and moves about the axis at ΩR/(R − r) until tan φ = μ, where φ is its angle from the lowest
-/// point. From then on it slides and swings like a pendulum about the angle φ = atan μ, because friction does not
-/// depend on the sliding speed.
+/// point and μ the friction coefficient. From then on it slides and swings like a pendulum about the angle φ = atan μ,
+/// because friction does not depend on the sliding speed.
 #[test]
 fn a_disc_in_a_drum_goes_with_the_wall_until_friction_holds_it_no_more() {
     let (outer, radius, rate) = (1.0, 0.1, 0.2);
@@ -337,7 +337,7 @@ fn momentum_comes_from_gravity_and_from_what_is_no_grain_alone() {
 }
 
 /// Checks the work of a wall that lifts a grain of mass m by the height h at the constant speed v: m g h to lift the
-/// grain, ½mv² to accelerate it, and ½mv² that the collision dissipates.
+/// grain (g: gravitational acceleration), ½mv² to accelerate it, and ½mv² that the collision dissipates.
 #[test]
 fn the_work_of_a_wall_is_what_it_lifts() {
     for (stepper, method) in every_way() {

@@ -18,8 +18,8 @@ fn for_random_piles(cases: u32, property: impl Fn(Scene) -> Result<(), TestCaseE
     for_random(cases, (numbers, kinds), run);
 }
 
-/// Returns a pile with these numbers (Bond, μ, ρ, Δt in s, speed in m/s) and choices (number of grains, seed, shifted
-/// friction cone or not, warm start or not, rotation or not).
+/// Returns a pile with these numbers (Bond number, friction coefficient μ, restitution ρ, time step Δt in s, speed in
+/// m/s) and choices (number of grains, seed, shifted friction cone or not, warm start or not, rotation or not).
 fn pile(
     (bond, friction, restitution, dt, speed): (f64, f64, f64, f64, f64),
     (count, seed, shifted, warm_start, turning): (usize, u64, bool, bool, bool),

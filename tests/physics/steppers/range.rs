@@ -401,7 +401,7 @@ fn methods_agree_on_nearly_all_steps_with_bonds() {
 }
 
 /// Checks that all steps of a pile are solved with bounded friction, and that some of them are unsolved under Coulomb
-/// friction. At Δt = 5e-3 s, half the steps of a slumping pile are unsolved under Coulomb friction.
+/// friction. At the time step Δt = 5e-3 s, half the steps of a slumping pile are unsolved under Coulomb friction.
 #[test]
 fn under_bounds_of_friction_no_piece_of_a_step_is_left_unsolved() {
     let run = |bond: f64, time_step_secs: f64, solver: SolverSettings| {

@@ -1,5 +1,5 @@
-//! Tests of collisions under the stepper `range` against exact motion, for every Δt and any time of impact within a
-//! step.
+//! Tests of collisions under the stepper `range` against exact motion, for every time step Δt and any time of impact
+//! within a step.
 
 use crate::common::*;
 

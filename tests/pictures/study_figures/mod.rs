@@ -1,5 +1,5 @@
-//! Tests of the figures of studies: every run gives the same numbers and pictures, and charts look like the stored
-//! charts.
+//! Tests of the figures that `slump reproduce` and `slump validate` compute from many simulations: every call gives the
+//! same numbers and pictures, and charts look like the stored charts.
 //!
 //! After an intended change of the charts, look at the new chart and store it: `SLUMP_BLESS=1 cargo test --release
 //! --test pictures`.
@@ -128,7 +128,8 @@ fn elasticity(folder: &Path) -> String {
     succeed(slump("validate elasticity --quick --out").arg(folder))
 }
 
-/// Returns all rows of a study's table, without the columns that depend on the speed of the machine.
+/// Returns all rows of the table `quantities.csv` that `slump validate` writes, without the columns that depend on the
+/// speed of the machine.
 fn rows(folder: &Path) -> Vec<Vec<String>> {
     let mut reader = csv::Reader::from_path(folder.join("quantities.csv")).expect("a table");
     let names = reader.headers().expect("names").clone();

@@ -252,8 +252,8 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     names_in(folder).iter().map(|name| folder.join(name)).collect()
 }
 
-/// Runs a study. Returns the temporary folder, the path of the study file, the table of results as text, and the folder
-/// with the results.
+/// Computes all runs of a study. Returns the temporary folder, the path of the study file, the table of results as
+/// text, and the folder with the results.
 fn computed(text: &str) -> (TempDir, PathBuf, String, PathBuf) {
     let folder = folder();
     let study = study(folder.path(), text);

@@ -83,9 +83,9 @@ const STRESSES: [&str; 4] = ["stress_xx", "stress_xy", "stress_yx", "stress_yy"]
 const MEAN_STRESSES: [&str; 4] =
     ["mean_stress_xx", "mean_stress_xy", "mean_stress_yx", "mean_stress_yy"];
 
-/// Compares two values of each stress component, in J·s: the mean stress of a frame (N/m) times the area and the duration
-/// of the frame, and `summed`, the sum of stress times area times Δt over the steps of the frame. Returns the largest
-/// difference and the largest sum.
+/// Compares two values of each stress component, in J·s: the mean stress of a frame (N/m) times the area and the
+/// duration of the frame, and `summed`, the sum of stress times area times time step over the steps of the frame.
+/// Returns the largest difference and the largest sum.
 fn off_of_means(frame: &Frame, summed: [f64; 4]) -> [f64; 2] {
     let number = |name: &str| numbers(&frame.measures, name)[0];
     let areas = numbers(&frame.grains, "cell_area");

@@ -2,7 +2,7 @@
 
 use crate::sim::{Moment, OtherBody};
 
-/// Words of the column `kind_j`, the kind of body j.
+/// Words of the column `kind_j`, the kind of body j, which is the body that grain i touches.
 pub(super) const OTHER_KINDS: &[&str] = &["grain", "fixed", "boundary"];
 
 /// Kinds, ids and names of the bodies that grains touch (body j of each contact) in a snapshot, for tables.

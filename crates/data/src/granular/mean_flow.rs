@@ -72,7 +72,8 @@ struct FlowSums {
 }
 
 impl FlowSums {
-    /// Creates the sums with the central grain only.
+    /// Creates the sums for the least-squares fit around a grain. They contain only this grain, which is the centre of
+    /// the neighbourhood.
     fn of_one() -> Self {
         let mut sums = Self { matrix: DMat3::ZERO, velocities: [DVec3::ZERO; 2] };
         sums.add(DVec2::ZERO, DVec2::ZERO);

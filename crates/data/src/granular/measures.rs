@@ -133,13 +133,13 @@ columns! {
         /// that no grain moves.
         stress_xx: f64, "N/m";
         /// Stress component σ_xy: x component of the contact forces, y component of the branch vectors ℓ, which lead to
-        /// the centre of grain i.
+        /// the centre of grain i from the body that it touches.
         stress_xy: f64, "N/m";
         /// Stress component σ_yx: y component of the contact forces, x component of the branch vectors ℓ, which lead to
-        /// the centre of grain i. It equals σ_xy if the torques on each grain balance.
+        /// the centre of grain i from the body that it touches. It equals σ_xy if the torques on each grain balance.
         stress_yx: f64, "N/m";
         /// Stress component σ_yy: y components of the contact forces and of the branch vectors ℓ, which lead to the
-        /// centre of grain i.
+        /// centre of grain i from the body that it touches.
         stress_yy: f64, "N/m";
         /// Pressure p = (σ_1 + σ_2)/2: the mean of the principal stresses σ_1 and σ_2, which is half the trace of the
         /// stress σ.

@@ -261,12 +261,14 @@ impl ForceDistribution {
         Self { mean, over_mean: forces.iter().map(|force| force / mean).collect() }
     }
 
-    /// Returns the statistical moment ⟨|f|^power⟩ of the relative normal forces f; NaN without forces.
+    /// Returns the statistical moment ⟨|f|^power⟩ of the relative normal forces f = N/⟨|N|⟩ (normal force N divided by
+    /// its mean magnitude); NaN without forces.
     pub(super) fn moment(&self, power: i32) -> f64 {
         mean(&self.over_mean, |force| force.abs().powi(power))
     }
 
-    /// Returns the largest magnitude |f| of the relative normal forces; NaN without forces.
+    /// Returns the largest magnitude |f| of the relative normal forces f = N/⟨|N|⟩ (normal force N divided by its mean
+    /// magnitude); NaN without forces.
     pub(super) fn largest(&self) -> f64 {
         self.over_mean.iter().map(|force| force.abs()).fold(f64::NAN, f64::max)
     }

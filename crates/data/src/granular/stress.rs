@@ -22,7 +22,8 @@ pub(super) fn stress_of_contacts(network: &Network) -> Tensor {
     sum
 }
 
-/// Computes the contribution of each grain to Σ f ⊗ ℓ ([`stress_of_contacts`]), N·m, in the order of the grains.
+/// Computes the contribution of each grain to the sum Σ f ⊗ ℓ of contact forces f (N) times branch vectors ℓ (m), N·m,
+/// in the order of the grains. The sum of all contributions is [`stress_of_contacts`].
 pub(super) fn stress_of_grains(network: &Network) -> Vec<Tensor> {
     let mut sums = vec![Tensor::default(); network.grains.len()];
     for link in &network.links {

@@ -40,7 +40,8 @@ pub struct BodyForm {
     pub inertia: Vec<f64>,
     /// Radius of each body, m. It is also the lever arm of tangential forces at all contacts of the body.
     pub radius: Vec<f64>,
-    /// Velocity (v_x, v_y, ω) that each body would have at the end of the step without contact impulses, m/s and rad/s.
+    /// Velocity (v_x, v_y) and angular velocity ω that each body would have at the end of the step without contact
+    /// impulses, m/s and rad/s.
     pub free_velocity: Vec<[f64; 3]>,
     /// Indices of the two bodies i and j of each contact; j is null if body i touches a wall or a fixed disc, which no
     /// grain can move.

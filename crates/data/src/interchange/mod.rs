@@ -4,10 +4,11 @@
 //! that maps contact impulses to changes of relative velocities (2 nc × 2 nc, 1/kg, rows and columns in the order N0,
 //! T0, N1, T1, …); `q` (2 nc, m/s), the relative velocities without contact impulses, including restitution; and `mu`,
 //! the coefficient of friction, as a number or a list. With cohesion it also has `c0`, the cohesion impulse C₀Δt of
-//! each contact (N·s), and `cone`, the bound of friction: `"shifted"`, μ(P_n + C₀Δt), or `"compressive"`, μ max(P_n,
-//! 0). A solution consists of contact impulses r = (P_n, P_t) in N·s and relative velocities u = W r + q; `start`
-//! optionally gives initial impulses. Problems that Slump writes also contain their `bodies` ([`BodyForm`]). Text files
-//! of the program Siconos with plane problems can be read as well (`siconos`).
+//! each contact (N·s), and `cone`, the bound of friction: `"shifted"`, μ(P_n + C₀Δt), or `"compressive"`, μ max(P_n, 0)
+//! (μ: coefficient of friction, Δt: time step). A solution consists of contact impulses r = (P_n, P_t) (normal and
+//! tangential) in N·s and relative velocities u = W r + q; `start` optionally gives initial impulses. Problems that
+//! Slump writes also contain their `bodies` ([`BodyForm`]). Text files of the program Siconos with plane problems can
+//! be read as well (`siconos`).
 
 mod bodies;
 mod several;
@@ -54,16 +55,17 @@ pub struct ProblemFile {
     /// Coefficient of friction μ, dimensionless.
     pub mu: Friction,
     /// Friction cone, the bound of the friction impulse, N·s: μ(P_n + C₀Δt) (`shifted`) or μ max(P_n, 0)
-    /// (`compressive`), with the normal impulse P_n and the cohesion impulse C₀Δt.
+    /// (`compressive`), with the coefficient of friction μ, the normal impulse P_n and the cohesion impulse C₀Δt
+    /// (cohesion force times time step).
     #[serde(default)]
     pub cone: FrictionCone,
     /// Relative velocities q that the contacts would have after the step without contact impulses, including
     /// restitution, m/s: a normal and a tangential value for each contact.
     pub q: Vec<f64>,
-    /// Cohesion impulse C₀Δt of each contact, N·s; `None` without cohesion.
+    /// Cohesion impulse C₀Δt (cohesion force times time step) of each contact, N·s; `None` without cohesion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub c0: Option<Vec<f64>>,
-    /// Initial guess of the contact impulses: (P_n, P_t) of each contact, N·s.
+    /// Initial guess of the contact impulses: (P_n, P_t) (normal and tangential) of each contact, N·s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<Vec<f64>>,
     /// Bodies from which the matrix W and the relative velocities q were computed; `None` if only W and q are known.
@@ -135,7 +137,7 @@ impl ProblemFile {
         }
     }
 
-    /// Returns the cohesion impulse C₀Δt of each contact, N·s; 0 without cohesion.
+    /// Returns the cohesion impulse C₀Δt (cohesion force times time step) of each contact, N·s; 0 without cohesion.
     pub(crate) fn cohesion_impulses(&self) -> Vec<f64> {
         self.c0.clone().unwrap_or_else(|| vec![0.0; self.nc])
     }

@@ -25,7 +25,7 @@ pub struct FoundSolution {
     /// Body whose translational velocity differs most between this solution and the first solution of the list: its
     /// index, and the magnitude of the velocity difference, m/s.
     pub farthest: (usize, f64),
-    /// Velocity (v_x, v_y, ω) of each body at the end of the step, m/s and rad/s.
+    /// Velocity (v_x, v_y) and angular velocity ω of each body at the end of the step, m/s and rad/s.
     pub velocities: Vec<[f64; 3]>,
 }
 

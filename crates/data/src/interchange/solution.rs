@@ -38,11 +38,13 @@ pub struct Solution {
     /// the impulses `r` and the file's matrix W and relative velocities q.
     #[serde(with = "number")]
     pub residual: f64,
-    /// Relative velocity (v_n, v_t) of each contact at the end of the step, m/s: W r + q, which includes restitution.
+    /// Relative velocity (v_n, v_t) (normal and tangential) of each contact at the end of the step, m/s: W r + q, which
+    /// includes restitution.
     pub u: Vec<f64>,
-    /// Contact impulses r: (P_n, P_t) of each contact, N·s.
+    /// Contact impulses r: (P_n, P_t) (normal and tangential) of each contact, N·s.
     pub r: Vec<f64>,
-    /// Velocity (v_x, v_y, ω) of each body at the end of the step, m/s and rad/s; `None` if the file has no bodies.
+    /// Velocity (v_x, v_y) and angular velocity ω of each body at the end of the step, m/s and rad/s; `None` if the
+    /// file has no bodies.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub velocities: Option<Vec<[f64; 3]>>,
 }
@@ -101,7 +103,7 @@ pub fn solve_file(file: &ProblemFile, settings: &SolverSettings, repeats: u32) -
 struct TimedSolution {
     seconds: f64,
     report: SolveReport,
-    /// Contact impulses (P_n, P_t) in the order of the file's contacts, N·s.
+    /// Contact impulses (P_n, P_t) (normal and tangential) in the order of the file's contacts, N·s.
     impulses: Vec<[f64; 2]>,
     velocities: Option<Vec<[f64; 3]>>,
 }
@@ -154,7 +156,7 @@ fn solve_bodies<M: Model>(
     TimedSolution { seconds, report, impulses, velocities: Some(velocities) }
 }
 
-/// Returns the velocity (v_x, v_y, ω) of each body of a problem, m/s and rad/s.
+/// Returns the velocity (v_x, v_y) and angular velocity ω of each body of a problem, m/s and rad/s.
 pub(super) fn body_velocities<M: Model>(
     problem: &StepProblem<M>,
     bodies: &BodyForm,
