@@ -34,7 +34,8 @@ pub(super) struct NonlinearElimination {
     by_square: Vec<usize>,
     /// True for each body of a selected contact. The selected contacts contribute most to the residual.
     at: Vec<bool>,
-    /// True for each body in `at`, and for each body that touches such a body.
+    /// True for each body of a contact that contributes much to the residual (marked in `at`), and for each body that
+    /// touches a marked body.
     around: Vec<bool>,
     fixed: Vec<usize>,
     pairs: Vec<usize>,

@@ -59,8 +59,8 @@ impl SolveReport {
 /// every [`TEST_INTERVAL`]th is tested, because a sweep that also measures its change costs more. With a smaller
 /// number, steps with good initial impulses would take more sweeps than they need.
 const SWEEPS_TESTED_EACH: u32 = 16;
-/// Number of sweeps between two stopping tests of a long solve. A solve continues for fewer than this number of sweeps
-/// after its stopping test could be met.
+/// Number of sweeps between two stopping tests of a long solve. So a solve performs fewer than this number of sweeps
+/// that its stopping test would not have required.
 const TEST_INTERVAL: u32 = 8;
 
 /// Returns true if the stopping test is made after sweep (or iteration) number `sweeps`, counted from 1.

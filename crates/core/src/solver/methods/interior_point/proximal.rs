@@ -156,9 +156,9 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         problem.write_impulses(workspace.near.iter().map(impulse));
     }
 
-    /// Sets the impulses of the problem to the trial impulses (present impulses minus velocities divided by the
-    /// dimensionless compliance `compliance`), projected on the allowed impulses. Returns the residual of the new
-    /// impulses under the friction model of the solve, dimensionless.
+    /// Sets the impulses of the problem to the trial impulses (the present impulses, minus the contact velocities
+    /// divided by the dimensionless compliance `compliance`), projected on the allowed impulses. Returns the residual
+    /// of the new impulses under the friction model of the solve, dimensionless.
     fn take_allowed(&mut self, compliance: f64) -> f64 {
         let numbers = self.numbers;
         self.take_near(|contact| {

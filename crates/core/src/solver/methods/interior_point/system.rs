@@ -18,7 +18,7 @@ use crate::solver::problem::{DrivenBy, Row, StepProblem};
 #[derive(Clone, Debug, Default)]
 pub(super) struct StepMatrix<const D: usize> {
     symmetric: SymmetricBlockMatrix<D>,
-    /// The matrix under Coulomb's law, which makes the matrix unsymmetric.
+    /// The matrix of the linear system if the step is solved under Coulomb's law, which makes this matrix unsymmetric.
     unsymmetric: BlockMatrix<D>,
 }
 
