@@ -31,7 +31,7 @@ const DRAWN_FROM: u64 = 1 << 16;
 struct Target {
     name: &'static str,
     ending: &'static str,
-    /// Number of random inputs in an ordinary run of the tests, which takes about a second per target.
+    /// Number of random inputs in an ordinary run of the tests, which takes about a second per target (kind of input).
     inputs: u64,
 }
 

@@ -8,13 +8,13 @@ use crate::draft::DraftFile;
 use crate::error::{Error, Result};
 
 /// Largest accepted size, in bytes, of an unpacked page (block of data) of a Parquet file, and of a file with a contact
-/// problem. It keeps a damaged file from exhausting the memory.
+/// problem. The limit keeps a damaged file from exhausting the memory.
 pub(crate) const MOST_BYTES: u64 = 256 << 20;
 /// Size of the largest accepted TOML file, bytes. Parsing a file takes about 60 times its size in memory. The file of a
 /// scene with 10,000 grains has about one MiB.
 pub const MOST_OF_TOML: u64 = 32 << 20;
-/// Length of the longest accepted line of a table in a text file, bytes. It keeps a file without line breaks from
-/// exhausting the memory.
+/// Length of the longest accepted line of a table in a text file, bytes. The limit keeps a file without line breaks
+/// from exhausting the memory.
 const MOST_OF_LINE: usize = 1 << 20;
 
 /// Opens a regular file for reading. `form` describes the expected content, for error messages. Devices and pipes are

@@ -95,7 +95,7 @@ fn check_angular_momentum(scene: &Scene) -> (f64, f64) {
 }
 
 /// Takes `count` steps and checks the energy balance of each step: the change of kinetic energy is the work of gravity
-/// plus the works of the contacts.
+/// plus the work of the contacts.
 fn check_budget(run: &mut Simulation, count: usize) {
     let mut contacts = 0;
     for _ in 0..count {

@@ -1,7 +1,7 @@
 //! Tests of rolling resistance against exact motion. About the contact point, a solid disc of mass m and radius r has
-//! the moment of inertia (3/2) m r². If the disc rolls without slip down a slope of angle θ, gravity exerts the moment
-//! r m g sinθ and rolling friction, with the coefficient μ_r, resists with the moment M = μ_r r m g cosθ. So its
-//! acceleration is a = ⅔ g (sinθ − μ_r cosθ).
+//! the moment of inertia (3/2) m r². If the disc rolls without slip down a slope of angle θ, gravity (acceleration g)
+//! exerts the moment r m g sinθ and rolling friction, with the coefficient μ_r, resists with the moment M = μ_r r m g
+//! cosθ. So its acceleration is a = ⅔ g (sinθ − μ_r cosθ).
 
 use proptest::prelude::*;
 

@@ -179,8 +179,8 @@ fn a_spring_that_pulls_and_walls_that_move_go_on() {
     assert_eq!(goes_on(&scene, &simulation, 20, "pulled").pull(), simulation.pull());
 }
 
-/// Returns a scene of a pile on a shaken base, next to a plate that swings, a wall that moves by a table, a belt, and a
-/// wall that is about to reach the end of its motion.
+/// Returns a scene of a pile on a shaken base, next to a plate that swings, a wall that follows a table of positions
+/// over time, a belt, and a wall that is about to reach the end of its motion.
 fn among_motions() -> Scene {
     let mut scene = pressed_pile(40, 0.3, 5, parameters(5.0, 1e-3, 0.3, 0.5));
     let at = DVec2::new;

@@ -95,8 +95,8 @@ impl SavedState {
         SEAL.is_on(path)
     }
 
-    /// Returns a scene that starts at time 0 from the saved state: with its positions and velocities of the grains, and
-    /// its positions of walls, fixed discs and periodic borders.
+    /// Returns a scene that starts at time 0 from the saved state: grains have the positions and velocities of this
+    /// state, and walls, fixed discs and periodic borders have its positions.
     pub fn as_start(&self) -> Scene {
         let world = self.simulation.world();
         let grains = &world.grains;

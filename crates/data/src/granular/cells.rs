@@ -264,9 +264,11 @@ fn with_images(site: &Site, periodic: Option<Periodic>) -> impl Iterator<Item = 
 
 /// Position of a grain relative to a straight side of a boundary.
 enum Stands {
-    /// The grain is in front of the side. The half-plane cuts the grain's cell along the line of the side.
+    /// The grain is in front of the side of a boundary. The half-plane cuts the grain's cell along the line of this
+    /// side.
     Before(HalfPlane),
-    /// The grain is beyond an end of the side. The vector leads from the centre of the grain to the nearer end, m.
+    /// The grain is beyond an end of the side of a boundary. The vector leads from the centre of the grain to the
+    /// nearer end, m.
     Beside(DVec2),
 }
 

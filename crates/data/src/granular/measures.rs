@@ -194,7 +194,7 @@ columns! {
         /// Number of sets of grains that are connected by contacts; an isolated grain is a set. Fixed discs and
         /// boundaries connect no grains.
         clusters: u32, "1";
-        /// Number of grains in the largest cluster.
+        /// Number of grains in the largest cluster, a set of grains that are connected by contacts.
         largest_cluster: u32, "1";
         /// Mean magnitude ⟨|N|⟩ of the normal forces N of contacts that bear a force: the unit of the relative normal
         /// forces f = N/⟨|N|⟩.
