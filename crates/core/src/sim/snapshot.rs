@@ -20,7 +20,7 @@ use crate::world::Periodic;
 pub struct Snapshot {
     /// Measurements of the whole pile after the last step: one row of the CSV file of observables.
     pub observables: Observables,
-    /// All grains.
+    /// All grains, in the order of their indices.
     pub grains: Vec<GrainView>,
     /// Contacts whose bodies touched or were bonded in the last step.
     pub contacts: Vec<ContactView>,

@@ -11,7 +11,7 @@ use crate::world::{Boundary, Disc, Gravity, Material, Periodic, World};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Surroundings {
-    /// Fixed discs.
+    /// Discs that are not grains: each is at rest, or has a prescribed or force-driven motion.
     pub fixed_discs: Vec<Disc>,
     /// Boundaries of the scene: walls and other shapes that are neither grains nor fixed discs.
     pub boundaries: Vec<Boundary>,

@@ -9,8 +9,9 @@
 //!
 //! * The contact pulled with less than the cohesion force C₀. So its law required that the formal velocity v̄_n (a mean
 //!   of the normal velocities after and before the step, weighted by restitution) is 0.
-//! * The normal velocity alone would not have opened the contact: gap + Δt·v_n is below the touch tolerance.
-//! * After the step the gap is not below the touch tolerance.
+//! * The normal velocity v_n alone would not have opened the contact: gap + Δt·v_n is below the tolerance up to which
+//!   the contact law lets contacts pull. This is the touch tolerance or, if it is larger, the scene's `gap_tolerance`.
+//! * After the step the gap is not below this tolerance.
 //!
 //! Without cohesion no contact pulls, so no bond is counted.
 

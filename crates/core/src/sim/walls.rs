@@ -31,8 +31,8 @@
 //!
 //! The speed u is taken at the beginning of the step. A grain at rest relative to the wall has had the mean velocity V⁻
 //! of the wall in the previous step, with (1 − R⁻¹)/Δt instead of (R − 1)/Δt, so u is relative to V⁻. Along n the grain
-//! has had the velocity n·V⁻(c) and the other terms of V_n with + instead of −. Restitution and shocks are relative to
-//! this velocity.
+//! has had the velocity n·V⁻(c) and the other terms of V_n with + instead of −. Restitution and collisions use
+//! velocities relative to this velocity.
 
 use std::f64::consts::FRAC_PI_4;
 

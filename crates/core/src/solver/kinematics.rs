@@ -147,7 +147,7 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     /// Returns the velocity of a body as numbers, m/s, one per degree of freedom (a rotation as radius times angular
     /// velocity); further entries are not used.
     fn coordinates<T: Lanes>(body: &Self::Body<T>) -> [T; 3];
-    /// Returns a velocity in the form that the solver stores, from its numbers `coordinates` (m/s).
+    /// Returns a velocity in the form that the solver stores, from one number (m/s) per degree of freedom.
     fn from_coordinates<T: Lanes>(coordinates: [T; 3]) -> Self::Body<T>;
     /// Sets the velocity of a body from its coordinates, m/s, one per degree of freedom of the model. Further entries
     /// of `coordinates` are ignored.
@@ -273,7 +273,7 @@ impl Model for Line {
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
 pub struct PlaneBody<T = f64> {
-    /// Velocity, m/s.
+    /// Velocity of the body's centre along x and y, m/s.
     pub velocity: [T; 2],
     /// Spin s = r·ω, radius times angular velocity, m/s.
     pub spin: T,

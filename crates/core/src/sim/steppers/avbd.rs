@@ -21,11 +21,12 @@
 //! and sums Σ over the normals and tangents of the body's contacts. Then, **for each contact**, it replaces the
 //! multipliers λ⁰ by the impulses λ, and increases κ in proportion to |c| unless the contact law has limited λ. The
 //! matrix on the left side contains the penalties of all contacts, also of those with limited impulses, because also
-//! these contacts hold a body back; without them, collapsing piles explode. Bodies in contact start from their
-//! velocities before the substep. A contact that slides keeps the smallest κ, which is 1. If a body slides on a fixed
-//! body without turning, each iteration then halves the remaining change of its velocity, so after the ten iterations
-//! 2⁻¹⁰ of the change is missing. Stiffnesses are kept from step to step, and reduced slightly in each substep. A last
-//! pass over the bodies, with b computed from the overlap beyond a margin, changes positions but not velocities.
+//! these contacts hold a body back; without them, the grains of collapsing piles fly apart. Bodies in contact start
+//! from their velocities before the substep. A contact that slides keeps the smallest κ, which is 1. If a body slides
+//! on a fixed body without turning, each iteration then halves the remaining change of its velocity, so after the ten
+//! iterations 2⁻¹⁰ of the change is missing. Stiffnesses are kept from step to step, and reduced slightly in each
+//! substep. A last pass over the bodies, with b computed from the overlap beyond a margin, changes positions but not
+//! velocities.
 //!
 //! **Momentum** is not conserved: each body uses λ before its partners have responded, so action and reaction differ by
 //! the error of the iteration. Work and energy have errors of the same size. There is no restitution.
@@ -106,7 +107,7 @@ const STIFFEST: f64 = 1e6;
 /// Increase of a contact's dimensionless stiffness κ (stiffness times squared substep length, divided by effective
 /// mass) per iteration, if the velocity that violates the contact equals the speed that gravity adds in a substep. With
 /// a larger value columns are more stable, but impacts make contacts so stiff that iterations that change one body at a
-/// time cannot transmit forces, and collapsing piles explode.
+/// time cannot transmit forces, and the grains of collapsing piles fly apart.
 const GROWTH: f64 = 0.1;
 /// Factor that multiplies the stiffnesses of all contacts at the beginning of each substep. With a smaller value,
 /// contacts of resting grains soften.

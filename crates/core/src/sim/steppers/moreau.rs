@@ -39,7 +39,7 @@ pub(super) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
         let rebound = Parameters { restitution, ..parameters }
             .restitution_velocity(velocity, gravity_magnitude);
         if tolerance > 0.0 && gap > touching {
-            // A pair within the tolerance that reaches contact within the step bounces as a touching pair does.
+            // A pair within the touch tolerance that closes its gap within the step bounces as a touching pair does.
             let meets = rebound < 0.0 && gap + parameters.time_step_secs * velocity < 0.0;
             return if meets { rebound } else { gap / parameters.time_step_secs };
         }

@@ -1,8 +1,9 @@
 //! Solution of a step with bonds, under the law `range` (`contact::range`).
 //!
 //! The largest impulse of a bond (its bound) depends on two quantities of the solution: the speed v at which the bond
-//! opens after the shocks of the step, and the load J, the change of this speed by all other forces in the step. So a
-//! step is solved several times, always with the same solver and the same contacts.
+//! opens after the shocks (collisions) of the step, and the load J, the change of this speed in the step by all forces
+//! except the force of the bond itself. So a step is solved several times, always with the same solver and the same
+//! contacts.
 //!
 //! 1. **Shocks** (collisions, `range::shocks`) give v. Bonds have no effect in a shock, because it takes no time and
 //!    their force is finite.

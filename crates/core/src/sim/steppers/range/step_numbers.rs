@@ -34,7 +34,7 @@ impl StepNumbers {
 
     /// Returns the term ρ u, m/s, that is added to the normal velocity of a contact in the law of collisions, with the
     /// coefficient of restitution ρ. `closing` is the normal velocity u before the collision, m/s, below 0. The term is
-    /// 0 if the contact closes more slowly than the restitution threshold.
+    /// 0 if the contact closes more slowly than `restitution_threshold` times the speed that gravity adds in a step.
     pub(super) fn rebound(&self, closing: f64) -> f64 {
         self.parameters.restitution_velocity(closing, self.gravity_magnitude)
     }
