@@ -143,6 +143,42 @@ fn a_pair_turns_for_good_up_to_the_spin_that_its_bond_bears() {
     }
 }
 
+/// Checks how many steps a bond survives turning at touch tolerance 0, however strong it is. Each step opens the gap by
+/// ½ω²Δt²d (angular velocity ω, time step Δt, diameter d), so the bond ends when this has used up the initial overlap.
+/// With a touch tolerance that is larger than the opening of one step, the bond survives.
+#[test]
+fn without_a_tolerance_turning_uses_up_the_overlap_of_a_bond() {
+    let break_up = (BOND * G / DIAMETER).sqrt();
+    for ((dt, overlap), part) in pairs(pairs([1e-4, 1e-3], [1e-4, 1e-3, 5e-3]), [0.05, 0.2, 0.5]) {
+        let turn = part * break_up * dt;
+        let opens = 0.5 * turn * turn;
+        let expected = overlap / opens;
+        if !(2.0..20_000.0).contains(&expected) {
+            continue;
+        }
+        let turning = |tolerance| {
+            let mut scene = pair(tolerance, -overlap, 0.0, dt, 0.0);
+            for (grain, side) in scene.grains.iter_mut().zip([-1.0, 1.0]) {
+                grain.velocity = 0.5 * (1.0 - overlap) * DIAMETER * turn / dt * side * DVec2::Y;
+                grain.angular_velocity = turn / dt;
+            }
+            scene
+        };
+        let mut run = start(&turning(0.0));
+        let mut steps = 0.0;
+        while gap(&run) <= 0.0 && steps < 3.0 * expected {
+            take_steps(&mut run, 1);
+            steps += 1.0;
+        }
+        let differs = (steps - expected).abs();
+        assert!(differs <= 1.0 + 0.01 * expected, "{dt} s, {overlap} d, {part}: {steps}, {expected}");
+        let later = (2.0 * expected + 100.0) as usize;
+        assert!(gap(&after(&turning(0.0), later)) > 2.0 * opens, "{dt} s, {overlap} d, {part}");
+        let whole = gap(&after(&turning(2.0 * opens), later));
+        assert!(whole <= 2.0 * opens, "{dt} s, {overlap} d, {part}: {whole}");
+    }
+}
+
 /// Checks that discs that touch according to a file are bonded under the default touch tolerance. The numbers in a file
 /// are rounded, so their gaps are about ±1e-16 diameters.
 #[test]

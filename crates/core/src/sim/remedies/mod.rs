@@ -7,9 +7,11 @@ mod look_ahead;
 mod pieces;
 mod push_out;
 pub(super) mod sequential_impacts;
+mod turning_bonds;
 
 pub(super) use look_ahead::look_ahead;
 pub(super) use pieces::pieces;
+pub(super) use turning_bonds::let_turn;
 
 use crate::sim::settings::Settings;
 use crate::sim::stepping::Stage;

@@ -69,6 +69,15 @@ settings! {
                  tunnels, but they hardly bounce.",
             ),
         }
+        turning_bonds: bool = false, "turning-bonds",
+            "Let bonded grains circle each other, up to the angular velocity at which the pull is larger than the cohesion \
+                force; the scheme of the paper ends a bond that turns", {
+            control: shown(
+                "Bonds turn",
+                "Bonded grains circle each other without losing their bond. In the scheme of the paper each step opens \
+                 the gap of a pair that turns, which ends the bond.",
+            ),
+        }
     }
 }
 
@@ -80,7 +89,7 @@ impl Remedies {
 }
 
 /// All remedies, in the order of the settings of [`Remedies`].
-pub const REMEDIES: [Remedy; 4] = {
+pub const REMEDIES: [Remedy; 5] = {
     const fn row(
         name: &'static str,
         taken_by: &'static [Stepper],
@@ -97,6 +106,8 @@ pub const REMEDIES: [Remedy; 4] = {
         // Off in the preset `robust`: `max-travel` already handles fast grains, and `speculative` would weaken their
         // bounces.
         row("speculative", MOREAU, None),
+        // Off in the preset `robust`: its touch tolerance already lets bonds turn.
+        row("turning-bonds", MOREAU, None),
     ]
 };
 

@@ -56,6 +56,9 @@ pub(super) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     } else {
         stage.prepare(settings, rebound);
     }
+    if settings.remedies.turning_bonds {
+        remedies::let_turn(stage, parameters.time_step_secs);
+    }
 }
 
 /// Returns the gap, m, up to which a contact counts as closed, so that its grains may not approach each other any more.
