@@ -119,7 +119,8 @@ pub struct BudgetEffect {
     pub adds: [f64; 3],
 }
 
-/// The setup of an error budget: the changes of the scene, the sort of initial states, and the time step.
+/// The setup of an error budget: the changes of the scene, how the initial states are made (from seeds or by small
+/// displacements), and the time step, s.
 pub(super) struct Design<'a> {
     pub variants: &'a [Variant],
     /// True if the initial states are piles made from different seeds. False if they are copies of one scene whose
