@@ -24,16 +24,17 @@ use crate::output::{check_writable, print_line, print_text, remove_drafts};
 use crate::setting::Value;
 use crate::statistics::mean;
 
-/// Name of the journal that stores the runs of a calibration.
+/// Name of the journal of a calibration: the file that stores the results of finished runs.
 const JOURNAL: &str = "calibrate";
 /// Default number of runs of a calibration, divided by the number of coefficients of a cubic polynomial in the varied
-/// parameters.
+/// parameters. It is above 6, the ratio from which on the polynomials that predict the results are cubic.
 const RUNS_PER_COEFFICIENT: usize = 10;
 /// Largest allowed number of varied parameters, and largest allowed number of runs. Larger numbers are probably a
 /// mistake.
 const MOST: [usize; 2] = [4, 100_000];
 /// Number of initial states from which the calibrated scene is run with and without a change of the time step or the
-/// solver, to measure the effect of the change.
+/// solver, to measure the effect of the change. More initial states take more time and give a narrower confidence
+/// interval of the effect.
 const PAIRS: usize = 6;
 
 /// Options of a calibration, which finds the parameters with which a scene reproduces measured values.
