@@ -82,7 +82,8 @@ fn shear_ratio(now: &Snapshot) -> f64 {
 
 /// Returns the mean stresses σxx, ½(σxy + σyx) and σyy of the sample due to its contacts, each multiplied by the area
 /// of the sample; the unit is therefore J. Each contact adds the product of its force, N, and the vector between the
-/// two centres, m (formula of Love and Weber). Compression is positive.
+/// two centres, m (formula of Love and Weber; at a wall, the touched point replaces the centre). Compression is
+/// positive.
 fn stress(now: &Snapshot) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for contact in &now.contacts {
