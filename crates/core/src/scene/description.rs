@@ -186,13 +186,15 @@ impl Scene {
         }
     }
 
-    /// Returns the settings of the scene: its stepper, parameters, solver settings and remedies.
+    /// Returns the settings of the scene: its stepper, parameters, solver settings and remedies (optional corrections
+    /// of a step, such as pushing overlapping grains apart).
     pub fn settings(&self) -> Settings {
         let Self { stepper, parameters, solver, remedies, .. } = *self;
         Settings { stepper, parameters, solver, remedies }
     }
 
-    /// Replaces the settings of the scene: its stepper, parameters, solver settings and remedies.
+    /// Replaces the settings of the scene: its stepper, parameters, solver settings and remedies (optional corrections
+    /// of a step, such as pushing overlapping grains apart).
     pub fn set_settings(&mut self, settings: Settings) {
         let Settings { stepper, parameters, solver, remedies } = settings;
         (self.stepper, self.parameters, self.solver, self.remedies) =

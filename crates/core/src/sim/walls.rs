@@ -51,7 +51,7 @@ const NONE: u32 = u32::MAX;
 pub(crate) struct Walls {
     moving: Vec<Wall>,
     /// Time step for which the walls' velocities are means, s. For a stepper that detects contacts in each substep, the
-    /// length of a substep.
+    /// length of a substep (part of a step).
     secs: f64,
     /// For each boundary, the index of its wall in `moving`, or [`NONE`] if the boundary does not move.
     of_boundary: Vec<u32>,

@@ -278,10 +278,11 @@ pub struct Drive {
     pub width: Option<f64>,
     /// Total mass of the bodies that this drive moves, kg.
     pub mass: f64,
-    /// Damping coefficient of the driven bodies, kg/s: the force that opposes their motion, divided by their speed.
+    /// Damping coefficient of the bodies that the force drives, kg/s: the force that opposes their motion, divided by
+    /// their speed.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub damping: f64,
-    /// Speed of the driven bodies along the direction of the drive, m/s.
+    /// Speed of the bodies that the force drives along the direction of the drive, m/s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub speed: f64,
 }
@@ -313,7 +314,7 @@ impl Drive {
         }
     }
 
-    /// Kinetic energy ½mv² of the driven bodies, J (m: mass, v: speed).
+    /// Kinetic energy ½mv² of the bodies that the force drives, J (m: mass, v: speed).
     pub fn kinetic_energy(&self) -> f64 {
         0.5 * self.mass * self.speed * self.speed
     }

@@ -46,13 +46,13 @@ use crate::sim::settings::fracture_work::effective_mass_of_mean;
 use crate::world::{MAX_SUBSTEPS, Parameters, Physics, World};
 
 /// Overlap at the bottom of a pile, caused by the weight of the whole pile, if the stiffness is chosen automatically,
-/// in mean diameters. A smaller value makes springs stiffer; they cost more, because the stable substep is proportional
-/// to the square root of this value. A larger value makes grains so soft that their overlap shows in the shape of the
-/// pile.
+/// in mean diameters. A smaller value makes springs stiffer; they cost more, because the longest stable substep (part
+/// of a step) is proportional to the square root of this value. A larger value makes grains so soft that their overlap
+/// shows in the shape of the pile.
 const STATIC_OVERLAP: f64 = 1e-3;
 /// Smallest restitution that the dashpots reproduce; smaller restitutions are raised to this value. A smaller value
-/// requires more damping, and makes the stable substep shorter: its length is proportional to the square root of this
-/// value.
+/// requires more damping, and makes the longest stable substep (part of a step) shorter: its length is proportional to
+/// the square root of this value.
 const LEAST_RESTITUTION: f64 = 0.02;
 /// Length of a substep divided by the critical time step, if the number of substeps is automatic. With a larger value a
 /// collision has fewer substeps and its restitution is less exact; at 1 the simulation may become unstable.
@@ -93,9 +93,9 @@ impl SpringDashpot {
         2.0 * self.damping_ratio * (self.stiffness * effective_mass).sqrt()
     }
 
-    /// Returns the critical time step, s: the longest stable substep of contacts with this effective mass (kg) whose
-    /// bodies have `neighbours` contacts each. The value is exact for one contact per body, and a lower bound for more
-    /// contacts.
+    /// Returns the critical time step, s: the longest substep (part of a step) that is stable for contacts with this
+    /// effective mass (kg) whose bodies have `neighbours` contacts each. The value is exact for one contact per body,
+    /// and a lower bound for more contacts.
     pub fn critical_time_step_secs(&self, effective_mass: f64, neighbours: f64) -> f64 {
         let frequency = (neighbours * self.stiffness / effective_mass).sqrt();
         let damping_ratio = self.damping_ratio * neighbours.sqrt();
@@ -166,8 +166,8 @@ fn angle_and_root(damping_ratio: f64) -> Option<(f64, f64)> {
     (root != 0.0).then_some((angle, root))
 }
 
-/// Returns the longest substep, s, for which the springs are stable even if the smallest grains have as many neighbours
-/// as fit around them.
+/// Returns the longest substep (part of a step), s, for which the springs are stable even if the smallest grains have
+/// as many neighbours as fit around them.
 pub(super) fn critical_time_step_secs(
     world: &World,
     physics: Physics,

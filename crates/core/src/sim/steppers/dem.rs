@@ -18,9 +18,9 @@ use crate::sim::steppers::substeps::{Substepping, add_work, set_drive_speeds};
 use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{DrivenWall, Model, cone_of};
 
-/// Takes one step, and detects the contacts in each substep. The contact problem of the step, from which its residual
-/// is computed, contains the contacts at the beginning of the step. At the end of the step, each of these contacts
-/// receives the impulse that its pair has transmitted in all substeps.
+/// Takes one step, and detects the contacts in each substep (part of the step). The contact problem of the step, from
+/// which its residual is computed, contains the contacts at the beginning of the step. At the end of the step, each of
+/// these contacts receives the impulse that its pair has transmitted in all substeps.
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
     let (world, physics) = (&stage.state.world, stage.state.physics);
     let parameters = &settings.parameters;
@@ -79,7 +79,7 @@ fn velocity<M: Model>(
     }
 }
 
-/// Contact law of a substep: springs, dashpots, cohesion and friction.
+/// Contact law of a substep (part of a step): springs, dashpots, cohesion and friction.
 struct Elements {
     springs: SpringDashpot,
     /// Cohesion force divided by the effective mass, m/s²: the Bond number times an acceleration (the parameter

@@ -13,16 +13,16 @@ use crate::sim::stepping::{Stage, StepResult};
 use crate::sim::turned_bonds::{is_open_against, is_within_bounds};
 use crate::solver::{DrivenRow, Measures, Model, Row, SolveReport, StepProblem, measure};
 
-/// Data of a step during its substeps. The data are dropped at the end of the step; the world and the contacts store
-/// the data that later steps need.
+/// Data of a step during its substeps (the equal parts into which the stepper divides it). The data are dropped at the
+/// end of the step; the world and the contacts store the data that later steps need.
 pub(super) struct Substepping<M: Model> {
     /// Number of substeps of the step.
     pub count: u32,
-    /// Length h of a substep, s.
+    /// Length h of a substep (part of a step), s.
     pub substep_secs: f64,
-    /// Velocities of the grains at the beginning of the present substep.
+    /// Velocities of the grains at the beginning of the present substep (part of a step).
     pub start: Vec<M::Body<f64>>,
-    /// Velocities that the grains would have at the end of the substep if no contact acted.
+    /// Velocities that the grains would have at the end of the substep (part of a step) if no contact acted.
     pub free: Vec<M::Body<f64>>,
     /// Works of gravity, contacts, walls and borders, J, summed over the substeps since the beginning of the step.
     pub works: StepResult,
@@ -82,7 +82,8 @@ impl<M: Model> Substepping<M> {
         StepResult { report, measures, ..self.works }
     }
 
-    /// Begins a substep: changes the velocities of the grains by gravity, body forces and the user's spring on a grain.
+    /// Begins a substep (part of a step): changes the velocities of the grains by gravity, body forces and the user's
+    /// spring on a grain.
     pub(super) fn begin(&mut self, stage: &mut Stage<'_, M>) {
         let pushes = stage.state.pushes(M::AXES, self.substep_secs);
         let (world, bodies) = (&stage.state.world, &mut stage.problem.bodies.now);
@@ -98,7 +99,7 @@ impl<M: Model> Substepping<M> {
         self.free.clone_from(bodies);
     }
 
-    /// Moves the grains for one substep with their present velocities.
+    /// Moves the grains for one substep (part of a step) with their present velocities.
     pub(super) fn place(&self, stage: &mut Stage<'_, M>) {
         self.store(stage);
         stage.state.integrate::<M>(self.substep_secs);
@@ -111,8 +112,8 @@ impl<M: Model> Substepping<M> {
         }
     }
 
-    /// Adds the work of gravity, body forces and the user's spring in a substep. `bodies` are the velocities of the
-    /// grains at the end of the substep, and `masses` their masses, kg.
+    /// Adds the work of gravity, body forces and the user's spring in a substep (part of a step). `bodies` are the
+    /// velocities of the grains at the end of the substep, and `masses` their masses, kg.
     pub(super) fn add_gravity_work(&mut self, bodies: &[M::Body<f64>], masses: &[f64]) {
         for (index, body) in bodies.iter().enumerate() {
             let (start, free) = (&self.start[index], &self.free[index]);
@@ -167,7 +168,8 @@ pub(super) struct Touching {
     /// Restitution term, m/s, which the contact law adds to the normal velocity relative to the wall: minus the
     /// separation speed that restitution requires, so below 0 if the contact was closing.
     pub rebound: f64,
-    /// Capture speed: the opening speed that cohesion can stop in this substep, m/s; 0 without cohesion.
+    /// Capture speed: the opening speed that cohesion can stop in this substep (part of a step), m/s; 0 without
+    /// cohesion.
     pub capture_speed: f64,
     /// Normal and tangential impulses (λ_n, λ_t) of this substep divided by the effective mass, m/s.
     pub impulse: [f64; 2],
@@ -205,7 +207,7 @@ pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<To
     problem.rows().zip(&problem.rows.contacts).map(contact).collect()
 }
 
-/// Changes the gaps of the contacts by the motion of grains and walls during one substep.
+/// Changes the gaps of the contacts by the motion of grains and walls during one substep (part of a step).
 pub(super) fn follow_gaps<M: Model>(
     problem: &StepProblem<M>,
     contacts: &mut [Touching],

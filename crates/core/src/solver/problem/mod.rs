@@ -58,8 +58,8 @@ pub struct StepProblem<M: Model> {
     pub bodies: Bodies<M>,
     /// The data of the contacts, one row per contact.
     pub rows: ContactRows<M>,
-    /// The contact law that all contacts share. Contacts with their own friction coefficient and capture speed modify
-    /// it ([`StepProblem::law_of`]).
+    /// The contact law that all contacts share. Contacts with their own friction coefficient and capture speed (the
+    /// opening speed that cohesion cancels in one step) modify it ([`StepProblem::law_of`]).
     pub law: ContactLaw,
     /// Moving surfaces of walls and other bodies that are not grains, and walls that a force drives.
     pub(crate) walls: MovingWalls,
@@ -176,8 +176,8 @@ impl<M: Model> StepProblem<M> {
         self.begin_friction(settings.friction_model);
     }
 
-    /// Records the coefficients of each contact's law: friction, restitution and capture speed. The capture speed is 0
-    /// for a pair of bodies that does not touch yet.
+    /// Records the coefficients of each contact's law: friction, restitution and capture speed (the opening speed that
+    /// cohesion cancels in one step, m/s). The capture speed is 0 for a pair of bodies that does not touch yet.
     fn take_numbers(
         &mut self,
         world: &World,

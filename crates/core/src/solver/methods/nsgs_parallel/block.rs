@@ -148,7 +148,7 @@ fn transposed<S: Simd>([a, b, c, d]: [f64x4<S>; LANES]) -> [f64x4<S>; LANES] {
     [ac.zip_low(bd), ac.zip_high(bd), other_ac.zip_low(other_bd), other_ac.zip_high(other_bd)]
 }
 
-/// Stores the velocities of four bodies, one per SIMD lane, in their slots.
+/// Stores the velocities of four bodies, one per SIMD lane, in their memory slots.
 #[inline(always)]
 fn scatter<S: Simd, M: Model>(
     slots: &mut [BodySlot],
