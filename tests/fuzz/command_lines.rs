@@ -48,7 +48,8 @@ const OPTIONS: [&str; 23] = [
     "--theme light dark",
     "--start 6 6.5 8",
 ];
-/// Options, each with meaningful values, that also allow very large values, with which a run takes a long time.
+/// Options, each with meaningful values. Slump accepts very large values of them, too, but then a run takes a long
+/// time, so these tests do not try random numbers.
 const LONG: [&str; 6] = [
     "--substeps 0 1 7",
     "--stiffness 0 10 1e4",

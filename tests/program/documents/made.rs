@@ -221,7 +221,8 @@ fn columns() -> String {
     text
 }
 
-/// Solver variants that the documentation's table of stability tests shows.
+/// Configurations (solvers, steppers, friction models and the preset `robust`) that the documentation's table of
+/// stability tests shows.
 const VARIANTS: [&str; 11] = [
     "default",
     "nsgs",
