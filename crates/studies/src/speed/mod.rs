@@ -21,7 +21,7 @@ use crate::error::Result;
 use crate::harness::{Bench, Effort, ReportTable};
 use crate::output::{note_line, print_text};
 
-/// A part of the chart of speed: one kind of measurement.
+/// A part of the charts that compare the speed and the accuracy of solver methods: one kind of measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum ChartPart {
     /// Error against the time of a step
@@ -34,7 +34,7 @@ pub enum ChartPart {
     Solutions,
 }
 
-/// Options of a chart.
+/// Options of the charts that compare the speed and the accuracy of solver methods.
 #[derive(clap::Args, Clone, Debug)]
 pub struct ChartOptions {
     /// Folder for pictures, tables and measurements; the same command continues where it stopped

@@ -106,7 +106,8 @@ struct CollectionTimer {
 
 impl CollectionTimer {
     /// Measures the time and the error of every solver variant on every step of a collection, one after the other.
-    /// Steps whose results are already in the journal are not measured again.
+    /// Results are stored in the journal (file of results) named `journal`, and steps whose results are already in this
+    /// file are not measured again.
     fn time(
         &self,
         bench: &Bench,
@@ -167,8 +168,9 @@ impl TimedCollection {
         (0..longest).map(point).collect()
     }
 
-    /// Returns the best results of a family of methods as points (median time, ms; median error): those points for
-    /// which no other point of the family is at least as fast and at least as accurate, by increasing time.
+    /// Returns the best results of a family of methods (a group of similar solver methods) as points (median time, ms;
+    /// median error), by increasing time. A result is one of the best if no other result of the family is at least as
+    /// fast and at least as accurate.
     fn front(&self, family: Family) -> Vec<(f64, f64)> {
         let its = (0..self.variants.len()).filter(|&one| self.variants[one].family() == family);
         let all: Vec<(f64, f64)> = its.flat_map(|one| self.medians(one)).collect();

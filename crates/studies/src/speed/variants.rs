@@ -1,4 +1,5 @@
-//! Lists the solver variants that the charts of speed compare: every solver method of the program, with its settings.
+//! Lists the solver variants whose speed and accuracy the charts compare: every solver method of the program, with its
+//! settings.
 
 use crate::chart::{PALETTE, Rgb};
 use crate::harness::{Change, distinct};
@@ -129,7 +130,7 @@ fn of_model(method: Method, friction_model: FrictionModel) -> Change {
     Change::of_solver(name, Stepper::Moreau, &solver)
 }
 
-/// Properties of solver variants for the charts of speed.
+/// Properties of a solver variant, for the charts that compare the speed and the accuracy of variants.
 impl Change {
     /// True for the [`default`] solver, which determines its number of sweeps itself.
     pub(super) fn is_default(&self) -> bool {
