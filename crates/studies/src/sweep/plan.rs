@@ -74,8 +74,8 @@ pub struct Study {
     pub is_quick_pass: bool,
     /// Settings of the time series that each run writes, if any.
     pub series: Option<SeriesSettings>,
-    /// Settings of the recording of each run, if any. A recording is stored in the folder of results, in a folder named
-    /// after the run's key.
+    /// Settings of the recordings, if any. A recording contains the grains of a run over time. It is stored in the
+    /// folder of results, in a folder named after the run's key.
     pub data: Option<DataSettings>,
     /// Description of the chart of the results, if any.
     pub chart: Option<SweepChart>,
@@ -145,9 +145,10 @@ impl Study {
     }
 }
 
-/// Replaces values in the table `to` of a study file by `values`, the values of a quick pass. A setting that varies in
-/// the study may be constant in the quick pass, and the other way round, so the setting is removed from the table
-/// `other`. `from` is the name of the table with the values, for error messages.
+/// Replaces settings in the table `to` of a study file, which is `base` or `vary`, by `values`, the settings of a quick
+/// pass. A setting that varies in the full pass may be constant in the quick pass or vice versa, so each setting in
+/// `values` is also removed from `other`, the second of these two tables. `from` is the name of the table that contains
+/// `values`, for error messages.
 fn replace(from: &str, to: &mut Table, other: &mut Table, values: Table) -> Result<()> {
     for (key, value) in values {
         if other.remove(&key).is_none() && !to.contains_key(&key) {
