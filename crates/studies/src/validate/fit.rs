@@ -2,7 +2,8 @@
 
 use crate::statistics::{mean, slope};
 
-/// The change per step of a damped wave x_n = c rⁿ cos(nθ + φ), where n is the number of the step.
+/// The change per step of a damped wave x_n = c rⁿ cos(nθ + φ): the factor r of the amplitude and the angle θ. Here n
+/// is the number of the step, c the amplitude and φ the phase at n = 0.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DampedWave {
     /// Angle θ by which the phase of the wave advances per step, rad.
@@ -11,8 +12,9 @@ pub(super) struct DampedWave {
     pub shrinkage: f64,
 }
 
-/// Fits a damped wave x_n = c rⁿ cos(nθ + φ) to evenly spaced values. The fit uses G. de Prony's recursion between
-/// values at the distance `lag` = m,
+/// Fits a damped wave x_n = c rⁿ cos(nθ + φ) to evenly spaced values x_n. The result contains r, the factor of the
+/// amplitude per value, and θ, the change of the phase per value; c and φ are the amplitude and the phase at n = 0. The
+/// fit uses G. de Prony's recursion between values at the distance `lag` = m,
 ///
 /// > x_{n+m} = 2 r^m cos(mθ) x_n − r^{2m} x_{n−m},
 ///
@@ -38,9 +40,9 @@ pub(super) fn damped_wave(values: &[f64], lag: usize) -> DampedWave {
     }
 }
 
-/// Returns the power p and the time τ of the law y = y₀ (1 + t/τ)^−p that best fits points (t, y) in the logarithm of
-/// y. All y must be positive, and t must increase from 0. For a given τ, ln y is a linear function of ln(1 + t/τ), so p
-/// follows from a straight line; τ is searched.
+/// Returns the power p and the time τ of the law y = y₀ (1 + t/τ)^−p, with the time t and the value y₀ of y at t = 0,
+/// that best fits points (t, y) in the logarithm of y. All y must be positive, and t must increase from 0. For a given
+/// τ, ln y is a linear function of ln(1 + t/τ), so p follows from a straight line; τ is searched.
 pub(super) fn cooling_law(points: &[(f64, f64)]) -> [f64; 2] {
     let line = |tau: f64| {
         let line: Vec<(f64, f64)> =

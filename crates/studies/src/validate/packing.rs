@@ -118,8 +118,9 @@ fn tail(bearing: &[&ContactState]) -> f64 {
     1.0 / mean(&beyond).mean
 }
 
-/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
-/// lower end of the band of values that agree, published value, upper end of the band | source.
+/// Table of published values as text, with one row for each quantity that the function [`judge`] computes from the
+/// runs. A row has the form: name of the quantity | lower end of the band of values that agree, published value, upper
+/// end of the band | kind of the source (`read`, `recalled`, `derived` or `exact`): source.
 const PUBLISHED: &str = "
     φ without friction | 0.82 0.84 0.86 | read: reported for nearly monodisperse discs
     Z without friction | 3.9 4 4.1 | read: 2D = 4: isostatic

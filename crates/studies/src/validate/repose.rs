@@ -94,8 +94,9 @@ fn tilt(scene: &Scene) -> Result<RunReadings> {
     Ok(run.with([("angle", angle.to_degrees())]))
 }
 
-/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
-/// lower end of the band of values that agree, published value, upper end of the band | source.
+/// Table of published values as text, with one row for each quantity that the function [`judge`] computes from the
+/// runs. A row has the form: name of the quantity | lower end of the band of values that agree, published value, upper
+/// end of the band | kind of the source (`read`, `recalled`, `derived` or `exact`): source.
 const PUBLISHED: &str = "
     angle without cohesion, drum, degrees | 18 25 32 | recalled: slopes of discs with μ = 0.5: 20° … 30°
     rank correlation of angle and Bond, drum | 0.5 1 1 | recalled: it grows with cohesion
