@@ -174,8 +174,8 @@ impl QuantityBudget {
         }
     }
 
-    /// Returns the row of the smallest tested time step whose effect is known. If no effect is known, returns the row
-    /// of the smallest tested time step.
+    /// Returns the row of the smallest tested time step whose effect is known; if no effect is known, the row of the
+    /// smallest tested time step. Returns `None` if no smaller time step than that of the scene was tested.
     pub(super) fn smallest_step(&self) -> Option<&CauseRow> {
         let of_steps = || self.causes.iter().filter(|row| row.kind == Cause::TimeStep);
         of_steps().rfind(|row| row.adds.is_some()).or_else(|| of_steps().next_back())
