@@ -165,7 +165,7 @@ pub struct Chart {
     pub(crate) y: Axis,
     /// Layers of the chart, from back to front.
     pub layers: Vec<Layer>,
-    /// Width of the chart on its sheet, relative to the other charts on the sheet.
+    /// Width of the chart relative to the other charts on the same sheet. The charts of a sheet are side by side.
     pub(crate) width: f64,
 }
 
