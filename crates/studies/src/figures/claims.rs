@@ -85,7 +85,8 @@ impl Claim {
         Self { said: said.into(), measured: measured.into(), verdict, by_chance, hangs_on }
     }
 
-    /// Adds a phrase that says how often the test would find the claim true by chance.
+    /// Adds a phrase to the claim (a tested statement). The phrase says how often the test would find the claim true by
+    /// chance.
     pub(super) fn by_chance(self, by_chance: impl Into<String>) -> Self {
         Self { by_chance: by_chance.into(), ..self }
     }

@@ -1,5 +1,6 @@
 //! Draws Fig. 6 of Abramian & Staron (2020): slump against the cohesive time Bond·Δt/√(d/g), with mean diameter d and
-//! gravity g. Tests whether the slump falls with the cohesive time below 1 and rises above 1.
+//! gravity g. Tests whether the slump falls with increasing cohesive time up to a cohesive time of 1, and rises beyond
+//! it.
 
 use rand::{RngExt, SeedableRng};
 

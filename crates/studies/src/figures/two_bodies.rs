@@ -92,7 +92,7 @@ fn chart(title: &str, shift: f64) -> Result<(Chart, f64)> {
 /// Restitution ρ of the simulated contacts, large enough for the bounce to be visible in the figures.
 const RESTITUTION: f64 = 0.2;
 
-/// Opening speeds of the contact at the beginning of the step, m/s.
+/// Opening speeds of the contact at the beginning of the simulated steps, m/s; negative if the contact closes.
 const SPEEDS: [f64; 5] = [-0.02, 0.01, 0.02, 0.04, 0.06];
 const TIME_STEPS_SECS: (f64, f64) = (0.0, 0.012);
 const POINTS: u32 = 25;
