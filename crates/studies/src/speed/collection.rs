@@ -60,9 +60,9 @@ pub(super) struct CollectionPlan {
 }
 
 impl CollectionPlan {
-    /// Returns the description of a collection of 48 steps (24 in a quick pass) of piles of 138 grains. In the full
-    /// pass, the steps are from the first motion, from the collapse (which takes about 0.3 s), from its end, and from
-    /// the state of rest.
+    /// Returns the description of a collection of 48 steps (24 in a quick pass, a pass with fewer runs) of piles of 138
+    /// grains. In the full pass, the steps are from the first motion, from the collapse (which takes about 0.3 s), from
+    /// its end, and from the state of rest.
     pub(super) fn piles(restitution_threshold: f64, effort: Effort) -> Self {
         let rain = NewPile::default();
         Self {

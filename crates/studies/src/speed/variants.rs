@@ -69,7 +69,7 @@ pub(super) fn members<'a>(variants: impl Iterator<Item = &'a Change> + Clone) ->
     format!("{}.", all.join("; "))
 }
 
-/// Returns the steppers that use no solver method, such as `dem`. Each of them is a variant of its own.
+/// Returns the steppers that use no solver method, such as `dem`. The charts show each of them like a solver variant.
 fn without_method() -> impl Iterator<Item = Stepper> {
     Stepper::ALL.iter().copied().filter(|stepper| !stepper.uses_method())
 }

@@ -98,8 +98,8 @@ struct SimulationPlan {
 }
 
 impl SimulationPlan {
-    /// Returns the simulations of a quick or full pass. The stepper `range` is only run with Newton's method, and only
-    /// in a full pass.
+    /// Returns the plan of a quick pass (a pass with fewer simulations) or of the full pass. The stepper `range` is
+    /// only run with Newton's method, and only in the full pass.
     fn new(effort: Effort) -> Self {
         let laws: &[Stepper] = effort.pick(&[Stepper::Moreau], &[Stepper::Moreau, Stepper::Range]);
         Self {
@@ -175,8 +175,9 @@ fn budgeted(laws: &[Stepper], effort: Effort) -> Vec<BudgetedVariant> {
     budgeted
 }
 
-/// Returns the Bond number and the seed of each simulated pile. In the full pass, every Bond number occurs with several
-/// seeds, and every seed with several Bond numbers.
+/// Returns the Bond number and the seed of each simulated pile. In a quick pass (a pass with fewer simulations) there
+/// are four piles. In the full pass, every Bond number occurs with several seeds, and every seed with several Bond
+/// numbers.
 fn piles(effort: Effort) -> Vec<(f64, u64)> {
     let shared = NewPile::default().seed;
     if effort == Effort::Quick {
