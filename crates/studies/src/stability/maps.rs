@@ -78,8 +78,9 @@ const fn sweeps(to: f64) -> Parameter {
 }
 
 impl Parameter {
-    /// Returns the tested values of the parameter: twelve (six in a quick pass), with a constant ratio. Each value
-    /// comes with the lower and the upper edge of its cell on the map.
+    /// Returns the tested values of the parameter: twelve (six in a quick pass, a pass with fewer runs), with a
+    /// constant ratio of neighbouring values. Each value comes with the lower and the upper edge of its cell on the
+    /// map.
     fn values(&self, effort: Effort) -> Vec<(f64, [f64; 2])> {
         let count = effort.pick(6, 12);
         let ratio = (self.to / self.from).powf(1.0 / f64::from(count));

@@ -35,8 +35,8 @@ pub struct Challenge {
     /// Values of the driving parameter in a quick pass (a pass with fewer runs), from the easiest to the most
     /// difficult.
     pub quick: &'static [f64],
-    /// Values of the driving parameter that only the full pass tests, in addition to those of the quick pass. They are
-    /// more difficult.
+    /// Values of the driving parameter that only the full pass tests, in addition to those of the quick pass (a pass
+    /// with fewer runs). They are more difficult than the values of the quick pass.
     further: &'static [f64],
     /// Two limits of the error, in its unit: up to the first limit a method gets the verdict "holds", up to the second
     /// "degrades", and above the second "fails".
