@@ -57,7 +57,7 @@ struct Quick {
 pub struct SeriesSettings {
     /// Simulated time between two rows of a time series, s.
     pub interval: f64,
-    /// Indices of the grains whose positions the rows contain.
+    /// Indices of the grains whose positions the rows of a time series contain.
     #[serde(default)]
     pub grains: Vec<usize>,
 }
@@ -69,8 +69,8 @@ pub struct Study {
     pub name: String,
     /// Identity of the study: a hash of the keys of all runs.
     pub fingerprint: String,
-    /// True if the runs are those of a quick pass, and the study file gives the quick pass other values than the full
-    /// pass.
+    /// True if the runs are those of a quick pass (a pass with fewer runs), for which the study file gives other values
+    /// than for the full pass.
     pub is_quick_pass: bool,
     /// Settings of the time series that each run writes, if any.
     pub series: Option<SeriesSettings>,
@@ -87,8 +87,8 @@ pub struct Study {
 }
 
 impl Study {
-    /// Reads a study file, and lists and checks all its runs. `quick` selects the quick pass, with the values of the
-    /// file's table `quick`.
+    /// Reads a study file, and lists and checks all its runs. `quick` selects the quick pass (a pass with fewer runs),
+    /// with the values of the file's table `quick`.
     ///
     /// # Errors
     /// If the file cannot be read or is not a valid study.
@@ -97,8 +97,8 @@ impl Study {
         Self::parse(&text, path, quick)
     }
 
-    /// Reads a study from the text of its file, and lists and checks all its runs. `quick` selects the quick pass.
-    /// `path` is the file's path, for error messages and relative paths.
+    /// Reads a study from the text of its file, and lists and checks all its runs. `quick` selects the quick pass (a
+    /// pass with fewer runs). `path` is the file's path, for error messages and relative paths.
     ///
     /// # Errors
     /// If the text is not a valid study.
