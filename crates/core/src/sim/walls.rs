@@ -45,8 +45,8 @@ use crate::world::{Boundary, Carry, RigidVelocity, World};
 /// Value in `of_boundary`, `of_disc` and `of_feature` for a body that does not belong to a moving wall.
 const NONE: u32 = u32::MAX;
 
-/// Moving walls of the present step: boundaries and fixed discs with a motion, and pistons. The vectors keep their
-/// memory between steps.
+/// Moving walls of the present step: boundaries and fixed discs with a motion, and pistons (half-spaces that move by
+/// themselves at a given speed). The vectors keep their memory between steps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Walls {
     moving: Vec<Wall>,

@@ -54,8 +54,9 @@ const STATIC_OVERLAP: f64 = 1e-3;
 /// requires more damping, and makes the longest stable substep (part of a step) shorter: its length is proportional to
 /// the square root of this value.
 const LEAST_RESTITUTION: f64 = 0.02;
-/// Length of a substep divided by the critical time step, if the number of substeps is automatic. With a larger value a
-/// collision has fewer substeps and its restitution is less exact; at 1 the simulation may become unstable.
+/// Length of a substep (part of a step) divided by the critical time step, if the number of substeps is automatic. With
+/// a larger value a collision has fewer substeps and its restitution is less exact; at 1 the simulation may become
+/// unstable.
 const SAFE_FRACTION: f64 = 0.5;
 /// Number of equal discs that fit around one disc: 6 in the plane, and 2 on a line.
 const NEIGHBOURS: [f64; 2] = [6.0, 2.0];

@@ -117,9 +117,10 @@ impl Elements {
         }
     }
 
-    /// Changes the velocities of the grains by the forces of a substep, computed from the present overlaps and from the
-    /// velocities `start` at the beginning of the substep. Fills `pushes` with three values for each contact: the
-    /// effective mass (kg), the impulses divided by this mass (m/s), and the velocity of the contact's wall (m/s).
+    /// Changes the velocities of the grains by the forces of a substep (part of a step), computed from the present
+    /// overlaps and from the velocities `start` at the beginning of the substep. Fills `pushes` with three values for
+    /// each contact: the effective mass (kg), the impulses divided by this mass (m/s), and the velocity of the
+    /// contact's wall (m/s).
     fn push<M: Model>(
         &self,
         stage: &mut Stage<'_, M>,
@@ -164,9 +165,9 @@ impl Elements {
     }
 }
 
-/// Ends a substep of walls driven by a force. Like grains, these walls move with the forces at the beginning of the
-/// substep. `pushes` contains for each contact the effective mass (kg), the impulses divided by this mass (m/s), and
-/// the velocity of the contact's wall (m/s).
+/// Ends a substep (part of a step) of walls driven by a force. Like grains, these walls move with the forces at the
+/// beginning of the substep. `pushes` contains for each contact the effective mass (kg), the impulses divided by this
+/// mass (m/s), and the velocity of the contact's wall (m/s).
 ///
 /// The motion of a wall of mass M with n contacts of stiffness k is stable if the substep h is below 2 √(M/nk). This is
 /// guaranteed if M is at least the mass of n of the lightest grains, because substeps are short enough for these

@@ -122,9 +122,10 @@ impl<M: Model> Substepping<M> {
     }
 }
 
-/// Adds the work of one contact in a substep. `impulse` contains the impulses λ divided by the effective mass, m/s. As
-/// for a whole step (`solver::measure`), the work is the impulse times the mean of the velocities at the beginning and
-/// the end. `wall` contains the normal and tangential velocity of the contact's wall, m/s.
+/// Adds the work of one contact in a substep (part of a step). `impulse` contains the impulses λ divided by the
+/// effective mass, m/s. As for a whole step (`solver::measure`), the work is the impulse times the mean of the
+/// velocities at the beginning and the end. `wall` contains the normal and tangential velocity of the contact's wall,
+/// m/s.
 #[inline(always)]
 pub(super) fn add_work<M: Model>(
     works: &mut StepResult,
@@ -171,7 +172,7 @@ pub(super) struct Touching {
     /// Capture speed: the opening speed that cohesion can stop in this substep (part of a step), m/s; 0 without
     /// cohesion.
     pub capture_speed: f64,
-    /// Normal and tangential impulses (λ_n, λ_t) of this substep divided by the effective mass, m/s.
+    /// Normal and tangential impulses (λ_n, λ_t) of this substep (part of a step) divided by the effective mass, m/s.
     pub impulse: [f64; 2],
     /// Normal and tangential impulses (λ_n, λ_t) since the beginning of the step divided by the effective mass, m/s.
     pub total: [f64; 2],
@@ -185,7 +186,8 @@ impl Touching {
 }
 
 /// Returns the contacts in the order of the rows of the contact problem (a row is the data of one contact). The
-/// impulses with which they start are the forces of the previous step times `warm_secs` (s); 0 s gives a cold start.
+/// impulses with which they start are the forces of the previous step times `warm_secs` (s); 0 s gives a cold start
+/// (from zero impulses).
 pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<Touching> {
     let (contacts, problem) = (&stage.state.contacts, &stage.problem);
     let contact = |((number, row), &index): ((usize, &Row<M>), &u32)| {
@@ -238,7 +240,8 @@ pub(super) fn end_substep<M: Model>(
     }
 }
 
-/// Stores the forces of the last substep in the contacts, for the warm start of the next step.
+/// Stores the forces of the last substep in the contacts, for the warm start of the next step (a start from these
+/// forces).
 pub(super) fn remember<M: Model>(
     stage: &mut Stage<'_, M>,
     contacts: &[Touching],

@@ -169,7 +169,7 @@ const PUSH_OUT_SPEED: f64 = 1.0;
 struct Softness {
     substep_secs: f64,
     /// Rate at which a contact spring closes an overlap, 1/s: closing speed divided by overlap. It is ω/(2ζ + hω), with
-    /// the spring's angular frequency ω, its damping ratio ζ and the length h of a substep.
+    /// the spring's angular frequency ω, its damping ratio ζ and the length h of a substep (part of a step).
     rate: f64,
     /// Softness c of a contact, dimensionless: 0 for a rigid contact, near 1 for a soft contact ([`Softness`]).
     compliance: f64,

@@ -144,9 +144,10 @@ pub struct ContactRows<M: Model> {
     pub pairs: Vec<PairRow<M>>,
     /// Index of each row's contact in the list of detected contacts.
     pub contacts: Vec<u32>,
-    /// Capture speed of each contact (cohesion force times time step, divided by effective mass), m/s, if contacts have
-    /// different capture speeds (contact law `range`, pairs of materials); else empty. Sweeps with the shifted friction
-    /// cone do not need it, because the sum of normal impulse and cohesion impulse is stored and bounds friction.
+    /// Capture speed of each contact (the opening speed that cohesion cancels in one step: cohesion force times time
+    /// step, divided by effective mass), m/s, if contacts have different capture speeds (contact law `range`, pairs of
+    /// materials); else empty. Sweeps with the shifted friction cone do not need it, because the sum of normal impulse
+    /// and cohesion impulse is stored and bounds friction.
     pub captures: Vec<f64>,
     /// Friction coefficient μ of each contact, if pairs of materials have their own coefficients; else empty.
     pub frictions: Vec<f64>,

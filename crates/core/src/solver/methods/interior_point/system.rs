@@ -129,9 +129,9 @@ pub(super) fn push_all<M: Model, const D: usize>(
     }
 }
 
-/// Calls `visit` for each contact with its row number and the change of its normal and tangential velocity, m/s, that
-/// follows from `changes`, the changes of the bodies' velocities in elimination order (the order of the bodies in the
-/// factorised matrix).
+/// Calls `visit` for each contact with the number of its row (the data of the contact) and the change of its normal and
+/// tangential velocity, m/s, that follows from `changes`, the changes of the bodies' velocities in elimination order
+/// (the order of the bodies in the factorised matrix).
 #[inline(always)]
 pub(super) fn for_each_change<M: Model, const D: usize>(
     problem: &StepProblem<M>,
