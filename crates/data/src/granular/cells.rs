@@ -228,7 +228,8 @@ struct HalfPlane {
     direction: DVec2,
 }
 
-/// A disc that has a cell: a grain, a fixed disc, or a periodic image of such a disc.
+/// A disc that has a cell (the region nearer to it than to any other disc): a grain, a fixed disc, or a periodic image
+/// of such a disc.
 #[derive(Clone, Copy)]
 struct Site {
     position: DVec2,
@@ -238,7 +239,8 @@ struct Site {
     reach: f64,
 }
 
-/// Adds those periodic images of the discs whose cells may border on a cell of an original disc.
+/// Adds those periodic images of the discs whose cells (regions nearer to a disc than to any other disc) may border on
+/// a cell of an original disc.
 fn append_images(sites: &mut Vec<Site>, periodic: Option<Periodic>) {
     let Some(periodic) = periodic else { return };
     let reach = 2.0 * sites.iter().map(|site| site.reach).fold(0.0, f64::max);

@@ -43,12 +43,12 @@ const QUADRATURE: [(f64, f64); 3] = [
 pub struct Fields {
     /// Smoothing width, m: the standard deviation of the smoothing function along each axis.
     pub width: f64,
-    /// Lower left corner of the cell with the index 0 along both axes, m: the origin of coordinates, or along a
+    /// Lower left corner of the grid cell with the index 0 along both axes, m: the origin of coordinates, or along a
     /// periodic axis the lower border.
     pub origin: DVec2,
     /// Width and height of a grid cell, m.
     pub cell: DVec2,
-    /// Indices of the first cell of the grid along x and y, counted from the cell at `origin`.
+    /// Indices of the first grid cell along x and y, counted from the cell at `origin`.
     pub first: [i64; 2],
     /// Numbers of grid cells along x and y.
     pub counts: [usize; 2],
@@ -80,7 +80,7 @@ impl Fields {
     /// are spread into this grid.
     ///
     /// # Errors
-    /// If the width is not a finite length > 0 or would need too many cells, or if a number of the snapshot is not
+    /// If the width is not a finite length > 0 or would need too many grid cells, or if a number of the snapshot is not
     /// finite.
     pub fn in_box(moment: &Moment, width: f64, [least, most]: [DVec2; 2]) -> Result<Self> {
         if !(width > 0.0 && width.is_finite()) {
