@@ -204,7 +204,7 @@ fn settings() -> String {
 }
 
 /// Returns descriptions of the columns of all recorded tables as Markdown. They are taken from the manifest of a
-/// recording.
+/// recording (the file that describes it).
 fn columns() -> String {
     let folder = folder();
     let out = folder.path().join("run");
