@@ -17,13 +17,13 @@ const NARROW: f64 = 3.0;
 pub(super) enum Verdict {
     Holds,
     Fails,
-    /// The data decide neither for nor against the claim.
+    /// The measured data decide neither for nor against the tested statement.
     Open,
 }
 
 impl Verdict {
-    /// Returns the verdict on a claim, from the p-value `p` of the claim and the p-value `p_contrary` of the opposite
-    /// claim.
+    /// Returns the verdict on a claim (a tested statement). `p` is the p-value of the claim and `p_contrary` the
+    /// p-value of the opposite claim.
     pub(super) fn of(p: f64, p_contrary: f64) -> Self {
         match (p < SIGNIFICANT, p_contrary < SIGNIFICANT) {
             (true, _) => Self::Holds,

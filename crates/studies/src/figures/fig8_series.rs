@@ -9,9 +9,9 @@ use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Sheet, points};
 use crate::error::{Error, Result};
 use crate::scene::cradle;
 
-/// Time steps that the figure shows, s. According to Abramian & Staron (2020), the bond of the cradle's struck discs
-/// opens at the first time step and stays closed at the second. At the other four, the outcome depends on the start
-/// distance of the disc that hits them.
+/// Time steps that the figure shows, s. According to Abramian & Staron (2020), the bond of the cradle (disc k hits the
+/// bonded discs i and j) opens at the first time step and stays closed at the second. At the other four, the outcome
+/// depends on the start distance of disc k.
 const SHOWN_SECS: [f64; 6] = [5e-4, 1e-3, 4e-3, 5e-3, 6e-3, 1e-2];
 /// Upper ends of the axes in Fig. 8 of Abramian & Staron (2020): time, s, and position of the struck disc j, diameters.
 const ENDS: (f64, f64) = (2.0, 5.0);
