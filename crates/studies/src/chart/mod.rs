@@ -170,7 +170,7 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// Returns an empty chart with this title and these axes.
+    /// Returns a chart with the given title and axes, still without curves.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
         Self { title: title.into(), x, y, layers: Vec::new(), width: 1.0 }
     }
