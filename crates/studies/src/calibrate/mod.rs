@@ -55,8 +55,8 @@ pub struct CalibrateOptions {
 /// numerical method (if any), and the interval of simulated time in which results are evaluated.
 type Setup = (Starts, u64, Option<Variant>, Window);
 
-/// Calibrates a scene, and writes `report.md` and a picture of the confidence region to `folder`. The same call resumes
-/// a calibration that was stopped. A call for more runs adds to the runs in the folder.
+/// Calibrates a scene, and writes `report.md` and a picture of the confidence region to `folder`. A call with the same
+/// arguments resumes a calibration that was stopped. A call for more runs adds to the runs in the folder.
 ///
 /// # Errors
 /// If a target, parameter or setting is not allowed, or if the folder cannot be written; the error names the cause.
