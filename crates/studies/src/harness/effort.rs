@@ -1,4 +1,4 @@
-//! Defines the extent of an experiment: a quick pass or the full pass.
+//! Defines the extent of an experiment: a quick pass, which has fewer and smaller systems, or the full pass.
 
 /// The extent of an experiment: a quick pass, which has smaller and fewer systems, or the full pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +27,7 @@ impl Effort {
     }
 
     /// Returns the command-line option that selects this pass of an experiment, with a space before the option, for a
-    /// quick pass; returns an empty text for the full pass.
+    /// quick pass (a pass with fewer and smaller systems); returns an empty text for the full pass.
     pub(crate) fn option(self) -> &'static str {
         self.pick(" --quick", "")
     }

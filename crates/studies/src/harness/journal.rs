@@ -151,7 +151,7 @@ pub(crate) fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
     entries.map(path).collect::<std::io::Result<_>>().map_err(|error| Error::file(folder, error))
 }
 
-/// Returns the paths of all journals in a folder.
+/// Returns the paths of all journals (files of results) in a folder.
 ///
 /// # Errors
 /// If another program has one of the journals open.

@@ -1,5 +1,5 @@
 //! Runs the cases (runs) of a study or an experiment. The runner computes the cases that are not finished, writes each
-//! result to a journal as soon as the case ends, and returns all results in the order of the cases.
+//! result to a journal (file of results) as soon as the case ends, and returns all results in the order of the cases.
 
 use std::collections::HashMap;
 use std::path::Path;
