@@ -43,7 +43,7 @@ pub(super) struct CollectionPlan {
     pub time_steps_secs: Vec<f64>,
     /// Simulated times at which the collected steps begin, s, in ascending order.
     pub times_secs: Vec<f64>,
-    /// Seeds of the initial states of the piles. The piles get these seeds in turn.
+    /// Seeds of the initial states of the piles. There are more piles than seeds, so several piles have the same seed.
     pub seeds: Vec<u64>,
     pub grains: usize,
     /// Width of the box in which the initial states are made, in diameters.

@@ -2,7 +2,7 @@
 //! simulations, and draws charts of them. The charts compare all solver methods of the program.
 //!
 //! The folder of a chart contains pictures (PNG and SVG), tables (CSV), `chart.md`, initial states, and the folder
-//! `measured/`. In the latter, each build of the program and each processor has its own journals of measurements. If a
+//! `measured/`. In `measured/`, each build of the program and each processor has its own journals of measurements. If a
 //! command is stopped, the same command resumes its work, and times of different builds are never mixed.
 
 mod collection;

@@ -155,7 +155,7 @@ impl TimedCollection {
     }
 
     /// Returns, for each number of sweeps of a solver variant, the median time of a solve, ms, and the median error of
-    /// the velocities, in √(g d), over all steps.
+    /// the velocities, in √(g d) with gravity g and mean diameter d, over all steps.
     fn medians(&self, variant: usize) -> Vec<(f64, f64)> {
         let solves = || self.steps.iter().map(|step| &step.solves[variant]);
         let longest = solves().map(|solves| solves.0.len()).max().unwrap_or(0);

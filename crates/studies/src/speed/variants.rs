@@ -58,7 +58,7 @@ impl Family {
     }
 }
 
-/// Returns a text for captions, which lists the names of the variants in each family.
+/// Returns a text for captions, which lists the names of the variants in each family of similar solver methods.
 pub(super) fn members<'a>(variants: impl Iterator<Item = &'a Change> + Clone) -> String {
     let of = |family: Family| {
         let its = variants.clone().filter(|variant| variant.family() == family);
