@@ -39,7 +39,7 @@ use crate::solver::METHODS;
 /// solver keeps a scene at rest.
 const DURATION_SECS: f64 = 0.1;
 /// Limit of the sinking distance and of the overlap, in diameters d. A run above this limit is marked as sinking on the
-/// stability map.
+/// stability map, a chart that shows where a solver keeps a scene at rest.
 const COUNTS: f64 = 0.01;
 /// Amplitude A, at the top of a tall column, of the mode (velocity pattern) that Gauss–Seidel sweeps reduce most
 /// slowly, dimensionless. If all discs fall with the same velocity, 4/π of this velocity is in this mode. The velocity

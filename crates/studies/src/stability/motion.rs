@@ -218,7 +218,7 @@ const CHANGE_SECS: f64 = 0.05;
 const LIVE_SWEEPS: u32 = 200;
 
 /// Removes a heavy disc from the top of a column at rest, and returns the largest kinetic energy afterwards, divided by
-/// the weight of a disc of the column times the mean diameter (m g d).
+/// the weight of a disc of the column times the mean diameter.
 pub(super) fn lift_off(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(scenes::lift_off(trial.level))?;
     simulation.take_steps(BEFORE)?;

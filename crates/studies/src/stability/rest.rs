@@ -132,9 +132,9 @@ pub(super) fn arch(trial: &Trial) -> Result<f64> {
 
 /// Measures the smallest rolling friction with which a leaning column stays at rest, and returns its relative error.
 ///
-/// If the moment of the lowest contact is smaller than the necessary moment by the fraction ε, the column of n discs turns
-/// about this contact like a rod, and its top moves by about (3/8) ε g t²/n in the time t. So the test of n discs takes a
-/// time that grows with √n.
+/// If the moment of the lowest contact is smaller than the necessary moment by the fraction ε, the column of n discs
+/// turns about this contact like a rod, and its top moves by about (3/8) ε g t²/n in the time t, with gravity g. So the
+/// test of n discs takes a time that grows with √n.
 pub(super) fn leaning_column(trial: &Trial) -> Result<f64> {
     let right = scenes::ROLLING_FRICTION_OF_COLUMN;
     let scene = with_sweeps(FEW_SWEEPS, scenes::leaning_column(trial.count()));
@@ -207,8 +207,9 @@ pub(super) fn hyperstatic(trial: &Trial) -> Result<f64> {
     Ok(unrest(&simulation, &scene).max(simulation.observables().residual))
 }
 
-/// Runs a heap that must stay at rest, with the number of grains that the trial gives. Returns the larger of two
-/// numbers: the longest displacement, in mean diameters d, and the root mean square speed, in √(g d) with gravity g.
+/// Runs a heap that must stay at rest. Its number of grains is the driving parameter of `trial` (the parameter that
+/// makes the test more difficult). Returns the larger of two numbers: the longest displacement, in mean diameters d,
+/// and the root mean square speed, in √(g d) with gravity g.
 pub(super) fn size(trial: &Trial) -> Result<f64> {
     let scene = scenes::heap_of(trial.count());
     let mut simulation = trial.start_within(WINDOW_SWEEPS, scene.clone())?;
