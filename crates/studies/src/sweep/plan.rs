@@ -146,9 +146,9 @@ impl Study {
 }
 
 /// Replaces settings in the table `to` of a study file, which is `base` or `vary`, by `values`, the settings of a quick
-/// pass. A setting that varies in the full pass may be constant in the quick pass or vice versa, so each setting in
-/// `values` is also removed from `other`, the second of these two tables. `from` is the name of the table that contains
-/// `values`, for error messages.
+/// pass (a pass with fewer runs). A setting that varies in the full pass may be constant in the quick pass or vice
+/// versa, so each setting in `values` is also removed from `other`, the second of these two tables. `from` is the name
+/// of the table that contains `values`, for error messages.
 fn replace(from: &str, to: &mut Table, other: &mut Table, values: Table) -> Result<()> {
     for (key, value) in values {
         if other.remove(&key).is_none() && !to.contains_key(&key) {
@@ -334,8 +334,8 @@ fn hash(said: &impl Serialize, scene: &str) -> Result<blake3::Hasher> {
     Ok(hasher)
 }
 
-/// Returns the first half of a hash as hexadecimal digits, which are used as a key. With these 128 bits, two runs
-/// practically never have the same key.
+/// Returns the first half of a hash (128 bits) as hexadecimal digits. With this many bits, two different inputs
+/// practically never give the same digits.
 fn short(hasher: &blake3::Hasher) -> String {
     hasher.finalize().to_hex()[..32].to_owned()
 }
