@@ -99,9 +99,9 @@ fn bearing<'a>(moment: &'a Moment, is_rattler: &[bool]) -> Vec<&'a ContactState>
     moment.contacts.iter().filter(bears).collect()
 }
 
-/// Returns the constant β of the exponential tail P(f) ∝ exp(−βf) in the distribution of the normal forces f. Forces
-/// are divided by the mean force at the same height, and the tail consists of the forces f > 1. For an exponential tail
-/// the mean of f − 1 is 1/β.
+/// Returns the constant β of the exponential tail P(f) ∝ exp(−βf) of the probability density P of the normal forces f.
+/// Forces are divided by the mean force at the same height, and the tail consists of the forces f > 1. For an
+/// exponential tail the mean of f − 1 is 1/β.
 fn tail(bearing: &[&ContactState]) -> f64 {
     let mut layers: BTreeMap<i64, Vec<f64>> = BTreeMap::new();
     for contact in bearing {

@@ -27,9 +27,9 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// Number that represents the scene with a rotating drum among the parameters of a run.
+/// Value of the parameter that says which scene a run simulates: a rotating drum.
 const DRUM: f64 = 0.0;
-/// Number that represents the scene with a tilted plane among the parameters of a run.
+/// Value of the parameter that says which scene a run simulates: a tilted plane.
 const INCLINE: f64 = 1.0;
 /// Simulated time from which on the slope in the drum is measured, s. The drum has then turned by three radians.
 const STEADY_SECS: f64 = 1.5;

@@ -139,7 +139,8 @@ impl ShearedLayer {
         f64::from(self.cell.columns) * f64::from(self.cell.rows)
     }
 
-    /// Returns the height of the compressed layer, in diameters.
+    /// Returns the expected height of the compressed layer, in diameters: the area of its grains divided by the
+    /// expected solid fraction and by the width of the layer.
     fn height(&self) -> f64 {
         let area = 0.25 * PI * self.grains();
         area / (DENSE * f64::from(self.cell.wide))
@@ -291,7 +292,7 @@ mod tests {
 
     /// Checks that breaking a bond takes the prescribed work, and that the debonding distance δ_c of the stepper
     /// `range` then gives the expected dimensionless energy E = η (δ_c/d)/I², with the cohesion η = Bond/(2P), the
-    /// pressure P in m g/d, the diameter d and the inertial number I.
+    /// pressure P in m g/d, the mass m and diameter d of a grain, gravity g and the inertial number I.
     #[test]
     fn a_bond_takes_the_energy_that_its_layer_asks_for() {
         let (bond, energy, inertial) = (6.0, 3.0, 0.08);
