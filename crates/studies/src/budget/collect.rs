@@ -175,8 +175,8 @@ impl Runs {
     }
 
     /// Returns the largest ratio, over all quantities, of the width of the confidence interval of a series (the runs
-    /// with the same change of the scene) to the requested width. Quantities without values or without scatter do not
-    /// count; if no quantity counts, the ratio is 0.
+    /// with the same change of the scene) to the requested width. Quantities without values or whose values are all
+    /// equal do not count; if no quantity counts, the ratio is 0.
     pub(super) fn excess(&self, series: usize) -> f64 {
         let of = |quantity: usize| {
             if [0, series].iter().any(|&one| self.failure(one, quantity).is_some()) {
