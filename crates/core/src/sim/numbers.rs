@@ -7,7 +7,7 @@ use crate::sim::simulation::Simulation;
 use crate::solver::{Method, picked};
 
 impl Simulation {
-    /// Returns the number of substeps in the next step; 1 if the stepper solves the step as a whole.
+    /// Returns the number of substeps (equal parts) of the next step; 1 if the stepper solves the step as a whole.
     pub fn substeps(&self) -> u32 {
         let Settings { stepper, parameters, .. } = &self.settings;
         (stepper.info().substeps)(&self.state.world, self.state.physics, parameters)

@@ -191,8 +191,8 @@ pub(super) fn contact_time_secs(world: &World, physics: Physics, parameters: &Pa
     springs.contact_time_secs(effective_mass_of_mean(world))
 }
 
-/// Returns the number of substeps of a step: the number in the parameters or, if that is 0, the number for which the
-/// springs are stable. [`check_substeps`] refuses parameters that need too many substeps.
+/// Returns the number of substeps (equal parts) of a step: the number in the parameters or, if that is 0, the number
+/// for which the springs are stable. [`check_substeps`] refuses parameters that need too many substeps.
 pub(super) fn substeps(world: &World, physics: Physics, parameters: &Parameters) -> u32 {
     match parameters.substeps {
         0 => (stable_substeps(world, physics, parameters) as u32).clamp(1, MAX_SUBSTEPS),
@@ -200,8 +200,8 @@ pub(super) fn substeps(world: &World, physics: Physics, parameters: &Parameters)
     }
 }
 
-/// Returns the number of substeps per step for which a substep is at most [`SAFE_FRACTION`] of the critical time step.
-/// There is no upper limit.
+/// Returns the number of substeps (equal parts) per step for which a substep is at most [`SAFE_FRACTION`] of the
+/// critical time step. There is no upper limit.
 pub(in crate::sim) fn stable_substeps(
     world: &World,
     physics: Physics,
@@ -211,8 +211,8 @@ pub(in crate::sim) fn stable_substeps(
     (parameters.time_step_secs / longest_secs).ceil()
 }
 
-/// Checks that the automatic number of substeps, for which the springs are stable, is at most [`MAX_SUBSTEPS`]. The
-/// error names the stiffness if it is too large, or else the time step if it is too long.
+/// Checks that the automatic number of substeps (equal parts of a step), for which the springs are stable, is at most
+/// [`MAX_SUBSTEPS`]. The error names the stiffness if it is too large, or else the time step if it is too long.
 pub(super) fn check_substeps(
     world: &World,
     physics: Physics,

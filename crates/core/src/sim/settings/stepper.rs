@@ -44,7 +44,7 @@ pub struct StepperInfo {
     pub check: fn(&Parameters) -> Result<()>,
     /// Checks the parameters for a world; the error names a parameter that the stepper does not support in that world.
     pub check_in: fn(&World, Physics, &Parameters) -> Result<()>,
-    /// Returns the number of substeps per step; 1 if the stepper solves a step as a whole.
+    /// Returns the number of substeps (equal parts) per step; 1 if the stepper solves a step as a whole.
     pub substeps: fn(&World, Physics, &Parameters) -> u32,
     /// Returns the longest substep (part of a step), s, for which the stepper is always stable; `None` if the stepper
     /// has no such limit.

@@ -97,12 +97,13 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     substepping.end_step_of(stage, &contacts, substeps * (ITERATIONS + 1))
 }
 
-/// Dimensionless stiffness κ = k h²/m_ij of a new contact (stiffness k, length h of a substep, effective mass m_ij),
-/// and smallest stiffness of any contact. With a smaller value grains with new contacts overlap more; with a larger
-/// value iterations that change one body at a time cannot transmit a force from body to body.
+/// Dimensionless stiffness κ = k h²/m_ij of a new contact (stiffness k, length h of a substep, which is a part of a
+/// step, effective mass m_ij), and smallest stiffness of any contact. With a smaller value grains with new contacts
+/// overlap more; with a larger value iterations that change one body at a time cannot transmit a force from body to
+/// body.
 const SOFTEST: f64 = 1.0;
-/// Largest dimensionless stiffness κ = k h²/m_ij of a contact (stiffness k, length h of a substep, effective mass
-/// m_ij). A stiffer contact would dominate all other forces on its two bodies.
+/// Largest dimensionless stiffness κ = k h²/m_ij of a contact (stiffness k, length h of a substep, which is a part of a
+/// step, effective mass m_ij). A stiffer contact would dominate all other forces on its two bodies.
 const STIFFEST: f64 = 1e6;
 /// Increase of a contact's dimensionless stiffness κ (stiffness times squared substep length, divided by effective
 /// mass) per iteration, if the velocity that violates the contact equals the speed that gravity adds in a substep. With

@@ -16,7 +16,7 @@ use crate::solver::{DrivenRow, Measures, Model, Row, SolveReport, StepProblem, m
 /// Data of a step during its substeps (the equal parts into which the stepper divides it). The data are dropped at the
 /// end of the step; the world and the contacts store the data that later steps need.
 pub(super) struct Substepping<M: Model> {
-    /// Number of substeps of the step.
+    /// Number of substeps (equal parts) of the step.
     pub count: u32,
     /// Length h of a substep (part of a step), s.
     pub substep_secs: f64,
@@ -221,7 +221,7 @@ pub(super) fn follow_gaps<M: Model>(
     }
 }
 
-/// Adds the impulses and works of all contacts in a substep to the sums of the step.
+/// Adds the impulses and works of all contacts in a substep (part of a step) to the sums of the step.
 pub(super) fn end_substep<M: Model>(
     problem: &StepProblem<M>,
     contacts: &mut [Touching],
@@ -260,7 +260,8 @@ pub(super) fn remember<M: Model>(
     }
 }
 
-/// Writes the impulses of all contacts, summed over the substeps, to the contact problem of the step.
+/// Writes the impulses of all contacts, summed over the substeps (equal parts) of a step, to the contact problem of
+/// this step.
 pub(super) fn hand_over<M: Model>(problem: &mut StepProblem<M>, contacts: &[Touching]) {
     let capture_speed = problem.law.capture_speed();
     for (row, contact) in problem.rows.iter_mut().zip(contacts) {

@@ -138,9 +138,9 @@ fn gather<S: Simd, M: Model>(
     M::from_coordinates([x, y, spin])
 }
 
-/// Transposes four vectors of four numbers: turns the velocity slots of four bodies into one vector for each velocity
-/// component, and back. Slots are read and written whole, in one access each: a read of a single number would have to
-/// wait until the previous block has written the whole slot.
+/// Transposes four vectors of four numbers: turns the memory slots with the velocities of four bodies into one vector
+/// for each velocity component, and back. Slots are read and written whole, in one access each: a read of a single
+/// number would have to wait until the previous block has written the whole slot.
 #[inline(always)]
 fn transposed<S: Simd>([a, b, c, d]: [f64x4<S>; LANES]) -> [f64x4<S>; LANES] {
     let (ac, bd) = (a.zip_low(c), b.zip_low(d));

@@ -268,7 +268,7 @@ struct GrainMark {
 const UNSEEN: GrainMark = GrainMark { slot: NOBODY, tile: 0, colour: 0 };
 
 /// The tile (a group of contacts that shares no grain with another tile) that is being filled with blocks of contacts:
-/// its number and its first velocity slot.
+/// its number and the first memory slot of its velocities.
 #[derive(Clone, Copy)]
 struct BlockPlace {
     /// Number of the tile (a group of contacts that shares no grain with another tile), from 1; 0 for the contacts
@@ -284,7 +284,7 @@ struct BlockPlace {
 #[derive(Clone, Debug, Default)]
 struct TileLayout {
     /// Tiles (groups of contacts that share no grain with another tile), in the order in which their blocks of contacts
-    /// and velocity slots are stored.
+    /// and memory slots of velocities are stored.
     tiles: Vec<ContactTile>,
     /// Blocks of four contacts, sorted by tile (a group of contacts that shares no grain with another tile), and within
     /// a tile by colour (a group of contacts that share no grain). The indices of velocity slots in a block are counted
@@ -295,7 +295,7 @@ struct TileLayout {
     /// one thread solves).
     fixed_between: usize,
     /// Velocities of the bodies, sorted by tile (a group of contacts that shares no grain with another tile), and
-    /// within a tile in the order in which its blocks of contacts first use them. The first slot of a tile is a
+    /// within a tile in the order in which its blocks of contacts first use them. The first memory slot of a tile is a
     /// placeholder for idle SIMD lanes.
     slots: Vec<BodySlot>,
     /// For each block of contacts, the range of the numbers of its contacts in the problem.
