@@ -18,12 +18,12 @@ use crate::solver::{FrictionModel, Method, Ordering, SolutionSearch};
 /// Restitution threshold (the approach speed below which contacts do not bounce) with which nearly every step has a
 /// solution, in units of g·Δt, the speed that gravity adds in one step.
 const THRESHOLD: f64 = 2.0;
-/// Errors of the velocities, √(g d), with gravity g and mean diameter d. The report says how long each solver method
-/// takes to reach each of these errors.
+/// Errors of the velocities, in units of √(g d), with gravity g and mean diameter d. The report says how long each
+/// solver method takes to reach each of these errors.
 const REPORTED: [f64; 3] = [1e-2, 1e-3, 1e-4];
 const BASE: (Method, Ordering) = (Method::Nsgs, Ordering::Interleaved);
 const SIZES: [usize; 4] = [138, 500, 2_000, 10_000];
-/// Smallest error of the velocities that the chart shows, √(g d), with gravity g and mean diameter d.
+/// Smallest error of the velocities that the chart shows, in units of √(g d), with gravity g and mean diameter d.
 const LEAST_ERROR: f64 = 1e-8;
 const BAND: Rgb = (225, 225, 225);
 

@@ -3,8 +3,8 @@
 use super::*;
 use crate::harness::ReportTable;
 
-/// Least number of piles with which the chart shows confidence intervals of the mean errors. A quick pass has fewer
-/// piles, so its chart has no intervals.
+/// Least number of piles with which the chart shows confidence intervals of the mean errors. With fewer piles, as in a
+/// quick pass, an interval would be as wide as the chart.
 const TELLING: usize = 8;
 
 /// Draws two charts of the smallest error of the slump that each family of methods (group of similar solver methods)
