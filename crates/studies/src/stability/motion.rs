@@ -145,7 +145,7 @@ pub(super) fn thin_wall(trial: &Trial) -> Result<f64> {
     Ok(f64::from(through) / f64::from(PHASES))
 }
 
-// Invariances: the distance from the origin and the order of the contacts must not change the result.
+// Changes that must not affect the result: another distance of the heap from the origin, another order of the contacts.
 
 const FAR_ROWS: usize = 4;
 const FAR_SECS: f64 = 0.1;
@@ -196,7 +196,7 @@ pub(super) fn shuffle(trial: &Trial) -> Result<f64> {
     Ok(differences.fold(0.0, f64::max) / largest)
 }
 
-// Sudden changes: a grain is removed, the time step changes, or all sliders move at random.
+// Sudden changes: a grain is removed, the time step changes, or all sliders of the graphical window move at random.
 
 /// Number of steps before the sudden change in a test (a removed grain, or another time step).
 const BEFORE: u64 = 50;
