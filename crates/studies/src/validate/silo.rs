@@ -95,7 +95,7 @@ fn discharge(
         }
     }
     let rate = if part < OUT[1] { f64::NAN } else { slope(&fallen) };
-    // The unit of the rate is σ d √(g d), with the diameter d and the areal density σ = 1 kg/m².
+    // The unit of the rate is σ d √(g d), with the diameter d, gravity g and the areal density σ = 1 kg/m².
     let unit = DIAMETER.powf(1.5) * GRAVITY.sqrt();
     Ok(run.with([("rate", rate / unit)]))
 }
