@@ -93,7 +93,7 @@ pub(super) fn power_law(points: &[(f64, f64)]) -> (f64, f64) {
 /// Returns the rank correlation of x and y in pairs (x, y) (C. Spearman 1904). Equal values get their mean rank. The
 /// result is NaN if a value is NaN, or if all x or all y are equal.
 pub(super) fn rank_correlation(pairs: &[(f64, f64)]) -> f64 {
-    // Twice the rank of each value, counted from the middle of the column.
+    // Twice the difference of the rank of each value from the mean rank.
     let ranks = |of: fn(&(f64, f64)) -> f64| -> Vec<f64> {
         let compare = |one: &(f64, f64), other: &(f64, f64)| {
             of(one).partial_cmp(&of(other)).map_or(f64::NAN, |order| f64::from(order as i8))
