@@ -43,8 +43,8 @@ const MOST_PASSED: u32 = 10;
 pub(crate) struct Animation {
     path: PathBuf,
     picture_centisecs: u16,
-    /// The GIF encoder with a handle of the file; `draft` has another handle of the file, because the encoder owns its
-    /// handle.
+    /// The GIF encoder with its own handle of the file; `None` before the first picture. The unfinished file `draft`
+    /// has another handle, because the encoder owns the handle to which it writes.
     encoder: Option<Encoder<DraftFile>>,
     draft: PendingFile,
     pictures: usize,
@@ -72,7 +72,8 @@ impl Animation {
         Ok(Self { path, picture_centisecs, encoder: None, draft, pictures: 0, whole: None })
     }
 
-    /// Adds a picture. Before the first picture, `texts` are written as a comment in the file.
+    /// Adds a picture. With the first picture, `texts` (descriptive texts such as title and settings) are written into
+    /// the file as a comment; later `texts` are ignored.
     pub(crate) fn add(&mut self, image: RgbaImage, texts: &Texts) -> Result<()> {
         let added = self.encode(image, texts);
         let file = self.draft.file();
@@ -128,7 +129,8 @@ fn too_large() -> EncodingError {
 }
 
 /// Returns an error if a file name does not have the ending of the file's format, such as `.gif`. Devices and pipes may
-/// have any name.
+/// have any name. `option` is the name of the option that gives the file, and `other` names the option for another
+/// format; both are parts of the error message.
 pub(crate) fn check_ending(option: &str, path: &Path, ending: &str, other: &str) -> Result<()> {
     let is_special = path.metadata().is_ok_and(|there| !there.is_file() && !there.is_dir());
     let has_ending = path.extension().is_some_and(|it| it.eq_ignore_ascii_case(ending));

@@ -1,7 +1,8 @@
 //! Slump: a laboratory for Contact Dynamics of cohesive grains.
 //!
 //! "The paper" is A. Abramian & L. Staron, *Time Steps v.s. Cohesion in Non-Smooth Contact Dynamics Algorithm* (2020,
-//! hal-02570097). This program simulates its pile and prints the slump:
+//! hal-02570097). This program simulates the pile of the paper and prints its slump (drop of the mean height, divided
+//! by the first mean height):
 //!
 //! ```
 //! let mut scene = slump::scene::built_in("pile")?;
@@ -12,9 +13,10 @@
 //! # Ok::<(), slump::error::Error>(())
 //! ```
 //!
-//! Programs start from a [`scene`] and step its [`sim::Simulation`]. Your own stepper, contact law or method implements
-//! [`sim::Advance`]. [`next_problem`](sim::Simulation::next_problem) passes the contact problem of the next step to a
-//! [`sim::ProblemVisitor`], and [`solver::solve`] solves such a problem. The programs in `examples/` show how.
+//! Programs start from a [`scene`] and step its [`sim::Simulation`]. Your own stepper, contact law or solver method
+//! implements [`sim::Advance`]. [`next_problem`](sim::Simulation::next_problem) passes the contact problem of the next
+//! step to a [`sim::ProblemVisitor`], and [`solver::solve`] solves such a problem. The programs in `examples/` show
+//! how.
 //!
 //! In this list, `a` ← `b` means that the module `b` uses the module `a`:
 //!
@@ -24,8 +26,8 @@
 //! * this crate: [`render`] ← the program, which consists of `headless`, the window (`app`, feature `window`) and `cli`
 //!
 //! The compiler ensures the order of the crates, and a test ensures that imports between modules point one way. The
-//! physics does not depend on a screen. Without the feature `gpu` the processor draws all pictures. `python/` contains
-//! the Python package.
+//! physics does not depend on windows or pictures. Without the feature `gpu` the processor draws all pictures.
+//! `python/` contains the Python package.
 
 #![cfg_attr(
     target_arch = "wasm32",

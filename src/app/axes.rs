@@ -26,7 +26,8 @@ pub(super) fn bare_plot<'a>(
 
 /// Returns an empty plot with numbered axes; the x axis has the unit `x_unit`. `log` states which axes (x, y) are
 /// logarithmic. Along a logarithmic axis with a unit, the labels are decimal numbers; without a unit they are powers of
-/// ten. Times along a linear axis are in seconds, and their labels are in milliseconds.
+/// ten. If `x_unit` is " ms" and the x axis is linear, the x values are times in seconds, and their labels are in
+/// milliseconds.
 pub(super) fn plot_with_axes<'a>(
     ui: &Ui,
     id: impl std::hash::Hash + std::fmt::Debug,
@@ -50,9 +51,10 @@ pub(super) fn with_least(plot: Plot<'_>, ends: [[f64; 2]; 2]) -> Plot<'_> {
     plot.include_x(left).include_x(right).include_y(bottom).include_y(top)
 }
 
-/// Returns the lowest and highest value of an axis that contains all finite `values`. If `log` is true, the values are
-/// decimal logarithms. If the values hardly differ, the range is widened to a fraction of the largest value or to two
-/// decades, so that the axis does not show rounding errors.
+/// Returns the lowest and highest value of an axis that contains all finite `values`, which are decimal logarithms if
+/// `log` is true. A logarithmic axis is at least [`LEAST_DECADES`] long, a linear axis at least [`LEAST_SPAN`] times
+/// the largest absolute value. A shorter range is widened equally at both ends, so that the axis does not show rounding
+/// errors.
 pub(super) fn with_room(values: impl Iterator<Item = f64>, log: bool) -> [f64; 2] {
     let ends = values.filter(|value| value.is_finite()).map(|value| [value, value]);
     let ends = ends.reduce(|ends, [value, _]| [ends[0].min(value), ends[1].max(value)]);

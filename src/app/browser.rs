@@ -29,7 +29,8 @@ pub fn prepare(resources: &mut CallbackResources, format: wgpu::TextureFormat) {
 }
 
 /// Opens the browser version with the preferences `stored` at the last visit. It shows the run or lesson that the
-/// page's `address` describes, otherwise the present lesson or the last scene.
+/// page's `address` describes. If the address describes neither, it shows the lesson at which the user left the lessons
+/// open, or the last scene if the lessons were closed.
 pub fn begin(live: Live, stored: &str, address: &str, context: &Context) -> AppState {
     let stored: StoredWindow = ron::from_str(stored).unwrap_or_default();
     context.memory_mut(|memory| *memory = stored.layout);
@@ -66,7 +67,8 @@ pub fn open_file(state: &mut AppState, path: PathBuf, bytes: Vec<u8>) {
     state.open(Opening::With { path, bytes, opening: Box::new(opening) });
 }
 
-/// Computes the first simulation of a link up to its last step and returns the hash of that state, for tests.
+/// Computes the first of the simulations that a link describes, up to its last step. Returns the hash of its final
+/// state, for tests.
 ///
 /// # Errors
 /// Names the invalid part of the link.

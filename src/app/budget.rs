@@ -67,15 +67,17 @@ pub(super) const SOLVED: Budget = Budget {
 /// All presets, in the order of their buttons.
 pub(super) const BUDGETS: [Budget; 3] = [FAST, SOLVED, PAPER];
 
-/// Largest Bond number at which a longer time step makes a pile more stable if cohesion adds to the bound on friction
-/// (shifted cone; `docs/paper.md`, Fig. 5a). At larger Bond numbers a longer time step need not have this effect.
+/// Largest Bond number at which a longer time step makes a pile more stable if the bound on friction is the shifted
+/// cone, to which cohesion adds (`docs/paper.md`, Fig. 5a). At larger Bond numbers a longer time step has this effect
+/// in the compressive cone, but not always in the shifted cone.
 const WEAK: f64 = 50.0;
 
 /// Longest fall of a grain from rest in one step that causes no warning, in mean diameters. With a smaller value, the
 /// upper end of the Δt slider would cause a warning.
 const LONGEST_FALL: f64 = 0.2;
 
-/// Returns a warning if a grain at rest falls by more than [`LONGEST_FALL`] in one step.
+/// Returns a warning if a grain at rest falls by more than [`LONGEST_FALL`] mean diameters in one of the `substeps` of
+/// a step.
 pub(super) fn too_long(
     settings: &Settings,
     surroundings: &Surroundings,
@@ -93,7 +95,7 @@ pub(super) fn too_long(
 }
 
 /// Time step Δt (s) at and above which the window suggests a shorter time step. Below it, the window suggests a longer
-/// time step.
+/// time step. It is the longest time step that Abramian & Staron (2020) compare.
 const LONG_STEP_SECS: f64 = 5e-3;
 /// Touch tolerance (largest gap at which a contact pulls), in mean diameters, above which no hint on Δt is given,
 /// because Δt then changes cohesion less (`docs/theory.md`).

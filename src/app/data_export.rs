@@ -21,17 +21,18 @@ use crate::number::millis_text;
 use crate::sim::{Edit, Pull, RunEnding, Simulation};
 use crate::world::Disc;
 
-/// The user's choices for exported recordings.
+/// The user's choices for exported recordings (files of the grains and contacts of a run).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct DataChoices {
-    /// Folder of the recording. A relative path starts at the folder of all exported files.
+    /// Folder into which the files of grains and contacts are exported. A relative path starts at the folder of all
+    /// exported files.
     pub folder: PathBuf,
-    /// Simulated time between frames of the recording, s.
+    /// Simulated time between two exported states (frames) of the run, s.
     pub every_secs: f64,
-    /// True if each step becomes a frame; `every_secs` then has no effect.
+    /// True if the state after each step is exported as a frame; `every_secs` then has no effect.
     pub each_step: bool,
-    /// File formats of the recording.
+    /// Formats of the exported files of grains and contacts.
     pub formats: Vec<FormatName>,
 }
 
@@ -46,10 +47,10 @@ impl Default for DataChoices {
     }
 }
 
-/// State of the panel that exports recordings.
+/// State of the panel that exports recordings (files of the grains and contacts of a run).
 #[derive(Default)]
 pub(crate) struct DataPanel {
-    /// First and last simulated time of the recording, s; `None` for the whole run as computed so far.
+    /// First and last simulated time of the exported part of the run, s; `None` for the whole run as computed so far.
     pub stretch: Option<[f64; 2]>,
     pub overwrite: bool,
     pub export: Option<Work<String>>,
@@ -58,26 +59,27 @@ pub(crate) struct DataPanel {
     pub saved_run: String,
 }
 
-/// A request to export a recording.
+/// A request to export a recording (files of the grains and contacts of a run).
 pub(crate) struct DataOrder {
     pub folder: PathBuf,
     pub overwrite: bool,
-    /// File formats, and time between frames. If the time is `None`, each step becomes a frame.
+    /// File formats, and the simulated time between two exported states (frames), s. If this time is `None`, the state
+    /// after each step is exported.
     pub settings: DataSettings,
-    /// First and last simulated time of the recording, s; `None` for the whole run as computed so far.
+    /// First and last simulated time of the exported part of the run, s; `None` for the whole run as computed so far.
     pub stretch: Option<[f64; 2]>,
 }
 
 impl DataOrder {
-    /// Computes a run again, writes its recording, and returns a message for the user. `run` is `None` if the user
-    /// cancelled before the solver's thread had sent a copy of the run.
+    /// Computes a run again, writes the files of its grains and contacts, and returns a message for the user. `run` is
+    /// a copy of the run's history; it is `None` if the user cancelled before the solver's thread had sent the copy.
     pub(crate) fn write(&self, run: Option<TakenRun>, reporter: &Reporter) -> Result<String> {
         let nothing = || Ok("Stopped before the first frame".to_owned());
         self.settings.validate("data-every")?;
         let Some(run) = run else { return nothing() };
         let record = &run.world.record;
         let stretch = self.stretch_of(record)?;
-        // The folder is locked now, but the recording begins later, at the first moment of the interval.
+        // The folder is locked now, but the first file is written later, at the first time of the exported part.
         let mut folder = Some(RecordingFolder::of(&self.folder, self.overwrite)?);
         let mut recording: Option<Recording> = None;
         let start = record.start().observables();
@@ -115,7 +117,8 @@ impl DataOrder {
         })
     }
 
-    /// Returns the first and last simulated time of the recording, s; −∞ and ∞ if the user chose the whole run.
+    /// Returns the first and last simulated time of the exported part of a run, s; −∞ and ∞ if the user chose the whole
+    /// run. The error names a time that is outside the run or a last time before the first.
     fn stretch_of(&self, record: &WorldRecord) -> Result<[f64; 2]> {
         let Some([from, to]) = self.stretch else { return Ok([f64::NEG_INFINITY, f64::INFINITY]) };
         let (first, last) = (record.start().time_secs(), record.end_secs());
@@ -134,8 +137,8 @@ impl DataOrder {
     }
 }
 
-/// Returns the description of a run that its recording contains: the scene, its settings, and their later changes. The
-/// recording begins at the present state of `simulation` and ends at `until_secs`.
+/// Returns the description of a run for its exported files: the scene, its settings, and their later changes. The
+/// exported part begins at the present state of `simulation` and ends at the simulated time `until_secs`, s.
 fn facts(run: &TakenRun, simulation: &Simulation, until_secs: f64) -> Result<RunFacts> {
     let record = &run.world.record;
     let mut scene = run.start.scene.clone();

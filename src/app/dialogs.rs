@@ -14,7 +14,8 @@ pub(crate) enum Chosen {
     Folder(PathBuf),
 }
 
-/// The dialog for a file or folder that is open; at most one dialog is open.
+/// The dialog that the window shows at present, in which the user chooses a file or a folder; empty if there is none.
+/// At most one dialog is open.
 #[derive(Default)]
 pub(crate) struct FileDialog {
     waiting: Option<Work<Option<Chosen>>>,
@@ -46,8 +47,8 @@ impl FileDialog {
     }
 }
 
-/// Returns no choice, because the browser version has no dialogs for files: the user drops files on the page, and saved
-/// files are downloads.
+/// Replaces the dialog for files and folders in the browser version, and always returns `None` (no choice): the user
+/// drops files on the page, and saved files are downloads.
 #[cfg(target_arch = "wasm32")]
 fn choose(_: &Path, _: bool) -> Result<Option<Chosen>> {
     Ok(None)

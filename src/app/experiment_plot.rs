@@ -80,8 +80,10 @@ fn shear_ratio(now: &Snapshot) -> f64 {
     xy.abs() / yy
 }
 
-/// Returns the contact stresses σxx, ½(σxy + σyx) and σyy, each multiplied by the area of the sample, J (formula of
-/// Love and Weber, compression positive).
+/// Returns the mean stresses σxx, ½(σxy + σyx) and σyy of the sample due to its contacts, each multiplied by the area
+/// of the sample; the unit is therefore J. Each contact adds the product of its force, N, and the vector between the
+/// two centres, m (formula of Love and Weber; at a wall, the touched point replaces the centre). Compression is
+/// positive.
 fn stress(now: &Snapshot) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for contact in &now.contacts {
@@ -120,9 +122,10 @@ pub(super) fn events(scene: &Scene) -> Vec<f64> {
     times
 }
 
-/// Simulated time over which the change of a quantity per second is averaged, s.
+/// Least simulated time between the two values from which the plot computes a change per second, s. A shorter time
+/// would show the fluctuations between single frames.
 const RATE_SECS: f64 = 0.1;
-/// Largest number of points of a drawn curve.
+/// Largest number of points of a drawn curve. If the window has shown more frames, the curve omits some of them.
 const MOST_POINTS: usize = 2_000;
 
 /// Values of an experiment's main quantity in the frames that the window has shown, by simulation and number of step.

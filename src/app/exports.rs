@@ -51,9 +51,8 @@ impl Exports {
         !self.files.is_empty() || self.data.export.is_some() || self.film.is_some()
     }
 
-    /// Writes a file into a folder on another thread. `job` receives copies of runs and returns the path of the file.
-    /// The job starts when the solver's thread has sent the copies through the channels `runs`. Files are written one
-    /// at a time.
+    /// Writes a file into a folder on another thread; only one file is written at a time. `job` writes the file from
+    /// the copies of runs that the solver's thread sends through the channels `runs`, and returns the path of the file.
     pub(super) fn write<R: Send + 'static>(
         &mut self,
         context: &egui::Context,

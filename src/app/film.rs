@@ -1,5 +1,5 @@
-//! Videos and GIF animations of a recorded run. A separate thread computes the run again, with the same bits, and draws
-//! it at equal intervals of simulated time.
+//! Videos and GIF animations of a recorded run. A separate thread computes the run again, to bitwise identical states,
+//! and draws it at equal intervals of simulated time.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -49,7 +49,8 @@ type Moments = Vec<Vec<(usize, Settings)>>;
 /// A request to export a video or an animation.
 pub(crate) struct FilmOrder {
     pub format: FilmFormat,
-    /// Style and arrangement of all pictures. The states of its simulations are replaced for each picture.
+    /// The picture from which all pictures of the film are made. For each picture of the film, the states of its
+    /// simulations are replaced; their arrangement and the drawing style stay.
     pub picture: ScenePicture,
     pub slumps: bool,
     /// Pictures per second of the film. The file format must be able to express this rate.

@@ -8,7 +8,7 @@ use egui::Response;
 use crate::sim::{Settings, Stepper};
 use crate::solver::METHODS;
 
-/// Text of the page whose last table is the glossary.
+/// Text of the documentation's page on theory. The last table on this page is the glossary.
 const PAGE: &str = include_str!("../../docs/theory.md");
 /// Terms of the glossary that are also common words or letters. The window shows no definitions of these terms.
 const COMMON: [&str; 2] = ["d", "stop"];

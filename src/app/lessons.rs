@@ -79,8 +79,8 @@ fn waits_at_start(run: &WatchedRun) -> bool {
 }
 
 /// Seed of the lessons' pile. In all lessons the slump of this pile is within the interquartile range of the slumps of
-/// sixteen piles with other seeds. The slump of the built-in pile is not, because that pile was chosen to show the
-/// pattern of Abramian & Staron (2020).
+/// sixteen piles with other seeds. The slump of the built-in pile is not, because the seed of that pile was chosen to
+/// show in a single run how slump depends on Bond number and time step in Abramian & Staron (2020).
 const SEED: u64 = 15;
 /// CSV list of the grains at rest in the pile made from [`SEED`]. The list is stored because computing the deposition
 /// of this pile takes seconds.
@@ -258,7 +258,7 @@ pub const LESSONS: [Lesson; 7] = [
     },
 ];
 
-/// Bond number of lesson 4, at which the piles slump under both contact laws (`moreau` and `range`).
+/// Bond number of lesson 4. It is small enough that the piles slump under both contact laws (`moreau` and `range`).
 const LESSON_4_BOND: f64 = 8.0;
 /// Time step at the beginning of lesson 2 (a pile at rest), s. The user shortens the time step later.
 const LONG_STEP_SECS: f64 = 5e-3;

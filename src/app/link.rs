@@ -46,7 +46,7 @@ pub(crate) struct RunLink {
     worlds: Vec<LinkedWorld>,
 }
 
-/// One world (simulation) of a link.
+/// One of the worlds (simulations) that a link describes.
 #[derive(Clone, Debug, PartialEq)]
 struct LinkedWorld {
     /// Settings, each with the number of the step after which they apply, in order of steps. The first number is 0.

@@ -9,8 +9,8 @@ use egui_wgpu::{Callback, CallbackResources, CallbackTrait, ScreenDescriptor};
 
 use crate::render::{Legend, Painter, Picture, PictureArea};
 
-/// Texture format of the render target. The owner of an egui renderer must store it among the resources of the paint
-/// callbacks.
+/// Texture format of the render target, for which the paint callbacks create their GPU pipelines. The owner of an egui
+/// renderer must store it among the resources of the paint callbacks; otherwise they assume `Rgba8Unorm`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TargetFormat(pub wgpu::TextureFormat);
 

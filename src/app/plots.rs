@@ -18,14 +18,14 @@ use crate::sim::{Beside, Observables, Quantity};
 
 /// Smallest width of a plot, points. In a narrower window a row has fewer plots.
 pub(super) const LEAST_WIDTH: f32 = 150.0;
-/// Smallest length of a slump axis. Most runs fit into it, so that their plots have equal axes and compare by eye.
+/// Smallest length of a slump axis. Most slumps are smaller, so the axes of most runs are equal and easy to compare.
 pub(super) const LEAST_SLUMP: f64 = 0.4;
 /// Name of the quantity that is also plotted for runs from other initial states (other seeds).
 const OTHERS: &str = "slump";
 /// Colour strength of the curves of runs from other initial states, relative to the curve of the visible run.
 const OTHERS_STRENGTH: f32 = 0.45;
 
-/// Line styles of the second and third curve in the plot of a quantity.
+/// Line styles of the first and second additional curve in a plot, such as the mean next to the largest overlap.
 const BESIDE: [LineStyle; 2] =
     [LineStyle::Dashed { length: 6.0 }, LineStyle::Dotted { spacing: 4.0 }];
 
@@ -176,7 +176,7 @@ fn others(world: &WorldCurve, now_secs: f64) -> Vec<Line<'static>> {
     band.runs.iter().map(run).chain([mean.style(style).width(1.2)]).collect()
 }
 
-/// Returns the lowest and highest value that the vertical axis of a plot shows at least.
+/// Returns the lowest and highest value on the vertical axis. On a linear axis the values are divided by `factor`.
 fn least_span(data: &PlotData, quantity: &Quantity<Observables>, factor: f64) -> [f64; 2] {
     let value = |row: &Observables| (quantity.value)(row);
     let scaled = |value: f64| if quantity.logarithmic { value.log10() } else { value / factor };
@@ -186,7 +186,7 @@ fn least_span(data: &PlotData, quantity: &Quantity<Observables>, factor: f64) ->
     with_room(values.chain(always.iter().copied()), quantity.logarithmic)
 }
 
-/// Returns the second and third curve in the plot of a quantity, if this run has values for them.
+/// Returns the additional curves (dashed, dotted) in the plot of a quantity, if this run has values for them.
 fn beside(
     curve: &Curve,
     quantity: &Quantity<Observables>,

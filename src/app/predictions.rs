@@ -48,9 +48,9 @@ pub(super) fn last_rows(frame: &LiveFrame) -> Option<Vec<Observables>> {
     last.map(|row| row.filter(ended)).collect()
 }
 
-/// Returns the observables of the last step with the first Δt of the run and of the last step of the run; `None` until
-/// the pile was watched for [`WATCHED_SECS`] with a shorter Δt. While a slider is dragged, a few steps have other values
-/// of Δt.
+/// Returns the observables (measured quantities) of two steps: the last step with the first Δt of the run, and the last
+/// step of the run. `None` until the pile has been watched for [`WATCHED_SECS`] after the change to a shorter Δt. The
+/// steps between the two may have other values of Δt, because the user drags a slider to the new value.
 pub(super) fn rows_around_change(frame: &LiveFrame) -> Option<Vec<Observables>> {
     let curve = &frame.worlds.first()?.curve;
     let last = *curve.last()?;
@@ -112,7 +112,8 @@ pub(super) fn two_laws(rows: &[Observables]) -> Option<(usize, String)> {
     Some((usize::from(range.abs() < 0.5 * rigid.abs()), text))
 }
 
-/// Evaluates the question of lesson 5: under which friction law does a strong pile slump more?
+/// Evaluates the question of lesson 5: does a pile with a large Bond number slump more if the bound on friction is the
+/// shifted cone or the compressive cone?
 pub(super) fn two_cones(rows: &[Observables]) -> Option<(usize, String)> {
     let [shifted, compressive] = rows else { return None };
     let [left, right] = [shifted.slump, compressive.slump];

@@ -25,7 +25,8 @@ use crate::render::Theme;
 pub struct Preferences {
     /// Light theme, dark theme, or the theme of the desktop.
     pub theme: egui::ThemePreference,
-    /// Drawing style of the scene. Only its colours of background and text follow the theme of the window instead.
+    /// Drawing style of the scene. Its `theme` has no effect: the colours of background and text follow the theme of
+    /// the window.
     pub style: Style,
     /// The page of the sidebar that is open.
     pub page: Option<Page>,
@@ -127,7 +128,8 @@ impl Preferences {
         Ok(())
     }
 
-    /// Returns the speed of playing, as a command to the solver's thread needs it.
+    /// Returns the speed of playing in the form in which commands to the solver's thread contain it. It is the maximum
+    /// if the user wants the run to be computed as fast as the machine can.
     pub(crate) fn pace(&self) -> Pace {
         if self.full_speed { Pace::Max } else { Pace::RealTime(self.speed) }
     }

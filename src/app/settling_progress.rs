@@ -10,11 +10,13 @@ use crate::live::{LoadingProgress, Preview};
 use crate::scene::Settling;
 use crate::sim::{GrainView, Snapshot};
 
-/// Orders of magnitude by which the speed of the fastest grain is assumed to decrease until a pile is at rest.
+/// Orders of magnitude by which the speed of the fastest grain is assumed to decrease until a pile is at rest. With a
+/// larger value, the estimated finished fraction of the deposition would be larger.
 const ORDERS_OF_SETTLING: f64 = 3.5;
 /// Least time between two displayed pictures of the pile. Users would not notice more frequent pictures.
 const INTERVAL: Duration = Duration::from_millis(30);
-/// Finished fraction of a deposition at which the window begins to estimate the remaining computing time.
+/// Finished fraction of a deposition at which the window begins to estimate the remaining computing time. At a smaller
+/// fraction the estimate would be too inaccurate, because the elapsed time is divided by the fraction.
 const PART_THAT_TELLS: f64 = 0.05;
 
 /// Progress of one deposition.

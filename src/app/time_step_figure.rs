@@ -57,9 +57,10 @@ struct FigureSeries {
 pub(super) struct TimeStepFigure(Vec<FigureSeries>);
 
 impl TimeStepFigure {
-    /// Makes the plot from the results of all started runs (`released`). `None` if no result has a confidence interval
-    /// yet. If several simulations (`worlds`) are compared, a curve that contains exactly one of them has the colour of
-    /// that simulation. If there is only one simulation, its settings do not change the colours of the curves.
+    /// Makes the plot from `released`, the results of all runs that the user has started. `None` if no result has a
+    /// confidence interval yet. `worlds` are the settings of the visible simulations. If several simulations are
+    /// visible, and only one of them has the settings of a curve (apart from Δt), the curve has the colour of this
+    /// simulation. A single simulation has no effect on the colours.
     pub(super) fn new<'a>(
         released: impl Iterator<Item = &'a Released>,
         worlds: &[Settings],

@@ -25,8 +25,8 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
     requests.into_iter().for_each(|request| state.carry_out(&context, request));
 }
 
-/// Opens the last file that the user dropped in this frame. The browser version opens files elsewhere, because it must
-/// wait for their content.
+/// Opens the last file that the user dropped in this frame. Does nothing in the browser version: there the page first
+/// reads the content of a dropped file and then calls `browser::open_file`.
 fn take_dropped_files(context: &Context, state: &mut AppState) {
     let dropped = context.input(|input| input.raw.dropped_files.last().cloned());
     let Some(file) = dropped.filter(|_| !IN_BROWSER) else { return };

@@ -37,7 +37,8 @@ pub struct WatchedRun {
     pub(crate) draft: Option<(usize, Settings)>,
     /// Index of the simulation that the controls change.
     pub(crate) selected: usize,
-    /// The grain whose contacts are listed.
+    /// The grain that the user selected with a click, whose state and contacts the window shows; `None` if no grain is
+    /// selected.
     pub pinned: Option<GrainRef>,
 }
 
@@ -158,9 +159,9 @@ impl WatchedRun {
         stem(name, &settings, self.frame.time_secs())
     }
 
-    /// Returns the last earlier run for comparison with the present run (the "ghost"), if it has the same number of
-    /// simulations and at most one of them has other settings. Other earlier runs are not shown, because their numbers
-    /// could not be compared.
+    /// Returns the run to which Undo goes back, as the "ghost" that is drawn behind the present run for comparison.
+    /// `None` if this earlier run has another number of simulations, or if more than one simulation has other settings
+    /// in it, because the results could then not be compared.
     pub(crate) fn ghost(&self) -> Option<&PastRun> {
         let (last, worlds) = (self.undo_target()?, &self.frame.worlds);
         let others = last.worlds.iter().zip(worlds.iter());

@@ -45,8 +45,9 @@ const RUN_EXAMPLES: &str = "Examples:
   slump run cradle --frames out/ --save end.slump     # resume from this file:
   slump run --restart end.slump --duration 3 --frames more/";
 
-/// Returns the definition of the command line. `-h` shows its most important options; `--help` also states the settings
-/// of the built-in pile.
+/// Returns the definition of the command line: all commands and options, with their help texts. The short help (`-h`)
+/// shows only the most important options. The long help (`--help`) shows all options, each with its value in the
+/// built-in pile if it is a setting.
 pub fn command() -> Command {
     let pile = built_in(Config::DEFAULT_SCENE).map(|scene| scene.settings()).ok();
     let root = Cli::command();
@@ -83,8 +84,9 @@ fn scene_first(run: Command) -> Command {
     run.mut_arg("scene", scene).mut_arg("headless", |arg| arg.hide(true)).after_help(RUN_EXAMPLES)
 }
 
-/// Applies the function `told` to the arguments of all commands that take a scene. An argument that looks like a
-/// negative number is always parsed as a value, so that the option's own check refuses it with a clear message.
+/// Applies the function `told`, which completes the help text of an option, to all options of those commands that take
+/// a scene. Also makes all options of all commands accept values that look like negative numbers, so that the check of
+/// each option can refuse a negative value with a clear message.
 fn tell(command: Command, told: &dyn Fn(Arg) -> Arg) -> Command {
     let command = command.mut_args(|arg| match arg.get_action().takes_values() {
         true => arg.allow_negative_numbers(true),
@@ -103,10 +105,11 @@ pub(super) fn completions(shell: clap_complete::Shell) -> String {
     String::from_utf8_lossy(&text).into_owned()
 }
 
-/// Returns the manual page of the program, or of the command with these names, such as `problem solve`.
+/// Returns the manual page of the command whose words are `names`, such as `problem` and `solve`, or of the whole
+/// program if `names` is empty.
 ///
 /// # Errors
-/// If there is no such command.
+/// If there is no command with these words.
 #[cfg(feature = "manual")]
 pub(super) fn page(names: &[String]) -> Result<String> {
     let mut command = command();

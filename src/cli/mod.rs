@@ -66,16 +66,19 @@ enum CliCommand {
         /// Width of the box, in mean diameters
         #[arg(long, default_value_t = NewPile::default().box_width_in_diameters)]
         box_width: f64,
-        /// Seed of diameters and positions
+        /// Seed of the random diameters and positions
         #[arg(long, default_value_t = NewPile::default().seed)]
         seed: u64,
         /// Deposition: the way to place the grains
         #[arg(long, value_name = "WAY", default_value_t, value_parser = parser_of::<Deposition>())]
         deposition: Deposition,
-        /// Distribution of the diameters, with mean d: uniform:S (within d(1 ± S)), normal:S and lognormal:S (standard deviation S, cut off at 2.5 S), bidisperse:RATIO,FRACTION (number fraction of the large grains), or sieves:DIAMETER=FRACTION,… (mass fraction that passes)
+        /// Distribution of the diameters, whose mean is d: uniform:S (from d·(1−S) to d·(1+S)), normal:S (standard
+        /// deviation S·d), lognormal:S (standard deviation S of the logarithm), bidisperse:RATIO,FRACTION (large by
+        /// small diameter, number fraction of the large grains), or sieves:DIAMETER=FRACTION,… (openings in any unit,
+        /// mass fraction that passes); normal and lognormal are cut off at 2.5 standard deviations
         #[arg(long, default_value_t)]
         sizes: Sizes,
-        /// The file to write
+        /// CSV file for the discs: x, y and radius, metres
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
         /// Replace the file if it exists; without this option an existing file is refused
@@ -84,7 +87,7 @@ enum CliCommand {
     },
     /// List the built-in scenes, steppers, solvers and friction models
     List {
-        /// List only these
+        /// The only list to print [default: all lists]
         #[arg(value_name = "WHAT")]
         what: Option<Listed>,
     },
@@ -151,7 +154,6 @@ fn parse() -> std::result::Result<Option<Cli>, (u8, String)> {
         .map(Some)
         .or_else(|error| match error.use_stderr() {
             true => Err((REFUSED, refusal_of(&error, command()))),
-            // The user asked for help or the version.
             false => {
                 note_printed(error.print());
                 Ok(None)
@@ -159,9 +161,9 @@ fn parse() -> std::result::Result<Option<Cli>, (u8, String)> {
         })
 }
 
-/// Smallest stack of the main thread, bytes, with which the program starts. Measured runs needed between 512 and 768
-/// KiB. A window that opens a saved session needs more than 2 MiB, but a run without a window must not be refused for
-/// that reason. The default stack is usually 8 MiB on systems with windows.
+/// Smallest stack of the main thread, bytes; with less, the program does not start. Runs were measured to need 512 to
+/// 768 KiB. A window that opens a saved session needs more than 2 MiB, but this limit must not stop a run without a
+/// window. The default stack is usually 8 MiB on systems with windows.
 #[cfg(target_os = "linux")]
 const LEAST_STACK_BYTES: u64 = 1 << 20;
 
@@ -328,14 +330,14 @@ enum ProblemCommand {
         #[arg(long)]
         overwrite: bool,
     },
-    /// Solve a problem file, or a text file of Siconos, and report residual and time
+    /// Solve the contact problem in a file of Slump or of the program Siconos, and report residual and time
     Solve {
-        /// The problem file
+        /// File with a contact problem: JSON of `slump problem dump`, or text of the program Siconos
         file: PathBuf,
         /// The method
         #[arg(long, value_name = "NAME", default_value = "auto", value_parser = parser_of::<Method>())]
         method: Method,
-        /// Residual to reach
+        /// Residual to reach, dimensionless
         #[arg(long, value_name = "X", default_value_t = 1e-8)]
         tolerance: f64,
         /// Stop after this many sweeps
@@ -344,17 +346,17 @@ enum ProblemCommand {
         /// Repeat the solve this many times and report the least time
         #[arg(long, value_name = "N", default_value_t = 1)]
         repeat: u32,
-        /// Search for solutions of Coulomb's law from this many starts (the impulses of the file, zero, then random impulses),
-        /// and report their distances
+        /// Search for solutions under Coulomb friction from this many starts (the impulses of the file, zero, then
+        /// random impulses), and report how much their velocities differ, m/s
         #[arg(long, value_name = "N", default_value_t = 0, conflicts_with = "without_bodies", value_parser = clap::value_parser!(u32).range(..=i64::from(MOST_STARTS)))]
         starts: u32,
-        /// Use only W, even if the file has bodies
+        /// Solve with the matrix W (effect of impulses on contact velocities), even if the file has the bodies
         #[arg(long)]
         without_bodies: bool,
         /// Write velocities and impulses to this file (JSON)
         #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
-        /// Replace that file if it exists; without this option an existing file is refused
+        /// Replace the file of --out if it exists; without this option an existing file is refused
         #[arg(long, requires = "out")]
         overwrite: bool,
     },
@@ -436,7 +438,8 @@ impl ProblemCommand {
     }
 }
 
-/// Number of sweeps after which a solve reports its progress. With a smaller number, short solves also report.
+/// Number of sweeps from which on the program prints the residual of an unfinished solve, each time that the number has
+/// doubled. With a smaller limit, the residuals of short solves are also printed.
 const LONG_SOLVE_SWEEPS: u32 = 4_096;
 
 /// Prints the solutions of a contact problem that were found from several sets of initial impulses.

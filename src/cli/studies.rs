@@ -23,10 +23,10 @@ use crate::study::{
 };
 use crate::threads::make_threads;
 
-/// The commands of studies.
+/// The commands that compute one result from many simulations, such as `slump sweep` and `slump budget`.
 #[derive(clap::Subcommand)]
 pub(super) enum StudyCommand {
-    /// Run a study: all combinations of lists and ranges of parameters, on all cores
+    /// Run a study: one run for each combination of the parameter values in its lists and ranges, on all cores
     #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
     Sweep {
         /// The study file (NAME.toml)
@@ -35,10 +35,10 @@ pub(super) enum StudyCommand {
         /// Folder for the results; the same command continues where it stopped
         #[arg(long, value_name = "DIR", required = true)]
         out: Option<PathBuf>,
-        /// Run only part K of N; `slump sweep merge` joins the parts
+        /// Run only part K of N parts of the study; `slump sweep merge` joins the parts
         #[arg(long, value_name = "K/N")]
         shard: Option<String>,
-        /// Run the study's quick pass, which is coarser
+        /// Run the quick pass of the study: fewer runs, with the values in the table `quick` of the study file
         #[arg(long)]
         quick: bool,
         /// Remove results of another study, or unreadable results, from the folder
@@ -55,19 +55,23 @@ pub(super) enum StudyCommand {
         // Boxed because this variant is by far the largest.
         #[command(flatten)]
         config: Box<Config>,
-        /// Result to explain: a column (slump, max_overlap, coordination, …) at the end of the run, or mean(x), min(x), max(x), total(x) of it; can be given several times [default: slump]
+        /// Result to explain: the value of a column (slump, max_overlap, coordination, …) at the end of the run, or
+        /// mean(x), min(x), max(x) or total(x) of a column x between the times --from and --to; can be given several
+        /// times [default: slump]
         #[arg(long = "quantity", value_name = "X", help_heading = "Budget")]
         quantities: Vec<String>,
-        /// Begin of the interval of mean, min, max and total, simulated seconds [default: 0]
+        /// Simulated time at which mean(x), min(x), max(x) and total(x) of a result x begin, seconds [default: 0]
         #[arg(long = "from", value_name = "SECONDS", help_heading = "Budget")]
         from_secs: Option<f64>,
-        /// End of that interval and of the runs, simulated seconds [default: the duration of the scene]
+        /// Simulated time at which the runs end, and with them mean(x), min(x), max(x) and total(x) of a result x,
+        /// seconds [default: the duration of the scene]
         #[arg(long = "to", value_name = "SECONDS", help_heading = "Budget")]
         to_secs: Option<f64>,
-        /// Largest half-width of the intervals, in the unit of the result [default: a tenth of its value]
+        /// Half-width at which the confidence intervals are narrow enough, so that no more runs follow, in the unit of
+        /// the result [default: a tenth of its value]
         #[arg(long, value_name = "X", help_heading = "Budget")]
         within: Option<f64>,
-        /// Time limit on all cores: 90s, 30min, 2h
+        /// Limit of the computing time, as wall-clock time with all cores in use: 90s, 30min, 2h
         #[arg(long = "cost", value_name = "TIME", help_heading = "Budget", default_value = "5min", value_parser = secs_of)]
         cost_secs: f64,
         /// Compute only part K of N of the initial states, for example on another machine; the same command without this option joins the parts in the folder
@@ -81,7 +85,10 @@ pub(super) enum StudyCommand {
     Calibrate {
         #[command(flatten)]
         config: Box<Config>,
-        /// Measured value with its standard error, as in slump=0.35±0.02 (or 0.35+-0.02), at the end of the run: a quantity of `slump budget`, such as repose_angle (degrees) or run_out (m), which are slope and half base of the triangle with the heap's mean height and mean distance from the middle; can be given several times
+        /// Measured value with its standard error, as in slump=0.35±0.02 (or 0.35+-0.02), at the end of the run: a
+        /// quantity of `slump budget`, such as repose_angle (degrees) or run_out (m), the slope and the half base of a
+        /// triangular heap in which the grains have the same mean height and the same mean distance from the middle;
+        /// can be given several times
         #[arg(
             long = "target",
             value_name = "X=VALUE±ERROR",
@@ -97,46 +104,52 @@ pub(super) enum StudyCommand {
             required = true
         )]
         vary: Vec<String>,
-        /// Number of runs, each with another initial state, from --seed or 1 on [default: 40, 100, 200 or 350 for 1 to 4 parameters]
+        /// Number of runs, each from another initial state; the first seed is that of --seed, or 1, and the following
+        /// seeds are the next integers [default: 40, 100, 200 or 350 for 1 to 4 parameters]
         #[arg(long, value_name = "N", help_heading = "Calibration")]
         runs: Option<usize>,
         /// Folder for report, picture and numbers; the same command continues where it stopped
         #[arg(long, value_name = "DIR", help_heading = "Calibration")]
         out: PathBuf,
     },
-    /// Compute the figures of the paper, and the maps that its conclusion asks for
+    /// Compute the figures of the paper (Abramian & Staron, 2020), and the maps over two parameters that the conclusion
+    /// of the paper asks for
     Reproduce {
-        /// Figures, or all of them
+        /// Names of the figures; `all` computes all figures
         #[arg(required = true, value_name = "FIGURE", value_parser = PossibleValuesParser::new(figure_names()))]
         figures: Vec<String>,
         /// Folder for figures, tables and report; the same command continues where it stopped
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
-        /// A coarser version that takes a few minutes
+        /// Compute a coarser version of the figures, in a few minutes
         #[arg(long)]
         quick: bool,
     },
     /// Chart the error of every solver against its time, for single steps and whole simulations
     Chart(ChartOptions),
-    /// Run every solver on hard scenes, and report whether it holds, degrades or fails at each level
+    /// Run every solver on scenes that are made to break solvers, and report whether it holds, degrades or fails at
+    /// each level of difficulty
     Stability {
-        /// Challenges [default: all]
+        /// Names of the scenes to run [default: all]
         #[arg(value_name = "SCENE")]
         scenes: Vec<String>,
-        /// Folder for the table and its picture, and for the stability maps if no challenge is named
+        /// Folder for the table of verdicts and its picture; if no scene is named, also for the stability maps, which
+        /// show for which values of two parameters a solver keeps a scene at rest
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
-        /// File for the table, as CSV
+        /// CSV file for the table of verdicts
         #[arg(long, value_name = "FILE")]
         table: Option<PathBuf>,
-        /// Replace that file if it exists; without this option an existing file is refused
+        /// Replace the file of --table if it exists; without this option an existing file is refused
         #[arg(long, requires = "table")]
         overwrite: bool,
-        /// Leave out the longest runs; takes under a minute (the tests compare with this table)
+        /// Leave out the longest runs, so that the command takes under a minute; the tests of Slump check this shorter
+        /// table
         #[arg(long)]
         quick: bool,
     },
-    /// Compare Slump with published experiments: quantity, interval, verdict and cost
+    /// Compare Slump with published experiments, and report each measured quantity with its 95 % interval, its verdict
+    /// and its cost
     Validate(ValidateOptions),
 }
 
@@ -149,10 +162,10 @@ pub(super) enum SweepAction {
         /// Folders with parts of the study
         #[arg(required = true, value_name = "DIR")]
         parts: Vec<PathBuf>,
-        /// Folder for runs.csv [default: that of the first part]
+        /// Folder for runs.csv [default: the folder of the first part]
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
-        /// The parts belong to the quick pass of the study
+        /// The parts belong to the quick pass of the study (the table `quick` of the study file)
         #[arg(long)]
         quick: bool,
     },
@@ -160,7 +173,7 @@ pub(super) enum SweepAction {
     Count {
         /// The study file (NAME.toml)
         study: PathBuf,
-        /// Count the runs of the study's quick pass
+        /// Count the runs of the quick pass of the study (the table `quick` of the study file)
         #[arg(long)]
         quick: bool,
     },

@@ -28,7 +28,7 @@ pub(super) enum EarlierFiles {
     /// The new run ends with an error if the folder contains files of an earlier run.
     Refused,
     Cleared,
-    /// The files are kept, because the run is resumed.
+    /// The files are kept and do not cause an error: `slump reproduce` draws into the folder of its other figures.
     Kept,
 }
 
@@ -43,7 +43,8 @@ impl RunFolder {
     /// Creates the folder if it is missing, locks it for this run, and checks its contents.
     ///
     /// # Errors
-    /// If the folder cannot be written to, if another run uses it, or if it contains files that must not be there.
+    /// If the folder cannot be written to, if another run uses it, or if it contains files of an earlier run that
+    /// `earlier` does not allow ([`Self::check`]).
     pub(super) fn claim(path: &Path, earlier: EarlierFiles) -> Result<Self> {
         let folder = Self::lock(path, earlier)?;
         folder.check("")?;
@@ -65,17 +66,19 @@ impl RunFolder {
         &self.path
     }
 
-    /// True if a run may be resumed from the contents of the folder, because the user did not ask to remove them.
+    /// True if the run of an earlier call may be resumed from the files in the folder. False if the user asked to
+    /// remove these files, or if they are kept without being read ([`EarlierFiles::Kept`]).
     pub(super) fn may_go_on(&self) -> bool {
         self.earlier == EarlierFiles::Refused
     }
 
-    /// Checks the contents of the folder. If files of an earlier run are to be removed, returns an error if another
-    /// program wrote one of them. Otherwise returns an error if there are files of an earlier run; its message contains
-    /// `why`, the reason why no run can be resumed from the folder.
+    /// Checks the files in the folder that have the names of a run's files. With [`EarlierFiles::Refused`] every such
+    /// file is an error; the message contains `why`, the reason why no run can be resumed from the folder. With
+    /// [`EarlierFiles::Cleared`] such a file is an error only if another program wrote it, because the run is going to
+    /// remove it. With [`EarlierFiles::Kept`] nothing is checked.
     ///
     /// # Errors
-    /// Names the first file that must not be there.
+    /// The message names the first file that is an error.
     pub(super) fn check(&self, why: &str) -> Result<()> {
         let names = match self.earlier {
             EarlierFiles::Kept => return Ok(()),
@@ -93,9 +96,9 @@ impl RunFolder {
         Err(Error::value("frames", self.path.display(), allowed))
     }
 
-    /// Prepares the folder for a resumed run. Removes the pictures that are not in `marks` (they are later than the
-    /// checkpoint) and unfinished files of a process that was killed, including an unfinished `animation` in the
-    /// folder.
+    /// Prepares the folder for a run that is resumed from a checkpoint, whose data about the outputs are `marks`.
+    /// Removes the pictures that `marks` does not list, because they are later than the checkpoint. Also removes
+    /// unfinished files of a process that was killed, including an unfinished `animation` (GIF or video) in the folder.
     ///
     /// # Errors
     /// Names a picture or table that is missing or incomplete, or a picture that cannot be removed.

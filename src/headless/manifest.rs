@@ -86,10 +86,11 @@ pub(super) struct RunEntry {
     pub went_on_at: Vec<Instant>,
     /// Warnings about the run, each with the change of settings that is most likely to help.
     pub alarms: Vec<AlarmEntry>,
-    /// Cohesive time Bond·Δt/√(d/g), dimensionless (§3.3 of Abramian & Staron 2020).
+    /// Cohesive time Bond·Δt/√(d/g), dimensionless (§3.3 of Abramian & Staron 2020). Bond is the Bond number, Δt the
+    /// time step, s, d the mean diameter, m, and g gravity, m/s².
     pub cohesive_time: f64,
-    /// Capture speed Bond·g·Δt, the opening speed that one step of cohesion cancels, m/s (eq. 9 of Abramian & Staron
-    /// 2020).
+    /// Capture speed Bond·g·Δt, m/s: the opening speed of a contact that cohesion cancels in one step (eq. 9 of
+    /// Abramian & Staron 2020). Bond is the Bond number, g gravity, m/s², and Δt the time step, s.
     pub capture_speed: f64,
     /// Substeps per step; 1 if the stepper solves each step as a whole.
     pub substeps: u32,
@@ -100,8 +101,8 @@ pub(super) struct RunEntry {
     /// springs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_time_secs: Option<f64>,
-    /// Work that breaks the bond (cohesive contact) of two grains of mean mass; missing if the contact law does not
-    /// define this work.
+    /// Work that pulls two bonded grains of mean mass apart slowly: in J, and divided by the work that lifts one of
+    /// them by the mean diameter. Missing if the contact law does not define this work.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fracture_work: Option<FractureWork>,
 }

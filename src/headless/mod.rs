@@ -23,7 +23,8 @@ use folder::EarlierFiles;
 
 /// Draws Figs. 3, 4 and 7 of Abramian & Staron (2020) into a folder, with any available renderer.
 ///
-/// # Errors If the folder cannot be written to.
+/// # Errors
+/// If the folder cannot be written to.
 pub(crate) fn draw_snapshots(folder: &Path) -> Result<()> {
     figures::draw(folder, EarlierFiles::Kept, HeadlessOptions::default().renderer)
 }

@@ -35,12 +35,12 @@ impl std::str::FromStr for PictureSize {
     }
 }
 
-/// Overlays on the grains.
+/// Overlays: additional marks that pictures show on the grains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Overlay {
-    /// Contact forces as links
+    /// Contact forces as lines between the grains
     Forces,
-    /// A mark on each grain that turns with it
+    /// A mark on each grain, which turns with the grain
     Angles,
 }
 
@@ -48,7 +48,7 @@ pub(crate) enum Overlay {
 #[derive(Clone, Debug, Default, PartialEq, clap::Args)]
 #[command(next_help_heading = "Pictures")]
 pub(crate) struct HeadlessOptions {
-    /// Draw pictures without a window; with --frames alone, the paper's Fig. 3, 4 and 7
+    /// Draw pictures without a window; with --frames alone, Figs. 3, 4 and 7 of the paper (Abramian & Staron, 2020)
     #[arg(long)]
     pub headless: bool,
     /// Folder for pictures, observables.csv and manifest.json
@@ -69,11 +69,12 @@ pub(crate) struct HeadlessOptions {
     /// Also write the pictures as an animation (GIF), 25 per second
     #[arg(long, value_name = "FILE")]
     pub gif: Option<PathBuf>,
-    /// Also write the pictures as a video (MP4, by ffmpeg), at the pace of simulated time
+    /// Also write the pictures as a video (MP4, by ffmpeg), which shows one simulated second per second unless
+    /// --video-speed is given
     #[arg(long, value_name = "FILE", conflicts_with = "times")]
     pub video: Option<PathBuf>,
-    /// Simulated seconds per second of video; 0.1 is slow motion by ten, with 250 pictures per simulated second unless
-    /// --fps is given [default: 1]
+    /// Simulated seconds per second of video; 0.1 is slow motion by a factor of ten, with 250 pictures per simulated
+    /// second unless --fps is given [default: 1]
     #[arg(long, value_name = "N")]
     pub video_speed: Option<f64>,
     /// Overlay on the grains
@@ -92,10 +93,10 @@ pub(crate) struct HeadlessOptions {
         alias = "color-scale"
     )]
     pub colour_scale: Vec<f64>,
-    /// Force of the widest link of --show forces, N; without it the scale fits all pictures
+    /// Contact force of the widest line of --show forces, N; without this option the scale fits all pictures
     #[arg(long, value_name = "N")]
     pub force_scale: Option<f64>,
-    /// Colours of background and ink
+    /// Colours of the background, and of lines and text
     #[arg(long, value_name = "THEME")]
     pub theme: Option<Theme>,
     /// Renderer: auto tries Vulkan, then OpenGL, then the processor
@@ -321,8 +322,8 @@ impl HeadlessOptions {
     }
 }
 
-/// Texts, including a command line, to be written into the picture file of one panel of a figure. The panel shows a
-/// built-in scene.
+/// Returns the texts (scene, settings, command line) that are written into the picture file of one panel of a figure.
+/// The panel shows a built-in scene.
 pub(super) fn texts_of_panel(scene: &Scene, snapshot: &Snapshot) -> Result<Texts> {
     let settings = scene.settings();
     let words = Config::of_scene(&scene.name).words(&settings)?;
@@ -352,8 +353,8 @@ impl HeadlessOptions {
         Ok(Provenance { scene: scene.name.clone(), settings, words })
     }
 
-    /// Texts, including a command line, to be written into the file of the picture that shows the simulated time
-    /// `time_secs`, s.
+    /// Returns the texts (scene, settings, command line) that are written into the file of the picture that shows the
+    /// simulated time `time_secs`, s.
     pub(super) fn texts_of_frame(&self, run: &Provenance, time_secs: f64, style: &Style) -> Texts {
         let frames = ["--frames".to_owned(), "frames".to_owned()];
         run.texts(
@@ -362,8 +363,9 @@ impl HeadlessOptions {
         )
     }
 
-    /// Texts, including a command line, to be written into the file of an animation of a run that lasts
-    /// `duration_secs`, s. `last_words` are the last arguments of the command line.
+    /// Returns the texts (scene, settings, command line) that are written into the GIF or video of a run that lasts
+    /// `duration_secs`, s. `last_words` are the last arguments of this command line, such as the option that names the
+    /// file.
     pub(super) fn texts_of_animation(
         &self,
         run: &Provenance,

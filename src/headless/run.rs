@@ -216,8 +216,9 @@ impl RequestedRun {
         }
     }
 
-    /// Returns a hash of all inputs that affect what the command computes and draws. Paths of outputs and of the saved
-    /// run are left out.
+    /// Returns a hash of the configuration, the options, and the scene or saved run of this command, by which a
+    /// checkpoint of the same command is recognised. The options `--frames`, `--save`, `--restart`,
+    /// `--checkpoint-every` and `--overwrite` do not affect the hash.
     ///
     /// # Errors
     /// If the inputs cannot be encoded as bytes.
@@ -270,7 +271,8 @@ impl RequestedRun {
     }
 }
 
-/// Builds the scene of a configuration. If it contains a new pile, the pile settles first, and the progress is shown.
+/// Builds the scene that `config` describes. If the scene is a new pile, its grains settle first, and the progress of
+/// this simulation is shown.
 pub(crate) fn settled(config: &Config) -> Result<Scene> {
     let progress = Progress::new("settling", 100);
     let scene = config.scene(|Settling { time_secs, limit_secs, .. }| {
@@ -304,10 +306,11 @@ impl RecordingPlan {
         Ok(Self { claim, folder, settings })
     }
 
-    /// Checks that the recording that a resumed run continues is still complete.
+    /// Checks that the files of the recording that a resumed run continues still have all their data up to step number
+    /// `step`: the numbers of frames and rows in `mark`.
     ///
     /// # Errors
-    /// Names the missing file.
+    /// Names the file that is missing or has lost data.
     fn check(&self, step: u64, mark: &RecordingMark) -> Result<()> {
         Recording::check(&self.folder, &formats_of(&self.settings)?, step, mark)
     }

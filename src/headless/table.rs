@@ -13,8 +13,8 @@ use crate::sim::Observables;
 /// spend much of their time in system calls; with a longer time, more rows are missing if the process is killed.
 const LONGEST_WAIT: Duration = Duration::from_millis(100);
 
-/// Largest number of bytes of rows that wait in memory before they are written to the file. Small scenes reach it
-/// before [`LONGEST_WAIT`].
+/// Largest number of bytes of rows that wait in memory before they are written to the file. Small scenes take steps so
+/// quickly that their rows reach this number before the time [`LONGEST_WAIT`] has passed.
 const MOST_WAITING: usize = 1 << 16;
 
 /// The table of observables, one row per step. Only whole rows are written, so that the table is readable after the

@@ -347,7 +347,7 @@ pub(super) fn tell_of_unconverged_steps(scene: &Scene, tally: &Tally) {
     )));
 }
 
-/// Reports on stderr which method `auto` chose for the last step.
+/// Reports on stderr which method the solver `auto` chose for the last step.
 fn tell_of_picked_method(scene: &Scene, simulation: &Simulation) {
     if scene.stepper.uses_method() && scene.solver.method == Method::Auto {
         let contacts = simulation.contacts().contacts().len();

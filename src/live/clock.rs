@@ -6,8 +6,9 @@ use std::time::Duration;
 use super::Pace;
 use crate::Instant;
 
-/// Largest delay behind the chosen speed of playing that a run catches up by faster steps. If the delay is larger, the
-/// run does not catch up and continues at the chosen speed from its present state.
+/// Largest delay that a run makes up for by taking steps faster than the chosen speed of playing. The delay is the
+/// wall-clock time since the next step was due. A run with a larger delay does not catch up; it continues at the chosen
+/// speed from its present state.
 const MOST_LAG: Duration = Duration::from_millis(100);
 /// Period of wall-clock time over which the displayed rates (such as steps per second) are averaged.
 const RATE_WINDOW: Duration = Duration::from_millis(300);

@@ -57,8 +57,8 @@ pub enum Command {
     /// Go back to the initial state with the present settings, and pause. The previous run is kept in
     /// [`LiveFrame::past`](super::LiveFrame::past).
     Reset,
-    /// Return to the earlier run of this number, or to the undone run (from which the user went back) of this number,
-    /// at the simulated time at which the user left that run, and pause. The present run is kept.
+    /// Return to the run with this number, at the simulated time at which the user left that run, and pause. The run is
+    /// an earlier run, or a run from which the user went back to an earlier run. The present run is kept.
     Return(u64),
     /// Give this name to the run of this number, or to the present run if the number is `None`.
     Name(Option<u64>, String),
@@ -83,7 +83,8 @@ impl Command {
         matches!(self, Self::CancelLoading | Self::Load(_) | Self::Quit)
     }
 
-    /// True if the command concerns the state of the run that the window shows.
+    /// True if the command uses the state of the run that the window shows: it changes settings or grains, takes a
+    /// step, or reads the history. If the window shows a stored snapshot, the simulation must first reach that state.
     pub(super) fn is_about_the_moment(&self) -> bool {
         matches!(
             self,

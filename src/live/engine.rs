@@ -18,9 +18,9 @@ use crate::Instant;
 use crate::error::Error;
 use crate::sim::{Settings, Surroundings};
 
-/// Number of frame intervals after which a frame that the window has not fetched is replaced by a newer frame. With a
-/// smaller number, time is spent on frames that the window never fetches; with a larger number, the window shows
-/// changes late.
+/// Number of frame intervals (the shortest time between two frames) after which a frame that the window has not fetched
+/// is replaced by a newer frame. With a smaller number, time is spent on frames that the window never fetches; with a
+/// larger number, the window shows changes late.
 const UNFETCHED_INTERVALS: u32 = 3;
 /// Shortest wall-clock time between two frames while an initial state is being computed.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(50);
@@ -33,8 +33,8 @@ struct Outbox {
     sent: Instant,
     /// True if the last published frame does not show the newest state.
     is_behind: bool,
-    /// True if a frame must be published as soon as the present step is finished, without waiting for the frame
-    /// interval.
+    /// True if a frame must be published as soon as the present step is finished, without waiting until the shortest
+    /// time between two frames has passed.
     is_urgent: bool,
 }
 

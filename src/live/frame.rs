@@ -85,7 +85,8 @@ pub struct WorldFrame {
     /// Duration of the collision of two grains of mean mass, s; `None` if the stepper does not represent contacts by
     /// springs.
     pub contact_time_secs: Option<f64>,
-    /// Work that breaks a bond (a cohesive contact) slowly; `None` if the contact law does not define this work.
+    /// Work that pulls two bonded grains of mean mass apart slowly: in J, and divided by the work that lifts one of
+    /// them by the mean diameter. `None` if the contact law does not define this work.
     pub fracture_work: Option<FractureWork>,
     /// Warnings about the run up to the displayed time, with advice.
     pub alarms: Vec<WorldAlarm>,
@@ -106,7 +107,7 @@ pub struct WorldAlarm {
 }
 
 impl LiveFrame {
-    /// Simulated time of the first of the simulations, s.
+    /// Simulated time of the first simulation in the list, s.
     pub fn time_secs(&self) -> f64 {
         self.worlds.first().map_or(0.0, |world| world.snapshot.observables.time_secs)
     }

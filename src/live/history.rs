@@ -15,18 +15,18 @@ use crate::sim::{Edit, Settings, Simulation, Snapshot, Tally};
 
 /// Largest number of earlier runs; if there are more, the oldest run is dropped.
 const MOST_PAST: usize = 50;
-/// Number of newest earlier runs with many keyframes (copies of the state, [`PART_OF_PAST`]). Older runs keep two each.
-/// The oldest runs are dropped if all earlier runs need more memory for keyframes than the present run may.
+/// Number of newest earlier runs that keep many keyframes (copies of the state); simulations of older runs keep at most
+/// two. Older runs are dropped while all earlier runs use more than the present run's limit of keyframe memory.
 const NEWEST: usize = 4;
 /// Divisor of the memory limit: each of the newest earlier runs gets 1/8 of the present run's memory for keyframes.
 const PART_OF_PAST: usize = 8;
-/// Memory for the keyframes (copies of the state) of the present run in a history for the window or a file, bytes.
+/// Largest memory for keyframes (copies of the state) of the present run in a history that is sent or saved, bytes.
 const KEYFRAME_BYTES: usize = 8 << 20;
-/// Memory for the keyframes of each earlier run in a history for the window or a file, bytes.
+/// Largest memory for keyframes (copies of the state) of each earlier run in a history that is sent or saved, bytes.
 const PAST_KEYFRAME_BYTES: usize = 1 << 20;
-/// Largest number of rows (observables after one step) of the present run in a history for the window or a file.
+/// Largest number of rows (observables after one step) of the present run in a history that is sent or saved.
 const ROWS: usize = 4096;
-/// Largest number of rows (observables after one step) of each earlier run in a history for the window or a file.
+/// Largest number of rows (observables after one step) of each earlier run in a history that is sent or saved.
 const PAST_ROWS: usize = 512;
 /// Wall-clock time after which a tick is interrupted to handle commands. A tick is one step of the simulation with the
 /// longest time step; a simulation with a far shorter time step takes thousands of steps in a tick.
@@ -373,7 +373,7 @@ impl RunHistory {
         Some(run)
     }
 
-    /// Limits the memory of the kept runs. Only the newest earlier run keeps stored snapshots.
+    /// Limits the memory of earlier and undone runs. Only the newest earlier run keeps its stored snapshots.
     fn limit(&mut self) {
         let older = self.past.len().saturating_sub(1);
         let older = self.past[..older].iter_mut().chain(&mut self.undone);

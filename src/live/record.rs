@@ -237,9 +237,9 @@ impl WorldRecord {
         self.edits.is_empty() && self.changes.iter().all(|change| change.controls == all_along)
     }
 
-    /// True if the next step of a simulation repeats a recorded step. If the user now pulls a grain and the record has
-    /// no such pull, the step is a new step. If the record has a pull that is now missing, the step still counts as a
-    /// repetition, because a jump to a recorded time removes pulls.
+    /// True if the next step of a simulation repeats a recorded step: a later step is recorded, with the present
+    /// settings, and the user pulls no grain or pulls a grain exactly as recorded. A recorded pull may be missing now,
+    /// because a jump to a recorded time removes pulls.
     pub(super) fn replays(&self, simulation: &Simulation) -> bool {
         let step = simulation.observables().step;
         let same = |recorded: &Controls| {
@@ -263,8 +263,8 @@ impl WorldRecord {
         (&keyframe.simulation, keyframe.tally)
     }
 
-    /// True if the state of `simulation` is the recorded state nearest to the simulated time `goal_secs`, s, or any
-    /// later recorded state, or the last recorded state.
+    /// True if `simulation` need not take another recorded step to reach the simulated time `goal_secs`, s: its time is
+    /// at most half a time step before `goal_secs`, or it is at the end of the record.
     pub(super) fn has_come_to(&self, simulation: &Simulation, goal_secs: f64) -> bool {
         let step = simulation.observables().step;
         let controls = self.controls_after(step).copied();

@@ -18,8 +18,9 @@ pub(crate) struct ColourScale {
 }
 
 impl ColourScale {
-    /// Returns the colour scale of a style. Its range of values is stated by the style; otherwise it contains the
-    /// values of all grains of the snapshot.
+    /// Returns the colour scale of a style. Its range of values is the range that the style states; if the style states
+    /// none, the range contains the values of all grains of the snapshot. The scale of the number of contacts always
+    /// has the range 0 to [`MOST_CONTACTS`].
     pub(crate) fn new(style: &Style, snapshot: &Snapshot) -> Self {
         let (low, high) = match (style.colour_by, style.range) {
             (ColourBy::Coordination, _) => (0.0, f64::from(MOST_CONTACTS)),

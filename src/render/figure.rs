@@ -35,7 +35,7 @@ pub struct PanelGrid {
 }
 
 impl PanelGrid {
-    /// Returns a grid of panels without labels, on a white ground.
+    /// Returns a grid of panels without labels, on a white background.
     pub fn new(rows: usize, columns: usize, panels: Vec<RgbaImage>) -> Self {
         Self {
             rows,

@@ -46,7 +46,7 @@ impl ScaleBar {
     }
 
     /// Returns the thick lines of which the bar and its end marks consist. They lie on a rectangle in the colour of the
-    /// ground, which has space for a label that is `label_width` pixels wide.
+    /// background, which has space for a label that is `label_width` pixels wide.
     pub(super) fn links(&self, palette: &Palette, label_width: f32) -> Vec<LinkInstance> {
         let ([left, y], [right, _]) = (self.start, self.end);
         let half_width = (self.text_px / 16.0).max(0.75);
@@ -73,10 +73,10 @@ pub(crate) struct Legend {
     pub scale: ColourScale,
     /// Names of the materials of the grains.
     pub materials: Vec<String>,
-    /// Fraction by which the colours of grains are mixed with the colour of the ground, 0 to 1.
+    /// Fraction by which the colours of grains are mixed with the colour of the background, 0 to 1.
     pub fading: f32,
-    /// The contact force |N|, N, that a line of full width shows, and half of that width, pixels; `None` if forces are
-    /// not drawn.
+    /// The magnitude of the normal contact force that a line of full width shows, newtons, and half of that width,
+    /// pixels; `None` if forces are not drawn.
     pub forces: Option<(f64, f32)>,
     /// The speed of the example arrow in the legend, m/s, and the length of this arrow, pixels; `None` if velocities
     /// are not drawn.
@@ -137,7 +137,7 @@ impl Legend {
         (sizes * self.text_px).round() as i64
     }
 
-    /// Returns a grain's colour as it appears in the picture, mixed with the colour of the ground.
+    /// Returns a grain's colour as it appears in the picture, mixed with the colour of the background.
     fn faded(&self, colour: Colour) -> Colour {
         colour.mix(self.palette.ground, self.fading)
     }

@@ -12,17 +12,19 @@ use super::{Camera, Colour, LinkInstance, Palette, Style};
 use crate::sim::{MotionView, Snapshot, Surroundings};
 use crate::world::Edge;
 
-/// Width of a line that shows the reference force, in mean diameters. Smaller forces have narrower lines.
+/// Full width of the lines that show contact forces, in mean diameters. The reference force ([`force_reference`]) and
+/// larger forces have this width; smaller forces have narrower lines.
 const FORCE_WIDTH: f64 = 0.4;
-/// Smallest force that is drawn, as a fraction of the reference force. Lines of smaller forces would be too thin to be
-/// visible.
+/// Smallest contact force that is drawn, as a fraction of the force whose line has the full width
+/// ([`force_reference`]). Lines of smaller forces would be too thin to be visible.
 const LEAST_FORCE: f64 = 0.004;
-/// Fraction of contacts whose force lines are narrower than the full width, if the style states no reference force.
+/// Fraction of the contacts with a force whose lines are narrower than the full width. It determines the force of a
+/// line of full width if the style does not state this force.
 const REFERENCE_QUANTILE: f64 = 0.95;
 
-/// Returns the reference force |N|, N, which is drawn as a line of full width. It is the force that the style states,
-/// or the 95th percentile of the snapshot's forces, so that a single huge force does not make all other lines
-/// invisible. 0 if there are no forces.
+/// Returns the reference force, newtons: the magnitude of the normal contact force whose line has the full width. It is
+/// the force that the style states, or else the 95th percentile of the snapshot's forces, so that a single huge force
+/// does not make all other lines invisible. 0 if there are no forces.
 pub(crate) fn force_reference(style: &Style, snapshot: &Snapshot) -> f64 {
     style.force_reference.unwrap_or_else(|| {
         let mut forces: Vec<f64> = snapshot
@@ -37,7 +39,8 @@ pub(crate) fn force_reference(style: &Style, snapshot: &Snapshot) -> f64 {
     })
 }
 
-/// Returns half of the width of the line that shows the reference force, pixels.
+/// Returns half of the full width of the lines that show contact forces, pixels. The reference force
+/// ([`force_reference`]) and larger forces have lines of full width.
 pub(super) fn full_half_width_px(mean_diameter: f64, camera: &Camera) -> f32 {
     camera.pixels(0.5 * FORCE_WIDTH * mean_diameter)
 }
@@ -81,17 +84,19 @@ pub(super) fn force_links(
         .collect()
 }
 
-/// Length of the velocity arrow at the reference speed, in mean diameters.
+/// Full length of a velocity arrow, in mean diameters: the length at the reference speed ([`speed_reference`]).
 const VELOCITY_LENGTH: f64 = 2.5;
-/// Smallest velocity that is drawn, as a fraction of the reference speed. Shorter arrows would look like dots.
+/// Smallest speed of a grain that has a velocity arrow, as a fraction of the speed whose arrow has the full length
+/// ([`speed_reference`]). Shorter arrows would look like dots.
 const LEAST_VELOCITY: f64 = 0.03;
 /// Half of the width of a velocity arrow's shaft, in mean diameters.
 const VELOCITY_HALF_WIDTH: f64 = 0.05;
-/// Length of the two barbs of a velocity arrow's head, in mean diameters.
+/// Length of the two barbs of the head of a velocity arrow of full length, in mean diameters; barbs of shorter arrows
+/// are shorter.
 const VELOCITY_BARB: f64 = 0.35;
 
-/// Returns the reference speed, m/s, which is drawn as an arrow of full length. It is the speed that the style states,
-/// or a round number above the speed of the fastest grain. 0 if no grain moves.
+/// Returns the reference speed, m/s: the speed whose velocity arrow has the full length. It is the speed that the style
+/// states, or else a round number above the speed of the fastest grain. 0 if no grain moves.
 pub(crate) fn speed_reference(style: &Style, snapshot: &Snapshot) -> f64 {
     if let Some(reference) = style.speed_reference {
         return reference;
@@ -103,7 +108,8 @@ pub(crate) fn speed_reference(style: &Style, snapshot: &Snapshot) -> f64 {
     if fastest > least { round_above(fastest) } else { 0.0 }
 }
 
-/// Returns the length, in the scene, of the velocity arrow at the reference speed, m.
+/// Returns the full length of a velocity arrow, m in the scene: the length at the reference speed
+/// ([`speed_reference`]).
 pub(super) fn full_length(snapshot: &Snapshot) -> f64 {
     VELOCITY_LENGTH * snapshot.surroundings.mean_diameter
 }
@@ -146,24 +152,28 @@ pub(super) fn velocity_links(
 
 // All lengths below are in units of the font size of the picture's labels.
 
-/// Length of an arrow that shows how a wall or disc moves, in font sizes.
+/// Length of an arrow that shows how a wall or disc moves, in font sizes of the labels.
 const LENGTH_EM: f64 = 1.7;
-/// Length of the two barbs of the head of an arrow that shows how a wall or disc moves, in font sizes.
+/// Length of the two barbs of the head of an arrow that shows how a wall or disc moves, in font sizes of the labels.
 const BARB_EM: f64 = 0.5;
-/// Distance between the two heads of an arrow that shows a driving force, in font sizes.
+/// Distance between the two heads of an arrow that shows the force that drives a wall or disc, in font sizes of the
+/// labels.
 const SECOND_HEAD_EM: f64 = 0.42;
-/// Half of the width of the lines of an arrow that shows how a wall or disc moves, in font sizes.
+/// Half of the width of the lines of an arrow that shows how a wall or disc moves, in font sizes of the labels.
 const HALF_WIDTH_EM: f64 = 0.075;
-/// Width of the border around the lines of an arrow that shows how a wall or disc moves, in font sizes. The border has
-/// the colour of the ground, so that the arrow is visible on grains.
+/// Width of the border around the lines of an arrow that shows how a wall or disc moves, in font sizes of the labels.
+/// The border has the colour of the background, so that the arrow is visible on grains.
 const HALO_EM: f64 = 0.07;
-/// Smallest distance between two arrows that show the same motion, in font sizes.
+/// Smallest distance between two arrows that show the motion of the same body or group of bodies, in font sizes of the
+/// labels.
 const SPACING_EM: f64 = 4.0;
-/// Distance from a wall to the arrow of its motion parallel to its surface, in font sizes.
+/// Distance from a wall to the arrow that shows that the wall moves parallel to its surface, in font sizes of the
+/// labels.
 const BESIDE_EM: f64 = 0.75;
-/// Distance from a body that a force drives to the middle of the force's arrow, in font sizes.
+/// Distance from a wall or disc to the middle of the arrow that shows the force that drives this wall or disc, in font
+/// sizes of the labels.
 const LOAD_EM: f64 = 1.75;
-/// Radius of the arc that shows a rotation around a pivot, in font sizes.
+/// Radius of the arc that shows a rotation around a pivot, in font sizes of the labels.
 const ARC_EM: f64 = 0.9;
 /// Angle of the arc that shows a rotation around a pivot, rad.
 const ARC_TURN: f64 = 0.75 * TAU;
@@ -285,8 +295,9 @@ impl MotionArrows<'_> {
         }
     }
 
-    /// Returns the offset of an arrow from its position on the body, pixels. If a wall moves parallel to its surface,
-    /// its arrow is drawn beside the wall, on the inner side of a solid.
+    /// Returns the offset of an arrow from its position on the body, pixels. The arrow of a wall that moves parallel to
+    /// its surface is drawn beside the wall; if the wall is the surface of a solid, the arrow is inside the solid. All
+    /// other arrows have the offset 0.
     fn beside(&self, spot: &Spot, velocity: DVec2) -> DVec2 {
         let Some((normal, _)) = spot.normal else { return DVec2::ZERO };
         let along = velocity.normalize_or_zero().dot(normal.perp()).abs() > ALONG;
@@ -324,8 +335,9 @@ impl MotionArrows<'_> {
         }
     }
 
-    /// Draws an arc with an arrowhead around the pixel position `centre`. The arc runs anticlockwise if `rate` is
-    /// positive.
+    /// Draws an arc with an arrowhead around the pixel position `centre`. Its radius is `radius_em`, in font sizes of
+    /// the labels. The arc runs anticlockwise if the rate of rotation, `rate`, is positive, and clockwise if it is
+    /// negative.
     fn arc(&mut self, centre: DVec2, radius_em: f64, rate: f64) {
         if !centre.abs().cmple(self.reach).all() {
             return;

@@ -132,7 +132,7 @@ impl Painter {
     }
 
     /// Records the drawing of the prepared picture. The caller must clear the render pass with the colour of the
-    /// ground.
+    /// background.
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         for (primitive, bytes) in self.order.iter().filter(|(_, bytes)| !bytes.is_empty()) {
             let PrimitivePipeline { stride, pipeline, instances, .. } =

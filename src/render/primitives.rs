@@ -1,5 +1,5 @@
 //! Input of a renderer: discs and straight lines with round ends (links), in pixels, in drawing order, on an opaque
-//! ground.
+//! background.
 //!
 //! [`super::Camera::project`] converts positions in the scene to pixels in f64, relative to the middle of the picture,
 //! so f32 is sufficient here at any distance from the origin. `shaders/disc.wgsl` and `shaders/link.wgsl` draw the
@@ -21,7 +21,7 @@ pub(crate) enum Batch {
 /// All shapes of a picture, as input of a renderer. Later batches of shapes cover earlier batches.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Picture {
-    /// Colour of the ground; its opacity is ignored.
+    /// Colour of the background; its opacity is ignored.
     pub background: Colour,
     pub batches: Vec<Batch>,
 }

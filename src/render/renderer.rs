@@ -93,7 +93,8 @@ impl Renderer {
     /// Draws a picture of `width` × `height` pixels.
     ///
     /// # Errors
-    /// Names `size` if it is empty or too large; other errors have the message of the graphics device.
+    /// If a side of the picture has 0 pixels or is too long for the renderer, the error names `size`. Other errors have
+    /// the message of the graphics device.
     pub(crate) fn draw(&mut self, picture: &Picture, width: u32, height: u32) -> Result<RgbaImage> {
         self.check_size(width, height)?;
         match &mut self.backend {
@@ -106,7 +107,7 @@ impl Renderer {
     /// Checks that a picture of this size can be drawn.
     ///
     /// # Errors
-    /// Names `size` if it is empty or too large.
+    /// If a side of the picture has 0 pixels or is too long for the renderer. The error names `size`.
     pub(crate) fn check_size(&self, width: u32, height: u32) -> Result<()> {
         let largest = self.largest_side();
         if (1..=largest).contains(&width) && (1..=largest).contains(&height) {

@@ -18,7 +18,8 @@ use crate::sim::Snapshot;
 /// of the picture to the left of the legend; [`Style::camera`] returns a suitable camera.
 ///
 /// # Errors
-/// Names `size` if it is empty or too large; other errors have the message of the graphics device.
+/// If a side of the picture has 0 pixels or is too long for the renderer, the error names `size`. Other errors have the
+/// message of the graphics device.
 pub fn draw_scene(
     renderer: &mut Renderer,
     snapshot: &Snapshot,
@@ -130,7 +131,7 @@ pub fn draw_worlds(
     Ok(whole)
 }
 
-/// Fraction by which the colour of periodic borders is mixed with the colour of the ground, 0 to 1.
+/// Fraction by which the colour of periodic borders is mixed with the colour of the background, 0 to 1.
 const BORDER_FADING: f32 = 0.4;
 /// Radius of the dot that marks the centre of an attracting gravity field, in font sizes of the labels.
 const CENTRE_RADIUS_EM: f32 = 0.28;
@@ -188,7 +189,7 @@ pub(crate) fn scene_picture(
     if let Some(centre) = surroundings.centre_of_attraction {
         let radius = CENTRE_RADIUS_EM * text_px + 1.0;
         let dot = DiscInstance::plain(camera.project(centre), radius, palette.ink);
-        // The ring in the ground's colour keeps the dot visible on a grain of the dot's colour.
+        // The ring in the colour of the background keeps the dot visible on a grain of the dot's colour.
         picture.push_discs(vec![DiscInstance {
             outline_width: 1.0,
             outline: palette.ground,

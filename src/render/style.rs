@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::camera::Margins;
 use super::{Camera, Colour};
 
-/// Fraction by which the colours of grains are mixed with the ground's colour if contact forces are drawn on the
-/// grains, 0 to 1.
+/// Fraction by which the colours of grains are mixed with the colour of the background if contact forces are drawn on
+/// the grains, 0 to 1.
 const FADING: f32 = 0.62;
 /// Height of the free space below the scene for the scale bar, in font sizes.
 const SCALE_BAR_EM: f64 = 1.6;
@@ -19,16 +19,16 @@ const SCALE_BAR_EM: f64 = 1.6;
 )]
 #[serde(rename_all = "kebab-case")]
 pub enum ColourBy {
-    /// The grey that the scene gives each grain, as in the paper.
+    /// The grey that the scene gives each grain, as in the paper (Abramian & Staron, 2020).
     #[default]
     #[serde(rename = "grey")]
     #[value(name = "grey")]
     PaperGreys,
     /// Speed of the centre, m/s.
     Speed,
-    /// Largest overlap over the grain's contacts, in units of d.
+    /// Largest overlap over the grain's contacts, in mean diameters.
     Overlap,
-    /// Σ|N| over the grain's contacts, N.
+    /// Sum of the magnitudes of the normal forces at the grain's contacts, N.
     Force,
     /// Number of the grain's contacts.
     Coordination,
@@ -43,16 +43,16 @@ impl ColourBy {
     }
 }
 
-/// Colours of the ground and of lines and text.
+/// Colours of the background, and of lines and text.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, clap::ValueEnum,
 )]
 #[serde(rename_all = "kebab-case")]
 pub enum Theme {
-    /// Dark ink on white, for print.
+    /// Dark lines and text on white, for print.
     #[default]
     Light,
-    /// Light ink on a dark ground, for screens.
+    /// Light lines and text on a dark background, for screens.
     Dark,
 }
 
@@ -67,8 +67,8 @@ pub struct Style {
     pub range: Option<(f64, f64)>,
     /// True if contact forces are drawn as lines, with paler grains below them.
     pub show_forces: bool,
-    /// Contact force |N| that is drawn as a line of full width, N. If it is `None`, the 95th percentile of the
-    /// snapshot's forces is used.
+    /// Magnitude of the normal contact force that is drawn as a line of full width, newtons. If it is `None`, the 95th
+    /// percentile of the snapshot's forces is used.
     pub force_reference: Option<f64>,
     /// True if arrows show the velocities of the grains.
     pub show_velocities: bool,
@@ -85,7 +85,7 @@ pub struct Style {
     pub scale_bar: bool,
     /// True if a legend is drawn, provided that the colours, lines or arrows need an explanation.
     pub legend: bool,
-    /// Colours of the ground and of lines and text.
+    /// Colours of the background, and of lines and text.
     pub theme: Theme,
 }
 
@@ -136,7 +136,7 @@ impl Theme {
             Self::Dark => Palette {
                 ground: Colour::hex(0x14171c),
                 ink: Colour::grey(230),
-                // The outline is lighter than the low end of the colour map, which is as dark as the ground.
+                // The outline is lighter than the low end of the colour map, which is as dark as the background.
                 outline: Colour::grey(150),
                 fixed: Colour::grey(95),
                 boundary: Colour::grey(170),
@@ -156,8 +156,8 @@ impl Style {
         (16.0 * (side / 800.0).sqrt()).clamp(10.0, 48.0).round() as f32
     }
 
-    /// Returns the fraction by which the colours of grains are mixed with the ground's colour, 0 to 1; it is above 0 if
-    /// contact forces are drawn on the grains.
+    /// Returns the fraction by which the colours of grains are mixed with the colour of the background, 0 to 1; it is
+    /// above 0 if contact forces are drawn on the grains.
     pub(crate) fn fading(&self) -> f32 {
         if self.show_forces { FADING } else { 0.0 }
     }

@@ -119,12 +119,13 @@ enum Script {
 }
 
 impl Script {
-    /// Font size of the letters relative to the font size of the line.
+    /// Font size of normal letters, subscripts or superscripts (`self`), divided by the font size of the line.
     fn size(self) -> f32 {
         if self == Self::Line { 1.0 } else { 0.7 }
     }
 
-    /// Distance of the letters below the baseline, in font sizes of the line.
+    /// Distance of normal letters, subscripts or superscripts (`self`) below the baseline of the line, in font sizes of
+    /// the line; negative for superscripts, which are above it.
     fn drop(self) -> f32 {
         match self {
             Self::Line => 0.0,

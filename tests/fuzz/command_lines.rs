@@ -48,7 +48,8 @@ const OPTIONS: [&str; 23] = [
     "--theme light dark",
     "--start 6 6.5 8",
 ];
-/// Options, each with meaningful values, that also allow very large values, with which a run takes a long time.
+/// Options, each with meaningful values. Slump accepts very large values of them, too, but then a run takes a long
+/// time, so these tests do not try random numbers.
 const LONG: [&str; 6] = [
     "--substeps 0 1 7",
     "--stiffness 0 10 1e4",
@@ -191,7 +192,8 @@ fn command_lines_and_what_they_leave() {
 }
 
 /// Checks that three outputs in the folder of a run agree: the table `observables.csv` with one row per step, the
-/// manifest, and the pictures. The run was not killed; it ended with the exit code `code` and wrote `stderr`.
+/// manifest (`manifest.json`, which describes the run), and the pictures. The run was not killed; it ended with the
+/// exit code `code` and wrote `stderr`.
 pub fn check_books(folder: &Path, code: i32, stderr: &str) {
     let rows = rows_of(&folder.join("observables.csv"));
     let manifest = manifest(folder);
@@ -216,8 +218,8 @@ pub fn check_books(folder: &Path, code: i32, stderr: &str) {
     pictures(folder, &manifest, &rows);
 }
 
-/// Checks that the manifest of a run has a warning for each problem in `rows`, the measured quantities of all steps,
-/// and that stderr contains each warning.
+/// Checks that the manifest of a run (`manifest.json`, which describes it) has a warning for each problem in `rows`,
+/// the measured quantities of all steps, and that stderr contains each warning.
 fn alarms(run: &Value, rows: &[Observables], stderr: &str) {
     let alarms = run["alarms"].as_array().expect("a list");
     let has = |kind: &str| alarms.iter().any(|alarm| alarm["kind"] == kind);
@@ -241,8 +243,8 @@ fn alarms(run: &Value, rows: &[Observables], stderr: &str) {
     }
 }
 
-/// Checks that the folder has exactly the pictures that the manifest names, and that the numbers in each picture are
-/// those of one step in `rows`, the measured quantities of all steps.
+/// Checks that the folder has exactly the pictures that the manifest (`manifest.json`) names, and that the numbers in
+/// each picture are those of one step in `rows`, the measured quantities of all steps.
 fn pictures(folder: &Path, manifest: &Value, rows: &[Observables]) {
     let listed = manifest["pictures"].as_array().expect("a list");
     for picture in listed {

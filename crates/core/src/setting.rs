@@ -2,10 +2,10 @@
 //!
 //! From a list of declarations the macro `settings!` generates four items. The first is a structure with the values of
 //! all settings, which the simulation reads. The second is a structure of changes ([`Group::Changes`]), which contains
-//! new values for some settings and which the command line, scene files and study files fill in. The third is the check
-//! that each value is allowed. The fourth is a list of descriptions ([`About`]), from which command-line options,
-//! controls of the window and error messages are made. The macro `words!` declares the type of a setting whose value is
-//! one of a few words.
+//! new values for some settings and which the command line, scene files and files of studies (lists of runs) fill in.
+//! The third is the check that each value is allowed. The fourth is a list of descriptions ([`About`]), from which
+//! command-line options, controls of the window and error messages are made. The macro `words!` declares the type of a
+//! setting whose value is one of a few words.
 
 use std::fmt;
 
@@ -18,7 +18,7 @@ use crate::error;
 /// of its value.
 #[derive(Clone, Copy, Debug)]
 pub struct About {
-    /// Name of the setting on the command line, in studies and in error messages.
+    /// Name of the setting on the command line, in studies (lists of runs) and in error messages.
     pub name: &'static str,
     /// Placeholder for the value in the help of the command line, such as `SECONDS` in `--dt SECONDS`.
     pub value_name: &'static str,

@@ -4,8 +4,8 @@
 use crate::scene::Scene;
 use crate::sim::{Settings, Stepper};
 
-/// Returns the work, J, that slowly breaks a bond between two grains of mean size in a scene with these settings.
-/// Returns `None` if the contact law does not define this work, or if there is no attraction.
+/// Returns the work, J, that is needed to break a bond slowly between two grains of mean size in a scene with these
+/// settings. Returns `None` if the contact law does not define this work, or if there is no attraction.
 pub(super) fn fracture_work(scene: &Scene, settings: Settings) -> Option<f64> {
     let mut scene = scene.clone();
     scene.set_settings(settings);

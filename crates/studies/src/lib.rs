@@ -1,6 +1,6 @@
 //! Runs scenes of grains: single runs with snapshots, the sets of runs behind the figures of Abramian & Staron (2020,
-//! hal-02570097), sweeps over parameters, error budgets, calibrations, charts of speed, stability tests and validation
-//! experiments.
+//! hal-02570097), sweeps over parameters, error budgets, calibrations, charts of the speed of solvers, stability tests
+//! and validation experiments.
 
 #![warn(missing_docs, unreachable_pub)]
 // `println!` and `eprintln!` panic if a stream is closed or full. The functions of `output` do not panic.

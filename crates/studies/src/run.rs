@@ -41,10 +41,10 @@ pub struct Recorded {
     pub simulation: Simulation,
     /// Statistics of all steps of the run, such as the number of sweeps and the mean overlap.
     pub tally: Tally,
-    /// True if the recorder ended the run early.
+    /// True if the [`Recorder`], which observes the run, ended the run early.
     pub interrupted: bool,
-    /// The error that ended the run early, if any: positions or velocities became NaN or infinite, or the recorder
-    /// failed.
+    /// The error that ended the run early, if any: positions or velocities became NaN or infinite, or the [`Recorder`],
+    /// which observes the run, returned an error.
     pub failure: Option<Error>,
 }
 

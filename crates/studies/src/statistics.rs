@@ -34,7 +34,8 @@ pub fn mean(values: &[f64]) -> Mean {
     mean_with(values, CONFIDENCE)
 }
 
-/// Like [`mean`], with an interval at the given confidence level, between 0 and 1, instead of 0.95.
+/// Returns the mean of independent values with its interval at the level `confidence`, between 0 and 1, by Student's
+/// t-distribution. With fewer than two values the interval is unbounded.
 pub(super) fn mean_with(values: &[f64], confidence: f64) -> Mean {
     let count = values.len();
     let mean = values.iter().sum::<f64>() / count.max(1) as f64;

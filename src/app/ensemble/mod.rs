@@ -2,10 +2,11 @@
 //! their seed ("other piles" in the window). From these runs the window computes the mean slump and its confidence
 //! interval.
 //!
-//! Piles are chaotic, so the window shows a mean over several runs. The built-in pile was chosen because it shows the
-//! pattern of Abramian & Staron (2020), so its seed is never in the ensemble. Idle cores run the other piles from their
-//! initial state to the end of the scene, with constant settings. A run has no ensemble if its settings changed during
-//! the run or if the user pulled a grain, because such a run cannot be compared with runs under constant settings.
+//! Piles are chaotic, so the window shows a mean over several runs. The seed of the built-in pile is never in the
+//! ensemble, because it was chosen: with this seed a single run shows the dependence of slump on Bond number and time
+//! step of Abramian & Staron (2020). Idle cores run the other piles from their initial state to the end of the scene,
+//! with constant settings. A run has no ensemble if its settings changed during the run or if the user pulled a grain,
+//! because such a run cannot be compared with runs under constant settings.
 
 mod pool;
 mod runs;
@@ -33,23 +34,27 @@ const RULE: &str = "Idle cores run other piles with the present settings from th
                     hand, has no other piles: reset it. The seed of the shipped pile, which was chosen, is never \
                     among them.";
 
-/// The ensembles of the visible simulations: the other initial states of the open scene, and the threads that run them.
+/// The ensembles of the visible simulations (runs with the same settings from other initial states), with the threads
+/// that compute them.
 #[derive(Default)]
 pub struct Ensemble {
     /// Folder in which the computed initial states are stored; `None` if the user has no folder for such files.
     folder: Option<PathBuf>,
-    /// The open scene as the window loaded it; `piles` are the same pile with other seeds.
+    /// The open scene as the window loaded it. `piles` describes the other initial states: the same pile made from
+    /// other seeds.
     opened: Option<Arc<LiveStart>>,
     piles: Vec<NewPile>,
     pool: Option<WorkerPool>,
     worlds: Vec<Option<Settings>>,
-    /// Settings of all comparable runs that the user has started, with the results of their ensembles. `kind` is the
-    /// data that all these runs share.
+    /// Settings of runs that the user has started, each with the slumps of runs with these settings from other initial
+    /// states. These results can be compared, because all of them belong to one scene and one set of initial states,
+    /// which `kind` describes.
     released: Vec<Released>,
     kind: Option<PileKind>,
 }
 
-/// All data of a run that determine the other initial states. Runs with equal data can be compared.
+/// Properties of a scene on which the slumps of runs from other initial states depend, apart from the settings. Results
+/// of two scenes can be compared if these properties are equal.
 #[derive(PartialEq)]
 struct PileKind {
     scene: String,
@@ -59,7 +64,7 @@ struct PileKind {
 }
 
 impl Ensemble {
-    /// Returns an empty ensemble that stores initial states in the user's cache folder.
+    /// Returns an ensemble without runs, which will store its initial states in the user's cache folder.
     pub(crate) fn new() -> Self {
         let folder = user_folder("XDG_CACHE_HOME", ".cache").map(|folder| folder.join("piles"));
         Self { folder, ..Self::default() }
@@ -76,25 +81,26 @@ impl Ensemble {
         self.folder.clone()
     }
 
-    /// Ends all threads that compute ensembles and discards their results.
+    /// Ends all threads that compute runs from other initial states. Keeps the results of started runs
+    /// (`released`) as they were in the last frame.
     pub fn stop(&mut self) {
         self.pool = None;
         self.worlds.clear();
     }
 
-    /// True if an ensemble can be computed: the open scene was made from a seed, and there are idle cores and a folder
-    /// for initial states.
+    /// True if runs from other initial states can be computed: the open scene was made from a seed and is not too
+    /// large, and there are idle cores and a folder for initial states.
     pub(super) fn is_possible(&self) -> bool {
         self.folder.is_some() && idle_cores() > 0 && !self.piles.is_empty()
     }
 
-    /// Number of threads that compute ensembles.
+    /// Number of threads that compute runs from other initial states.
     pub fn threads(&self) -> usize {
         self.pool.as_ref().map_or(0, WorkerPool::threads)
     }
 
-    /// Starts or continues the ensembles of the simulations in the newest frame. If `is_wanted` is false, stops all
-    /// threads.
+    /// Starts or continues the threads that compute runs from other initial states, with the settings of the
+    /// simulations in `frame` (the newest frame). If `is_wanted` is false, stops all threads.
     pub(super) fn follow(&mut self, context: &egui::Context, frame: &LiveFrame, is_wanted: bool) {
         let address = |opened: &Option<Arc<LiveStart>>| opened.as_ref().map(Arc::as_ptr);
         if address(&self.opened) != address(&frame.start) {
@@ -130,7 +136,8 @@ impl Ensemble {
         }
     }
 
-    /// Discards the settings and results of started runs if they cannot be compared with runs of the open scene.
+    /// Discards the settings and results of started runs if they belong to another scene, another duration, another
+    /// base or other initial states than the open scene. Keeps them if the open scene has no other initial states.
     fn note_kind(&mut self) {
         let Some(opened) = self.opened.as_ref().filter(|_| !self.piles.is_empty()) else { return };
         let kind = Some(PileKind {
@@ -145,8 +152,9 @@ impl Ensemble {
         }
     }
 
-    /// Stores the settings of the visible runs that the user has started. Returns true if some of these settings are
-    /// new.
+    /// Stores the settings of the simulations in `frame` that the user has started (that have taken a step). Returns
+    /// true if some of these settings are new. `all` contains the settings of each simulation, or `None` if it has no
+    /// ensemble (runs from other initial states).
     fn note_released(&mut self, frame: &LiveFrame, all: &[Option<Settings>]) -> bool {
         let before = self.released.len();
         for (world, settings) in frame.worlds.iter().zip(all) {
@@ -161,14 +169,15 @@ impl Ensemble {
         self.released.len() > before
     }
 
-    /// Discards the settings and results of all started runs. When the next frame arrives, the settings of the visible
-    /// runs are stored again.
+    /// Discards the settings and results of all started runs, and so clears the plot of slump against Δt. When the next
+    /// frame arrives, the settings of the visible runs are stored again, so only earlier runs are lost.
     pub(super) fn forget_released(&mut self) {
         self.released.clear();
     }
 
-    /// Returns the settings of the runs that the user has started, with the results of their ensembles. A visible run
-    /// is included only when it has reached the end of the scene.
+    /// Returns the settings of the runs that the user has started, each with the slumps of runs with these settings
+    /// from other initial states. Settings of a visible run are omitted until this run has reached the end of the
+    /// scene.
     pub(crate) fn released(&self, frame: &LiveFrame) -> impl Iterator<Item = &Released> {
         let end_secs = self.kind.as_ref().map_or(f64::INFINITY, |kind| kind.duration_secs);
         let is_on_its_way = move |settings: &Settings| {
@@ -181,14 +190,16 @@ impl Ensemble {
         self.released.iter().filter(move |(settings, _)| is_open && !is_on_its_way(settings))
     }
 
-    /// Returns the slumps of the ensemble with the given settings; `None` if no started run has these settings.
+    /// Returns the slumps of runs with the given settings from other initial states; `None` if no started run has these
+    /// settings.
     pub(crate) fn band(&self, settings: &Settings) -> Option<&Arc<Band>> {
         let mut released = self.released.iter().filter(|_| !self.piles.is_empty());
         released.find(|(own, _)| own == settings).map(|(_, band)| band)
     }
 
-    /// Returns a sentence that compares the mean slump of the ensemble before and after a change of settings, at a
-    /// simulated time. `None` if fewer than two initial states ran under both settings.
+    /// Returns a sentence that compares the mean slumps of runs from other initial states at the simulated time
+    /// `time_secs`, s, under two settings: `before` and `after`. `None` if no started run has one of these settings, or
+    /// if fewer than two initial states ran under both.
     pub(crate) fn effect(
         &self,
         before: &Settings,
@@ -199,7 +210,8 @@ impl Ensemble {
         Some(format!("{}: {}", change_text(before, after), effect(&paired, self.piles.len())?))
     }
 
-    /// Returns a text that explains the ensemble of a simulation and lists its seeds.
+    /// Returns a text that explains the ensemble of a simulation (runs with its settings from other initial states) and
+    /// lists the seeds of these initial states.
     pub(crate) fn about(&self, world: usize) -> String {
         let Some(summary) = self.summary(world) else { return RULE.into() };
         let EnsembleSummary { seeds, settling, failed, .. } = summary;
@@ -214,29 +226,32 @@ impl Ensemble {
         text
     }
 
-    /// Returns the mean slump of a simulation's ensemble at the displayed simulated time, as text. `None` if the
-    /// simulation has no ensemble.
+    /// Returns as text the mean slump of runs from other initial states with the settings of a simulation, at the
+    /// displayed simulated time. `None` if the simulation has no such runs.
     pub(crate) fn said(&self, frame: &LiveFrame, world: usize) -> Option<String> {
         let row = frame.worlds.get(world)?.snapshot.observables;
         Some(said(&self.summary(world)?, row.time_secs))
     }
 
-    /// Returns the mean slump of a simulation's ensemble at a simulated time, s, half the width of its 95 % confidence
-    /// interval, and the number of runs.
+    /// Returns the mean slump, at a simulated time (s), of runs from other initial states with the settings of a
+    /// simulation; then half the width of its 95 % confidence interval, and the number of runs. `None` if no run has a
+    /// value at this time.
     pub fn mean_at(&self, world: usize, time_secs: f64) -> Option<(f64, f64, usize)> {
         let band = self.summary(world)?.band;
         let (mean, half) = band.at(time_secs)?;
         Some((mean, half, band.count))
     }
 
-    /// Returns the results of a simulation's ensemble so far; `None` if the simulation has no ensemble.
+    /// Returns the results so far of runs from other initial states with the settings of a simulation; `None` if the
+    /// simulation has no such runs.
     pub(crate) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
         self.pool.as_ref()?.summary(world)
     }
 }
 
-/// Returns a text with the mean slump before and after a change of settings, and the mean difference. `planned` is the
-/// number of initial states in the whole ensemble.
+/// Returns a text with the mean slump before and after a change of settings, and the mean difference, all three over
+/// the same initial states. `planned` is the number of initial states that will be computed. `None` if there are fewer
+/// than two so far.
 fn effect([before, after, difference]: &[Mean; 3], planned: usize) -> Option<String> {
     const WORDS: [&str; 9] = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"];
     let count = difference.count;
@@ -256,7 +271,8 @@ fn effect([before, after, difference]: &[Mean; 3], planned: usize) -> Option<Str
     Some(format!("slump {before} → {after}, {piles} each; difference {difference} (paired)"))
 }
 
-/// Returns a text with the mean slump of an ensemble at a simulated time, s, and the number of its runs.
+/// Returns a text with the mean slump of runs from other initial states at a simulated time, s, and the number of these
+/// runs; without a mean, a text that states the reason.
 fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
     let (planned, count) = (summary.seeds.len() - summary.failed, summary.band.count);
     let mean = summary.band.at(time_secs);

@@ -18,8 +18,9 @@ use crate::world::Grain;
 
 /// Least time between two reports of the progress while a pile is being deposited.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
-/// Number of cores that the threads of the ensemble do not use. One core is for the visible run. If the system cannot
-/// lower the priority of a thread, one more core is for the window.
+/// Number of cores that the threads of the ensemble (runs from other initial states) do not use. One core is for the
+/// visible run. On systems where this program cannot lower the priority of a thread, one more core is for the window,
+/// which would otherwise have to wait for these threads.
 const LEFT: usize = if cfg!(any(target_os = "linux", windows)) { 1 } else { 2 };
 
 /// Returns the number of cores that are idle while a simulation runs in the window. On a machine with one core it is 0.
@@ -55,7 +56,7 @@ pub(in crate::app) fn on_idle_cores<T: Send>(work: impl FnOnce() -> Result<T> + 
     pool.map_err(refuse)?.install(work)
 }
 
-/// A job for one pile of the ensemble. The first number is the index of the pile.
+/// A job for one of the other initial states (piles) from which runs are computed. Its number is the index of the pile.
 #[derive(Clone, Copy, PartialEq)]
 enum PileJob {
     /// Deposit the pile: let its grains fall into the box and come to rest.
@@ -87,13 +88,14 @@ pub(crate) struct EnsembleSummary {
 /// Settings of a run that the user has started, and the slumps of runs with these settings from other initial states.
 pub(crate) type Released = (Settings, Arc<Band>);
 
-/// The waiting, running and finished jobs of the ensemble's threads.
+/// The waiting, running and finished jobs of the threads that compute runs from other initial states.
 #[derive(Default)]
 struct Jobs {
-    /// Settings of each visible simulation; `None` for a simulation that has no ensemble.
+    /// Settings of each visible simulation; `None` for a simulation without runs from other initial states, for example
+    /// because its settings changed during the run.
     worlds: Vec<Option<Settings>>,
-    /// Settings of all runs that the user has started. Ensembles with these settings have lower priority than ensembles
-    /// of the visible simulations.
+    /// Settings of all runs that the user has started. Runs from other initial states with these settings are computed
+    /// after those with the settings of the visible simulations.
     released: Vec<Settings>,
     begun: Vec<(PileJob, JobState)>,
     /// Slumps of finished runs, by their settings.
@@ -137,7 +139,8 @@ impl Jobs {
         })
     }
 
-    /// Stores the state of a job, if the job has not been cancelled.
+    /// Stores `state` as the new state of a running job; does nothing if the job was cancelled. After a finished run,
+    /// computes the mean slump of all runs with the same settings again.
     fn note(&mut self, job: PileJob, state: JobState) {
         if !self.is_under_way(job) {
             return;
@@ -162,7 +165,7 @@ impl Jobs {
     }
 }
 
-/// State that the threads of the ensemble and the window share.
+/// State that the window shares with the threads that compute runs from other initial states.
 struct PoolState {
     opened: Arc<LiveStart>,
     piles: Vec<NewPile>,
@@ -172,7 +175,8 @@ struct PoolState {
     news: Condvar,
 }
 
-/// The worker threads of the ensemble. When this value is dropped, the threads end after their present step.
+/// The worker threads that compute runs from other initial states. When this value is dropped, the threads end after
+/// their present step.
 pub(super) struct WorkerPool {
     state: Arc<PoolState>,
     // Each thread runs one loop and ends when this loop ends.
@@ -219,8 +223,8 @@ impl WorkerPool {
         Self { state, threads }
     }
 
-    /// Lets the threads compute ensembles with the settings of the visible simulations, then with the settings
-    /// `released`. Discards the results with all other settings.
+    /// Gives the threads their jobs: runs from other initial states, first with the settings of the visible simulations
+    /// (`worlds`), then with the settings `released`. Discards the results with all other settings.
     pub(super) fn follow(&self, worlds: Vec<Option<Settings>>, released: Vec<Settings>) {
         let mut jobs = self.state.lock();
         let is_wanted =
@@ -245,7 +249,7 @@ impl WorkerPool {
     }
 
     /// Returns the results of runs from other initial states with the settings of a simulation; `None` if the
-    /// simulation has no ensemble.
+    /// simulation has no such runs.
     pub(super) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
         let (jobs, piles) = (self.state.lock(), &self.state.piles);
         let settings = (*jobs.worlds.get(world)?)?;
@@ -284,7 +288,7 @@ impl PoolState {
         self.jobs.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Main loop of a worker thread: takes and performs jobs until the pool is closing.
+    /// Main loop of a worker thread: takes and performs jobs until the window has dropped the worker threads.
     fn work(&self) {
         while let Some((job, grains)) = self.next() {
             let came_to = match job {
@@ -306,7 +310,8 @@ impl PoolState {
         }
     }
 
-    /// Waits for the next job. Returns `None` if the pool is closing.
+    /// Waits for the next job and returns it with the grains of its pile. Returns `None` if the window has dropped the
+    /// worker threads.
     fn next(&self) -> Option<(PileJob, Vec<Grain>)> {
         let mut jobs = self.lock();
         while !jobs.is_over {

@@ -23,7 +23,8 @@ pub(crate) struct Band {
     /// Upper ends of the confidence intervals of the means; ∞ for a single run.
     pub highs: Vec<f64>,
     pub count: usize,
-    /// The slump curves of the runs, each with the index of its pile in the ensemble.
+    /// The slump curves of the runs, each with the index of its initial state among the other initial states of the
+    /// scene.
     pub runs: Vec<(usize, SlumpSeries)>,
 }
 
@@ -44,7 +45,7 @@ impl Band {
     }
 
     /// Returns the mean slump and the half-width of its confidence interval at the last computed time up to
-    /// `time_secs`, s. `None` before the first and after the last time.
+    /// `time_secs`, s. `None` before the first computed time, and from one spacing of these times after the last on.
     pub(crate) fn at(&self, time_secs: f64) -> Option<(f64, f64)> {
         let index = self.index_at(time_secs)?;
         Some((self.means[index], self.highs[index] - self.means[index]))
@@ -58,7 +59,7 @@ impl Band {
 
     /// Compares runs under two settings at a simulated time, s. Only the piles that ran under both settings count.
     /// Returns the mean slump under the settings of `self`, the mean slump under those of `other`, and the mean
-    /// difference, `other` − `self`.
+    /// difference, `other` − `self`. `None` if the runs under one of the settings have no value at this time.
     pub(super) fn paired(&self, other: &Self, time_secs: f64) -> Option<[Mean; 3]> {
         let (index, other_index) = (self.index_at(time_secs)?, other.index_at(time_secs)?);
         let pair = |(pile, run): &(usize, SlumpSeries)| {
@@ -72,7 +73,8 @@ impl Band {
     }
 }
 
-/// Largest number of points in the slump curve of a run, not counting the last point.
+/// Largest number of points in the slump curve of a run, not counting the last point. If the run has more steps,
+/// the points are several steps apart.
 const MOST_POINTS: u64 = 400;
 /// Computes the slump curve of a scene from its initial state to its end. `goes_on` is called after each step; if it
 /// returns false, the run stops and the result is `None`.
@@ -99,9 +101,11 @@ pub(super) fn slump(
     }
 }
 
-/// Number of initial states in an ensemble.
+/// Number of other initial states that are run to compute a mean slump. More initial states give a narrower confidence
+/// interval, but take longer.
 const COUNT: usize = 8;
-/// Largest number of grains of a pile for which an ensemble is computed. The deposition of a larger pile takes minutes.
+/// Largest number of grains of a pile that is also made from other seeds. The deposition of a larger pile takes
+/// minutes.
 const MOST_GRAINS: usize = 1_000;
 
 /// Returns the descriptions of the other piles of the open scene, which differ only in their seed. The seeds are 1, 2,
@@ -134,7 +138,8 @@ fn pile_of(opened: &LiveStart) -> Option<NewPile> {
     config.new_pile().ok()?.or_else(is_shipped)
 }
 
-/// Returns the open scene with the settings `settings` and the grains of another pile.
+/// Returns the open scene with the settings `settings`, and with `pile` (the same pile made from another seed) instead
+/// of its own. `grains` are the grains of this pile at rest.
 pub(super) fn scene_of(
     opened: &LiveStart,
     pile: &NewPile,

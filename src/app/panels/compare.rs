@@ -130,9 +130,10 @@ fn stepped(base: Settings, stepper: Stepper) -> Settings {
     settings.with_only_what_is_taken()
 }
 
-/// Returns the common settings on which the presets for comparisons are based: the settings of the scene, with the
-/// stepper and the parameters that all compared simulations share. Solver, remedies and touch tolerance of these
-/// simulations are ignored, because the user would not see that the presets use them.
+/// Returns the common settings on which the presets for comparisons are based: the settings of the scene, but with the
+/// stepper and the physical parameters on which all present simulations `worlds` agree. The solver, the remedies
+/// (corrections of known weaknesses of a step) and the touch tolerance are those of the scene, because the user might
+/// not notice that a preset contains earlier choices of them.
 fn base(scene: &Settings, worlds: &[Settings]) -> Settings {
     let mut base = *scene;
     let physics = Parameters::ABOUT.iter().filter(|about| about.name != "touch-tolerance");

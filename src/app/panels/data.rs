@@ -9,7 +9,7 @@ use crate::app::number_text::{clock_text, time_field};
 use crate::app::work::{Reporter, Work};
 use crate::data::{DataSettings, FormatName, check_format};
 
-/// Shortest and longest simulated time between two frames of a recording, s.
+/// Shortest and longest simulated time between two exported states (frames) of the run, s.
 const EVERY: [f64; 2] = [1e-9, 1e9];
 
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -79,7 +79,8 @@ fn open(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Shows the controls for an exported recording: time interval, spacing of frames, file formats and folder.
+/// Shows the controls for an export of grains and contacts to files: first and last simulated time, simulated time
+/// between two exported states (frames), file formats and folder.
 fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
     stretch(ui, context);
     let choices = &mut context.preferences.data;
@@ -135,7 +136,7 @@ fn words(format: FormatName) -> (&'static str, &'static str) {
     }
 }
 
-/// Shows the controls for the time interval of the run that is exported.
+/// Shows the controls for the first and last simulated time of the part of the run that is exported.
 fn stretch(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let Some(world) = context.run.world() else { return };
     let (first, last) = (world.recorded_from_secs, world.recorded_secs);
@@ -168,7 +169,7 @@ fn stretch(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Shows the button that exports a recording or, during an export, its progress.
+/// Shows the button that exports the grains and contacts of the run to files or, during an export, its progress.
 fn export(ui: &mut Ui, context: &mut PanelContext<'_>, is_ready: bool) {
     if let Some(export) = &context.exports.data.export {
         return export.show(

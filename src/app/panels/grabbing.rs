@@ -38,7 +38,8 @@ struct Grip {
     pub boundary: usize,
     /// Vector from the reference point of the wall to the grabbed point, m.
     pub from_place: DVec2,
-    /// Target position of the reference point that was last sent to the solver's thread, m.
+    /// Target position of the wall's reference point, m, in the last command to the solver's thread; `None` before the
+    /// first command.
     pub sent: Option<DVec2>,
 }
 
@@ -53,8 +54,8 @@ pub(super) struct WorldCell<'a> {
 }
 
 impl WorldCell<'_> {
-    /// Returns the position of the mouse if the mouse is over this simulation or if its button was pressed here and is
-    /// still down.
+    /// Returns the position of the mouse if the mouse is over this simulation, or if the user pressed a mouse button
+    /// over this simulation and still holds it down.
     fn pointer(&self) -> Option<Pos2> {
         self.response.hover_pos().or_else(|| self.response.interact_pointer_pos())
     }
@@ -186,7 +187,7 @@ impl WorldCell<'_> {
         }
     }
 
-    /// Moves the grabbed wall to the mouse. If the user no longer drags, ends the motion of the wall.
+    /// Moves the grabbed wall to the mouse, if the run plays. If the user no longer drags, ends the motion of the wall.
     fn draw_wall(&self, mouse: &mut Grabbing, context: &mut PanelContext<'_>) {
         let Some(mut grip) = mouse.grip else { return };
         if !self.response.dragged() {

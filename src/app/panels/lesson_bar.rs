@@ -15,7 +15,8 @@ use crate::sim::{Observables, Settings};
 /// State of the bar above the scene, which shows the present lesson.
 #[derive(Default)]
 pub(crate) struct LessonBar {
-    /// Number of initial states that the window had loaded before the present lesson was opened.
+    /// Number of initial states that the window had loaded when the user opened the present lesson. While the newest
+    /// frame contains no larger number, it still shows the run before the lesson.
     pub loads_before: u64,
     /// True while the summary of the lessons is open.
     pub shows_summary: bool,
@@ -48,7 +49,7 @@ impl LessonBar {
         if self.shows_summary {
             summary(ui, context, &mut self.shows_summary);
         }
-        // A line that is added lies outside the bar until the next frame.
+        // A line that was added in this frame is visible only in the next frame, which has a higher bar.
         let height = ui.min_rect().height();
         if height != std::mem::replace(&mut self.height, height) {
             ui.ctx().request_repaint();
@@ -113,7 +114,8 @@ impl LessonBar {
     }
 }
 
-/// Returns the result of a run of one pile that has ended and has had the same Δt from the start; `None` for other runs.
+/// Returns the result of the run as a sentence, if the run has only one pile, has ended, and has had the same Δt from
+/// the start; otherwise `None`.
 fn result_of_one(run: &WatchedRun) -> Option<String> {
     let [world] = &run.frame.worlds[..] else { return None };
     let Observables { time_step_secs, slump, .. } = world.snapshot.observables;
@@ -149,7 +151,7 @@ fn prediction(
         return;
     }
     let waits = is_there && context.run.frame.at_start() && !context.run.frame.playing;
-    // This is a later run, after another run has decided the question.
+    // Another run has decided the question before this run.
     if predicted.as_ref().is_some_and(|it| it.was_right.is_some()) && is_there && !waits {
         if let Some(result) = result_of_one(context.run) {
             ui.label(result);

@@ -22,7 +22,8 @@ pub(crate) struct Pages {
 }
 
 impl Pages {
-    /// Discards the measured computing times of solvers, because the run with the measured step no longer exists.
+    /// Discards the measured computing times of the solvers. They belong to one step of a run that the window no longer
+    /// shows.
     pub(crate) fn forget_race(&mut self) {
         self.race = None;
     }

@@ -54,7 +54,8 @@ fn stepper_switch(ui: &mut Ui, settings: &mut Settings) {
     }
 }
 
-/// Shows quantities that are derived from the parameters, such as the cohesive time.
+/// Shows quantities that are derived from the parameters, such as the cohesive time Bond·Δt/√(d/g), a dimensionless
+/// number (Δt: time step, s; d: mean diameter, m; g: gravity, m/s²).
 fn derived(ui: &mut Ui, run: &WatchedRun, settings: &Settings) {
     let parameters = &settings.parameters;
     let Some(world) = run.world() else { return };

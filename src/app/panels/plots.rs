@@ -156,8 +156,9 @@ fn means_something(run: &WatchedRun, quantity: &Quantity<Observables>) -> bool {
     quantity.name != "slump" || run.slumps()
 }
 
-/// Shows the line above the plots: the button that shows or hides the plots, and the slump of the pile and of its
-/// ensemble.
+/// Shows the line above the plots: the button that shows or hides the plots, then the slump of the pile and the mean
+/// slump of runs from other initial states, or a sentence that compares these means before and after a change of
+/// settings.
 pub(super) fn header(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let text = if context.preferences.plots { "▾ Plot" } else { "▸ Plot" };
@@ -175,8 +176,9 @@ pub(super) fn header(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
 }
 
-/// Returns a sentence that compares the ensembles of the earlier and the present run at the displayed simulated time.
-/// `None` if no settings changed or results are missing.
+/// Returns a sentence that compares the mean slumps of runs from other initial states, at the displayed simulated time,
+/// under the settings of the earlier run and under the settings of the present run. `None` in the initial state,
+/// without an earlier run for comparison, if no settings changed, or if results are missing.
 fn effect(context: &PanelContext<'_>) -> Option<String> {
     let frame = &context.run.frame;
     let mut worlds = context.ghost()?.worlds.iter().zip(&frame.worlds);
@@ -216,7 +218,8 @@ pub(super) fn choices(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// Shows the buttons that save the plots, and the simulated time between the plotted steps.
+/// Shows the buttons that save the plots as a picture and the curves as a table. If the curves omit steps, shows the
+/// simulated time between two plotted steps.
 fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let stem = format!("{}-curves", context.run.file_stem());
     // Waiting for a graphics device would block the browser version.

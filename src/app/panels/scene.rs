@@ -163,8 +163,9 @@ impl WorldCell<'_> {
         }
     }
 
-    /// Draws the texts of a simulation: its title, its slump, the slump of its ensemble, and the label of the scale
-    /// bar.
+    /// Draws the texts of a simulation. If the drawing style has a scale bar, this is the label of the scale bar. If
+    /// simulations are compared, the title, the slump, and the mean slump of runs from other initial states are drawn,
+    /// too, and a frame around the simulation.
     fn words(&self, ui: &Ui, context: &PanelContext<'_>, style: &Style, size: [u32; 2]) {
         let painter = ui.painter().with_clip_rect(self.cell);
         let ink = theme::color32(style.theme.palette().ink);

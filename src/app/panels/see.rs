@@ -31,7 +31,8 @@ const COLOURS: [(ColourBy, &str); 6] = [
 const SHORT_GIF_SECS: f64 = 5.0;
 /// Zoom factor of the user interface for a presentation.
 const PRESENTATION_ZOOM: f32 = 2.0;
-/// Zoom factor of the user interface above which the window counts as presenting.
+/// Zoom factor of the user interface above which the window counts as presenting. It is between the usual zoom factor,
+/// 1, and [`PRESENTATION_ZOOM`].
 const LEAST_PRESENTATION_ZOOM: f32 = 1.5;
 
 /// Makes text and controls twice as large for a projector, or restores their usual size. In the large size, pages and

@@ -28,7 +28,8 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     readings(ui, run);
 }
 
-/// Shows the expert settings of the solver, which few users need, and applies changes to the selected simulation.
+/// Shows the expert settings of the solver, which few users need. Applies the user's changes to the selected
+/// simulation.
 pub(super) fn expert(ui: &mut Ui, run: &mut WatchedRun) {
     let index = run.selected;
     let Some((before, start)) = run.wanted_and_start() else { return };
@@ -39,7 +40,8 @@ pub(super) fn expert(ui: &mut Ui, run: &mut WatchedRun) {
     }
 }
 
-/// Shows the controls for the expert settings of the solver: method, warm start, friction model and remedies.
+/// Shows the controls for the expert settings of the solver: method, warm start, friction model, and remedies
+/// (corrections of known weaknesses of a step).
 fn expert_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings, has_friction: bool) {
     let stepper = settings.stepper;
     if stepper.uses_method() {

@@ -22,7 +22,7 @@ use crate::solver::{METHODS, Method, SolverSettings, StopTest};
 const TOLERANCES: [f64; 8] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
 /// Limit on the computing time of a step, s. A solver that takes longer is not tried with tighter tolerances.
 const LIMIT_SECS: f64 = 0.25;
-/// Number of times that each solver solves the step to each tolerance. The shortest computing time is reported.
+/// Largest number of times that each solver solves the step to each tolerance. The shortest computing time is reported.
 const REPEATS: usize = 3;
 const MOST_SWEEPS: u32 = 20_000;
 /// Largest number of steps whose computing time is measured.
@@ -34,7 +34,8 @@ const TIMED_SECS: f64 = 1.0;
 /// Measured results of one solver for all tolerances.
 struct RaceCurve {
     method: &'static str,
-    /// Computing time of the step, ms, and its residual, for each tolerance from loose to tight.
+    /// Computing time of the step, ms, and its residual, from loose to tight tolerances. A tolerance for which the
+    /// residual is not smaller than for looser tolerances has no point.
     points: Vec<[f64; 2]>,
 }
 
@@ -50,7 +51,7 @@ pub(super) struct StepRace {
 /// Measured computing times: of the next steps by their parts, and of one step by each solver.
 #[derive(Default)]
 struct Measured {
-    /// Number of measured steps and the sum of their computing times.
+    /// Number of measured steps, and their computing times summed over these steps.
     times: Option<(u32, StepTimes)>,
     /// Results of the solvers; empty for a stepper that uses no solver.
     curves: Vec<RaceCurve>,

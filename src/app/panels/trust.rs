@@ -33,7 +33,8 @@ use crate::study::{BudgetAnswer, BudgetEffect, BudgetOptions, ErrorBudget, Trust
 const COST_SECS: f64 = 300.0;
 /// Quantity whose error is estimated in scenes that are not heaps, because slump is meaningful only for heaps.
 const OTHERWISE: &str = "mean(kinetic_energy)";
-/// Largest fraction of the steps that may be unsolved (miss their tolerance) if a run can be trusted.
+/// Largest fraction of the steps that may be unsolved (miss their tolerance) in a run that can be trusted. With a
+/// larger value, the verdict would trust runs whose result may be changed by unsolved steps.
 const FEW: f64 = 0.01;
 
 /// Text that the panel shows until the error budget has its first result.
@@ -272,7 +273,8 @@ fn bars(ui: &mut Ui, answer: &BudgetAnswer) {
 }
 
 /// Draws one bar of an error budget: the name of a change (such as another solver), its effect on the result, and the
-/// confidence interval of the effect.
+/// confidence interval of the effect. Grey lines at ±`within` show the largest acceptable effect of the numerical
+/// method. The ends of the axis are ±`reach`. Both have the unit of the result.
 fn bar(ui: &mut Ui, effect: &BudgetEffect, within: f64, reach: f64) {
     let BudgetEffect { share, colour: (red, green, blue), changed, adds: [mean, low, high] } =
         effect;
@@ -301,7 +303,8 @@ fn bar(ui: &mut Ui, effect: &BudgetEffect, within: f64, reach: f64) {
     response.response.on_hover_text(text);
 }
 
-/// Returns a warning if a grain at rest would fall too far in one step of a simulation.
+/// Returns a warning if a grain at rest would fall too far in one step of a simulation for contacts to be found in time
+/// (the limit is 0.2 mean diameters).
 fn warning(world: &WorldFrame) -> Option<String> {
     too_long(&world.controls.settings, &world.snapshot.surroundings, world.substeps)
 }

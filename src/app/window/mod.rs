@@ -115,7 +115,7 @@ struct App {
     keeper: Keeper,
 }
 
-/// Resources of the open window, which exist as long as the window.
+/// The open window, with its input state and its drawing surface. This value exists as long as the window.
 struct Open {
     window: Arc<Window>,
     input: egui_winit::State,

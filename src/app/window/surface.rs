@@ -204,7 +204,9 @@ impl WindowSurface {
     }
 }
 
-/// Returns a texture format without conversion to sRGB, because colours are blended as they are stored in files.
+/// Returns a texture format that stores 8-bit colours unchanged, without conversion to sRGB; `None` if the surface has
+/// no such format. With conversion, half-transparent colours would differ from those in picture files, where the sRGB
+/// values themselves are blended.
 fn plain_format(formats: &[wgpu::TextureFormat]) -> Option<wgpu::TextureFormat> {
     let plain = [wgpu::TextureFormat::Bgra8Unorm, wgpu::TextureFormat::Rgba8Unorm];
     formats.iter().copied().find(|format| plain.contains(format))

@@ -1,11 +1,11 @@
 //! Tests of the cradle of Abramian & Staron (2020, §4): disc k falls on a pair of bonded discs, i and j. The tests
-//! check at which time steps Δt this shock breaks the bond of i and j. Further tests are about chains of discs that
-//! hang by their cohesion.
+//! check at which time steps Δt the impact of k breaks the bond of i and j. Further tests are about chains of discs
+//! that hang by their cohesion.
 
 use crate::common::*;
 
 /// Runs the cradle `scene` for 2.5 s with the time step `dt` (s). Returns true if the falling disc k has broken the
-/// bond between the discs i and j: the gap between i and j is then more than 0.1 d (d: diameter). The shock comes at
+/// bond between the discs i and j: the gap between i and j is then more than 0.1 d (d: diameter). The impact comes at
 /// the latest, if k starts 8.5 d away, at √(2·7.5 d/g) = 1.5 s, where g is the acceleration of k (m/s²).
 fn opens(mut scene: Scene, dt: f64) -> bool {
     scene.parameters.time_step_secs = dt;

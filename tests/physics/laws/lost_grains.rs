@@ -144,7 +144,8 @@ const PHASES: u32 = 20;
 
 /// Runs a disc that flies at a thin wall with restitution ρ and moves `travel` diameters per step. Returns the final
 /// velocity divided by the initial velocity (negative after a rebound), for 20 different times of the impact within a
-/// step. The function `mend` changes the scene before the run, for example its remedies.
+/// step. The function `mend` changes the scene before the run, for example its remedies (optional corrections of a
+/// step).
 fn rebounds(travel: f64, restitution: f64, mend: impl Fn(&mut Scene)) -> Vec<f64> {
     let rebound = |phase| {
         let mut scene = thin_wall(travel, (f64::from(phase) + 0.5) / f64::from(PHASES));

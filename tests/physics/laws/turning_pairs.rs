@@ -111,3 +111,62 @@ fn nothing_is_counted_without_a_bond_that_bears() {
         assert_eq!(warning(&after(&Scene { stepper, ..loose.clone() }, 200)), None, "{stepper}");
     }
 }
+
+/// Checks that with the remedy `turning-bonds` a pair keeps its bond up to the angular velocity at which the cohesion
+/// force holds it, at touch tolerance 0, and without gaining or losing energy.
+#[test]
+fn with_the_remedy_a_pair_turns_for_good_up_to_the_spin_that_its_bond_bears() {
+    let bond = 20.0;
+    for (dt, part) in pairs([1e-4, 1e-3], [0.05, 0.5, 0.97, 1.03]) {
+        let rate = part * break_up(bond);
+        let mut scene = doublet(Stepper::Moreau, bond, rate, dt);
+        scene.parameters.touch_tolerance = 0.0;
+        let turns = 10.0;
+        let steps = (turns * std::f64::consts::TAU / (rate * dt)) as usize;
+        assert!(!is_whole(&after(&scene, steps)), "without the remedy: {dt} s, {part}");
+        scene.remedies.turning_bonds = true;
+        let mut run = after(&scene, 1);
+        let energy = |run: &Simulation| run.observables().kinetic_energy;
+        let first = energy(&run);
+        take_steps(&mut run, steps);
+        assert_eq!(is_whole(&run), part < 1.0, "{dt} s, {part}");
+        if part < 1.0 {
+            assert_close(energy(&run) / first, 1.0, 1e-6, "energy");
+            assert_eq!(warning(&run), None, "{dt} s, {part}");
+        }
+    }
+}
+
+#[test]
+fn with_the_remedy_a_grain_circles_a_fixed_disc_and_keeps_its_bond() {
+    let (bond, dt) = (20.0, 1e-3);
+    for (part, whole) in [(0.5, true), (0.9, true), (1.1, false)] {
+        // The grain has twice the effective mass of a pair of such grains, and circles at twice the distance. So the
+        // force Bond·m·g holds it up to the same angular velocity.
+        let rate = part * break_up(bond);
+        let mut scene = doublet(Stepper::Moreau, bond, rate, dt);
+        scene.parameters.touch_tolerance = 0.0;
+        scene.remedies.turning_bonds = true;
+        scene.grains.truncate(1);
+        let place = 2.0 * RADIUS * (1.0 - OVERLAP) * DVec2::X;
+        scene.grains[0].position = place;
+        scene.grains[0].velocity = rate * place.perp();
+        scene.fixed_discs = vec![Disc { position: DVec2::ZERO, radius: RADIUS }];
+        let run = after(&scene, 1000);
+        assert_eq!(run.place(0).length() < 2.1 * RADIUS, whole, "{part}");
+        scene.remedies.turning_bonds = false;
+        assert!(after(&scene, 1000).place(0).length() > 2.1 * RADIUS, "{part}: it leaves");
+    }
+}
+
+/// Checks that the remedy `turning-bonds` has no effect without cohesion: trajectories are bitwise the same.
+#[test]
+fn without_cohesion_the_remedy_for_turning_bonds_changes_nothing() {
+    for bond in [0.0, 20.0] {
+        let mut scene = pressed_pile(60, 0.1, 3, parameters(bond, 1e-3, 0.1, 0.5));
+        let places = |scene: &Scene| after(scene, 200).world().grains.positions.clone();
+        let plain = places(&scene);
+        scene.remedies.turning_bonds = true;
+        assert_eq!(plain == places(&scene), bond == 0.0, "Bond {bond}");
+    }
+}

@@ -136,9 +136,9 @@ fn one_contact_bounces_closes_again_or_opens_as_in_section_2_2() {
 /// Time steps (s) at which the same force must pull a bonded grain off.
 const TIME_STEPS: [f64; 7] = [1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 2e-3, 5e-3];
 
-/// Returns a scene in which gravity pulls a bonded grain off another body, which is a second grain if `free` is true
-/// and otherwise a disc that does not move. The pull is m_ij g and the cohesion force C₀ is Bond·m_ij·g (m_ij:
-/// effective mass), so the bond breaks for Bond < 1.
+/// Returns a scene in which gravity pulls a bonded grain off another body, on which gravity does not act: a second
+/// grain if `free` is true, otherwise a disc that does not move. The pull is m_ij g and the cohesion force C₀ is
+/// Bond·m_ij·g (m_ij: effective mass), so the bond breaks for Bond < 1.
 fn pulled(bond: f64, dt: f64, physics: Physics, free: bool) -> Scene {
     let parameters = Parameters { touch_tolerance: 0.0, ..parameters(bond, dt, 0.2, 0.5) };
     let case = Case { parameters, velocity: 0.0, pressing: -1.0 };

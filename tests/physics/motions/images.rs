@@ -110,7 +110,8 @@ fn every_pair_in_touch_is_found_across_borders_and_none_twice() {
     }
 }
 
-/// Returns the velocity of the second disc, or of its image nearest to the first disc, relative to the first disc, m/s.
+/// Returns the velocity of the second disc, or of its periodic image nearest to the first disc, relative to the first
+/// disc, m/s.
 fn seen(run: &Simulation) -> DVec2 {
     let cell = run.world().periodic.expect("a cell");
     let above = ((run.place(0).y - run.place(1).y) / SIZE.y).round();

@@ -17,7 +17,7 @@ pub(super) fn in_cell(scene: &Scene, [left, width]: [f64; 2], shift: f64) -> Sce
 }
 
 /// Returns the longest distance, m, between a grain of the first run, moved by `shift` along x, and the same grain of
-/// the second run. Distances across the borders of the cell count.
+/// the second run. Distances across the borders of the periodic cell count.
 fn farthest(one: &Simulation, other: &Simulation, shift: f64) -> f64 {
     let cell = one.world().periodic.or(other.world().periodic).expect("a cell");
     let [one, other] = [one, other].map(|run| run.places());
@@ -119,7 +119,7 @@ fn remedies_work_across_the_border() {
     }
 }
 
-/// Returns the vector from grain 1 to grain 0, or to the nearest image of grain 0 across the borders, m.
+/// Returns the vector from grain 1 to grain 0, or to the nearest periodic image of grain 0 across the borders, m.
 fn offset(run: &Simulation) -> DVec2 {
     let (places, cell) = (run.places(), run.world().periodic.expect("a cell"));
     cell.shortest(places[0] - places[1])

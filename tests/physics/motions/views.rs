@@ -1,5 +1,5 @@
-//! Tests of invariance: a run is the same in a moving frame of reference, with a piston in place of an equally moving
-//! wall, and in a mirror image.
+//! Tests of invariance: a run is the same in a moving frame of reference, with a piston (a half-space that moves by
+//! itself at a given speed) in place of an equally moving wall, and in a mirror image.
 
 use crate::common::*;
 
@@ -85,7 +85,7 @@ fn nothing_depends_on_whether_all_that_is_fixed_goes_past_or_the_onlooker() {
 }
 
 /// Returns a scene in which two walls of a box approach with grains between them and then stop. The walls are pistons
-/// or half-spaces with a prescribed motion.
+/// (half-spaces that move by themselves at a given speed) or half-spaces with a prescribed motion.
 fn pressed(normal: DVec2, as_pistons: bool) -> Scene {
     let (speed, travel) = (0.1, 2e-3);
     let mut scene = pressed_pile(30, 0.3, 11, parameters(5.0, 1e-3, 0.3, 0.5));

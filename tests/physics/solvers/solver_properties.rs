@@ -19,7 +19,8 @@ fn for_random_piles(cases: u32, property: impl Fn(Scene) -> Result<(), TestCaseE
 }
 
 /// Returns a pile with these numbers (Bond number, friction coefficient μ, restitution ρ, time step Δt in s, speed in
-/// m/s) and choices (number of grains, seed, shifted friction cone or not, warm start or not, rotation or not).
+/// m/s) and choices (number of grains, seed, shifted friction cone or not, warm start, from the impulses of the
+/// previous step, or not, rotation or not).
 fn pile(
     (bond, friction, restitution, dt, speed): (f64, f64, f64, f64, f64),
     (count, seed, shifted, warm_start, turning): (usize, u64, bool, bool, bool),

@@ -1,5 +1,5 @@
 //! Tests of the limits of solvers and steppers, in scenes in which they fail. A quick run of the stability tests must
-//! give the verdicts of the stored table, and measured limits must agree with theory.
+//! give the verdicts (the method passes or fails) of the stored table, and measured limits must agree with theory.
 //!
 //! After a change that improves a verdict, or worsens it for a good reason, write the table again: `cargo run --release
 //! -- stability --quick --table tests/physics/stability/table.csv --overwrite`.

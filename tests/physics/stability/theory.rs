@@ -109,8 +109,8 @@ fn balls_in_a_row_keep_momentum_and_energy_and_leave_together() {
     }
 }
 
-/// Returns a run of a column under the stepper `dem` (springs) with one substep per step. The time step is `part` times
-/// the critical time step.
+/// Returns a run of a column under the stepper `dem` (springs) with undivided steps (one substep each). The time step
+/// is `part` times the critical time step.
 fn springs(part: f64) -> Simulation {
     let mut scene = column_on_line(12);
     scene.parameters.restitution = 0.5;

@@ -6,12 +6,12 @@ pub use image::codecs::png::FilterType;
 use image::codecs::png::{CompressionType, PngEncoder};
 use image::{DynamicImage, Rgba, RgbaImage};
 
-/// Largest allowed difference of a picture from its golden picture.
+/// Largest allowed difference of a picture from its golden picture (the stored picture with which it is compared).
 #[derive(Clone, Copy)]
 pub struct Tolerance {
     /// Largest difference in any colour channel of any pixel, from 0 to 255.
     pub channel: u8,
-    /// Largest fraction of pixels that may differ from the golden picture, 0 to 1.
+    /// Largest fraction of pixels that may differ from the golden (stored) picture, 0 to 1.
     pub pixels: f64,
 }
 
@@ -66,7 +66,7 @@ fn difference_image(actual: &RgbaImage, golden: &RgbaImage) -> RgbaImage {
     })
 }
 
-/// Returns the path of the golden picture with this name.
+/// Returns the path of the golden picture (stored for comparison) with this name.
 pub fn golden_path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures/golden").join(format!("{name}.png"))
 }
@@ -79,8 +79,9 @@ pub fn save_small(picture: &RgbaImage, name: &str, filter: FilterType) {
     opaque.write_with_encoder(encoder).unwrap();
 }
 
-/// Compares a picture with the golden picture. `kind` is the kind of the renderer that has drawn the picture. If the
-/// difference is too large, returns a message and writes the picture and the difference to files.
+/// Compares a picture with the golden picture (stored for comparison). `kind` is the kind of the renderer that has
+/// drawn the picture. If the difference is too large, returns a message and writes the picture and the difference to
+/// files.
 pub fn complaint(
     actual: &RgbaImage,
     name: &str,

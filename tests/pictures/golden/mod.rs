@@ -61,8 +61,8 @@ fn grains_of_a_material_share_a_colour_that_the_legend_shows() {
     assert!(one.abs_diff(other) < grains / 10 && one + other > grains * 9 / 10, "{one}, {other}");
 }
 
-/// Draws each golden picture with each of the renderers and compares it with its file. `renderers` also contains the
-/// kind of each renderer, such as "vulkan".
+/// Draws each golden picture (a picture that is also stored in a file) with each of the renderers and compares it with
+/// its file. `renderers` also contains the kind of each renderer, such as "vulkan".
 fn assert_kept(renderers: &mut [(&'static str, &mut Renderer)], tolerance: Tolerance) {
     let mut complaints = Vec::new();
     for (name, draw) in &GOLDENS {

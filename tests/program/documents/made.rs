@@ -204,7 +204,7 @@ fn settings() -> String {
 }
 
 /// Returns descriptions of the columns of all recorded tables as Markdown. They are taken from the manifest of a
-/// recording.
+/// recording (the file that describes it).
 fn columns() -> String {
     let folder = folder();
     let out = folder.path().join("run");
@@ -221,7 +221,8 @@ fn columns() -> String {
     text
 }
 
-/// Solver variants that the documentation's table of stability tests shows.
+/// Configurations (solvers, steppers, friction models and the preset `robust`) that the documentation's table of
+/// stability tests shows.
 const VARIANTS: [&str; 11] = [
     "default",
     "nsgs",

@@ -21,7 +21,7 @@ fn refusal(command: &mut Command) -> String {
 }
 
 /// Returns names and contents of all files of a folder. The entries about the command and the interruptions are removed
-/// from the manifest.
+/// from the manifest (`manifest.json`, which describes the run).
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let content = |name: String| (name.clone(), bytes(folder.join(name)));
     let mut files: BTreeMap<_, _> = names_in(folder).into_iter().map(content).collect();

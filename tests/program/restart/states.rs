@@ -1,4 +1,5 @@
-//! Tests of states that are saved and read in memory, for all scenes, steppers, methods and remedies.
+//! Tests of states that are saved and read in memory, for all scenes, steppers, methods and remedies (optional
+//! corrections of a step).
 
 use rayon::prelude::*;
 use slump::setting::{Group, Kind, Value};
@@ -68,7 +69,8 @@ fn with(remedy: &Remedy) -> Remedies {
     remedies
 }
 
-/// Returns settings with every combination of stepper and method, with every friction model, and with every remedy.
+/// Returns settings with every combination of stepper and method, with every friction model, and with every remedy
+/// (optional correction of a step).
 fn ways(scene: &Scene) -> Vec<Settings> {
     let mut base = scene.settings();
     base.solver.max_sweeps = base.solver.max_sweeps.min(40);

@@ -1,4 +1,4 @@
-//! Tests of the paths of files that a study names, and of temporary files that killed programs leave.
+//! Tests of the paths of files that a study (a list of runs) names, and of temporary files that killed programs leave.
 
 use super::{runs, study, sweep};
 use crate::program::*;

@@ -1,4 +1,4 @@
-//! Tests of the options of recordings, and of recordings of the runs of a study.
+//! Tests of the options of recordings, and of recordings of the runs of a study (a list of runs).
 
 use super::tables::{metadata, number, parquet, parts, steps};
 use super::*;
@@ -181,7 +181,8 @@ fn written(folder: &Path, study: &str) -> PathBuf {
     path
 }
 
-/// Returns the key (the name that the study gives to a run) and the Bond number of each run of a study.
+/// Returns the key (the name that the study gives to a run) and the Bond number of each run of a study (a list of
+/// runs).
 fn runs(out: &Path) -> Vec<(String, String)> {
     let mut table = csv::Reader::from_path(out.join("runs.csv")).expect("a table");
     let names = table.headers().expect("names").clone();

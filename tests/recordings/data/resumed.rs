@@ -7,7 +7,8 @@ use slump::sim::ForceSums;
 
 use super::*;
 
-/// Returns all files of a recording except the manifest: their relative paths and contents.
+/// Returns all files of a recording except the manifest (the file that describes the recording): their relative paths
+/// and contents.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut all = BTreeMap::new();
     for name in names_in(folder) {

@@ -84,12 +84,14 @@ pub(crate) struct LookAhead {
     pub distance: f64,
     /// Largest gap, m. A pair of bodies with a larger gap is not added to the contact list, unless it is bonded.
     pub reach: f64,
-    /// Criterion by which a pair of bodies in the contact list counts as in touch, so that cohesion acts between them.
+    /// Criterion by which a pair of bodies in the contact list counts as in touch (it touches, or its bond exists), so
+    /// that cohesion acts between them.
     pub in_touch: InTouch,
 }
 
-/// Criterion by which a pair of bodies in the contact list counts as in touch. Cohesion acts only between bodies that
-/// are in touch. All other pairs in the list may touch within the step, but do not touch yet.
+/// Criterion by which a pair of bodies in the contact list counts as in touch (it touches, or its bond exists).
+/// Cohesion acts only between bodies that are in touch. All other pairs in the list may touch within the step, but do
+/// not touch yet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum InTouch {
     /// Two bodies are in touch, so that cohesion acts between them, if their gap is closed when the step begins.
@@ -148,7 +150,7 @@ impl LookAhead {
 pub(crate) struct RelativeMotion {
     /// Position (m) that the grain would have had, relative to the other body, at the beginning of the step (time 0) if
     /// its present velocity had been the same since then, minus its actual relative position at that time. It is 0
-    /// unless a shock has changed the velocity during the step.
+    /// unless a shock (collision) has changed the velocity during the step.
     pub offset: DVec2,
     /// Velocity of the grain minus the velocity of the other body at the time 0 of this motion, m/s.
     pub velocity: DVec2,

@@ -2,12 +2,13 @@
 //!
 //! **The grid** is a cell list over a hashed uniform grid: points sorted by cell, in linear time and memory. The cells
 //! are squares. Their width is the largest distance between the centres of two discs at which a pair is searched: the
-//! diameter of the largest disc plus two search margins. So the two points of a pair lie in the same cell or in
-//! neighbouring cells. Each point (the centre of a disc) is compared with the points of its own cell and of half of the
-//! 8 cells around it (on a line, of half of 2), so each pair is found once. The index of a cell is hashed into about as
-//! many buckets as there are points. So a grain that flies far away costs one bucket instead of a larger grid, and a
-//! scene far from the origin costs nothing. Points are sorted by bucket with a counting sort. The stored cell of each
-//! point distinguishes points of different cells in the same bucket.
+//! diameter of the largest disc plus two search margins (lengths that are added to the radii, so that pairs that may
+//! touch soon are found, too). So the two points of a pair lie in the same cell or in neighbouring cells. Each point
+//! (the centre of a disc) is compared with the points of its own cell and of half of the 8 cells around it (on a line,
+//! of half of 2), so each pair is found once. The index of a cell is hashed into about as many buckets as there are
+//! points. So a grain that flies far away costs one bucket instead of a larger grid, and a scene far from the origin
+//! costs nothing. Points are sorted by bucket with a counting sort. The stored cell of each point distinguishes points
+//! of different cells in the same bucket.
 //!
 //! **The tree** is parry's bounding volume hierarchy, for discs of very different sizes. Grid cells are wider than the
 //! largest disc, so each small disc would be compared with very many others. A tree does not need a common cell width.
@@ -20,9 +21,10 @@ use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 
 /// Ratio of the largest to the smallest disc above which the search uses the tree. Below it, the search uses the grid.
-/// The sizes that are compared are the radii of the discs, and also the radii plus search margins. The value lies
-/// between two measured ratios: at 1.5 the grid and the tree take about the same time, and at 20 the grid takes 1.2 to
-/// 18 times as long as the tree (`cargo bench --bench broad_phase`).
+/// The sizes that are compared are the radii of the discs, and also the radii plus search margins (lengths added to the
+/// radii, so that pairs that may touch soon are found, too). The value lies between two measured ratios: at 1.5 the
+/// grid and the tree take about the same time, and at 20 the grid takes 1.2 to 18 times as long as the tree (`cargo
+/// bench --bench broad_phase`).
 const SIZE_RATIO_OF_TREE: f64 = 4.0;
 
 /// Search for pairs of nearby discs, by a grid or a tree.
@@ -89,8 +91,8 @@ impl BroadPhase {
     }
 }
 
-/// Returns true if the sizes of the discs (radii, or radii plus search margins, m) differ so much that the search uses
-/// the tree. Also returns the largest size, m.
+/// Returns true if the sizes of the discs (radii, or radii plus the lengths that the search adds to the radii, m)
+/// differ so much that the search uses the tree. Also returns the largest size, m.
 fn spread(sizes: impl Iterator<Item = f64> + Clone) -> (bool, f64) {
     let largest = sizes.clone().fold(0.0, f64::max);
     let smallest = sizes.fold(f64::INFINITY, f64::min);

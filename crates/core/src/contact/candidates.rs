@@ -20,7 +20,7 @@ use super::seam_search;
 use crate::error::{Error, Result};
 use crate::world::{Carry, World};
 
-/// Lengths that decide which pairs of bodies are candidates and which touch, m.
+/// Lengths that decide which pairs of bodies are candidates (pairs that may touch soon) and which pairs touch, m.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reach {
@@ -48,7 +48,8 @@ pub struct Candidates {
     /// Upper bound, m, for the displacement of the surface of any feature (half-space, segment or polygon) near any
     /// grain since the list was last built.
     way_of_features: f64,
-    /// Largest displacement, since the list was last built, of a fixed disc with a prescribed or driven motion, m.
+    /// Largest displacement, since the list was last built, of a fixed disc with a prescribed or force-driven motion,
+    /// m.
     way_of_discs: f64,
     /// Distance along x, m, by which the copies of the discs above and below the periodic cell have moved relative to
     /// the discs themselves since the list was last built. It is 0 unless the periodic borders are sheared, so that
@@ -65,11 +66,11 @@ pub struct Candidates {
     skin_of_features: f64,
     /// Centres of the grains and fixed discs when the list was last built, m.
     centres: Vec<DVec2>,
-    /// Candidate pairs of two discs, in the order in which the search found them.
+    /// Candidate pairs (pairs that may touch soon) of two discs, in the order in which the search found them.
     #[serde(skip)]
     pairs: Vec<(u32, u32)>,
-    /// Start indices in `others`: grain i has the candidates `others[starts[i] .. starts[i + 1]]`, in increasing
-    /// order.
+    /// Start indices in `others`: grain i has the candidates (bodies that it may touch soon) `others[starts[i] ..
+    /// starts[i + 1]]`, in increasing order.
     starts: Vec<u32>,
     others: Vec<u32>,
 }
@@ -107,8 +108,8 @@ impl Candidates {
         })
     }
 
-    /// Returns an object for the search of candidate pairs in `world`, with the search distances of this one and an
-    /// empty list of pairs.
+    /// Returns an object for the search of candidate pairs (bodies that may touch soon) in `world`, with the search
+    /// distances of this one and an empty list of pairs.
     ///
     /// # Errors
     /// The errors of [`Self::new`].
@@ -116,8 +117,8 @@ impl Candidates {
         Self::new(world, self.reach)
     }
 
-    /// Completes candidates that were read from a file with the fields that the file does not contain. `world` is the
-    /// world to which the candidates belong.
+    /// Completes candidates (pairs of bodies that may touch soon) that were read from a file with the fields that the
+    /// file does not contain. `world` is the world to which the candidates belong.
     ///
     /// # Errors
     /// If the candidates refer to bodies that do not exist.
@@ -216,13 +217,14 @@ impl Candidates {
         self.reach.gap_tolerance
     }
 
-    /// Returns the numbers of the bodies with which the grain `index` forms candidate pairs, in increasing order.
+    /// Returns the numbers of the bodies with which the grain `index` forms candidate pairs (pairs that may touch
+    /// soon), in increasing order.
     pub fn of(&self, index: usize) -> &[u32] {
         &self.others[self.starts[index] as usize..self.starts[index + 1] as usize]
     }
 
-    /// Rebuilds the list of candidates if the grains have moved so far that the present list may be incomplete.
-    /// Returns true if the list was rebuilt.
+    /// Rebuilds the list of candidates (pairs of bodies that may touch soon) if the grains have moved so far that the
+    /// present list may be incomplete. Returns true if the list was rebuilt.
     pub fn update<const AXES: usize>(&mut self, world: &World) -> bool {
         self.update_ahead::<AXES>(world, |_| 0.0, 0.0)
     }
@@ -259,8 +261,9 @@ impl Candidates {
     }
 
     /// Sets the skin (search margin, m) of each body to at least twice its expected displacement in the next step, so
-    /// that the list of candidates can be used for more than one step. `of_grain` returns the displacement of a grain,
-    /// and `of_others` is the displacement of fixed discs and features (half-spaces, segments, polygons), m.
+    /// that the list of candidates (pairs of bodies that may touch soon) can be used for more than one step. `of_grain`
+    /// returns the displacement of a grain, and `of_others` is the displacement of fixed discs and features
+    /// (half-spaces, segments, polygons), m.
     fn set_skins(&mut self, grains: usize, of_grain: impl Fn(usize) -> f64, of_others: f64) {
         let usual = 0.5 * self.reach.skin;
         self.skin_of_features = usual.max(2.0 * of_others);
@@ -301,9 +304,9 @@ impl Candidates {
         self.add_features(world);
     }
 
-    /// Sorts the candidate pairs by the index of their first grain, with a counting sort, and writes the second bodies
-    /// of the sorted pairs to the list `others`. `starts` receives the index at which each grain's part of this list
-    /// begins.
+    /// Sorts the candidate pairs (pairs of bodies that may touch soon) by the index of their first grain, with a
+    /// counting sort, and writes the second bodies of the sorted pairs to the list `others`. `starts` receives the
+    /// index at which each grain's part of this list begins.
     fn sort_pairs(&mut self, grain_count: usize) {
         self.starts.clear();
         self.starts.resize(grain_count + 1, 0);
@@ -329,8 +332,9 @@ impl Candidates {
         }
     }
 
-    /// Adds to the candidates of each grain the features (half-spaces, segments, polygons) whose gap to the grain is
-    /// below the sum of two search margins: the margin of the grain and the margin of all features.
+    /// Adds to the candidates of each grain (bodies that it may touch soon) the features (half-spaces, segments,
+    /// polygons) whose gap to the grain is below the sum of two search margins, m: the margin of the grain and the
+    /// margin of all features.
     fn add_features(&mut self, world: &World) {
         if self.features.is_empty() {
             return;

@@ -275,8 +275,8 @@ impl ContactList {
     }
 
     /// Finds the contacts at the present positions: pairs of nearby bodies (`candidates`) with a gap below the gap
-    /// tolerance. A contact that existed in the previous step starts with its previous impulses and stepper data. All
-    /// other contacts start with zero.
+    /// tolerance (the largest gap of a touching pair). A contact that existed in the previous step starts with its
+    /// previous impulses and stepper data. All other contacts start with zero.
     pub fn detect<const AXES: usize>(&mut self, world: &World, candidates: &Candidates) {
         self.looks_ahead = false;
         let gap_tolerance = candidates.gap_tolerance();

@@ -36,7 +36,8 @@ pub struct ContactLaw {
 }
 
 impl ContactLaw {
-    /// Returns the law with a friction coefficient μ, a capture speed C₀Δt/m_ij (m/s; 0 without cohesion) and a
+    /// Returns the law with a friction coefficient μ, a capture speed C₀Δt/m_ij (the opening speed that cohesion
+    /// cancels in one step, m/s: cohesion force times time step, divided by effective mass; 0 without cohesion) and a
     /// friction cone.
     #[inline(always)]
     pub fn new(friction: f64, capture_speed: f64, cone: FrictionCone) -> Self {
@@ -76,15 +77,16 @@ impl ContactLaw {
     }
 
     /// Returns σ − c, m/s: the part of the shifted normal impulse σ that bounds friction. σ is the normal impulse per
-    /// effective mass plus the capture speed, and c is its value at the tip of the friction cone. If σ − c is negative,
-    /// friction is not possible.
+    /// effective mass plus the capture speed (the opening speed that cohesion cancels in one step), and c is its value
+    /// at the tip of the friction cone. If σ − c is negative, friction is not possible.
     #[inline(always)]
     pub(crate) fn rubbing<T: Lanes>(&self, shifted_impulse: T) -> T {
         shifted_impulse - shifted_impulse.same(self.tip)
     }
 
     /// Returns the largest tangential impulse per effective mass (m/s) that the friction cone allows. The argument is
-    /// the shifted normal impulse: the normal impulse per effective mass plus the capture speed, m/s.
+    /// the shifted normal impulse: the normal impulse per effective mass plus the capture speed (the opening speed that
+    /// cohesion cancels in one step), m/s.
     #[inline(always)]
     pub fn friction_bound<T: Lanes>(&self, shifted_impulse: T) -> T {
         shifted_impulse.same(self.friction) * signorini(self.rubbing(shifted_impulse))
@@ -98,7 +100,7 @@ pub(crate) fn cohesion_force(bond: f64, effective_mass: f64, acceleration: f64) 
 }
 
 /// Projects a shifted normal impulse σ onto the allowed values σ ≥ 0. σ is the normal impulse per effective mass plus
-/// the capture speed, m/s.
+/// the capture speed (the opening speed that cohesion cancels in one step), m/s.
 #[inline(always)]
 pub(crate) fn signorini<T: Lanes>(shifted_impulse: T) -> T {
     shifted_impulse.larger(shifted_impulse.same(0.0))

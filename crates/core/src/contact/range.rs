@@ -14,11 +14,12 @@
 //! and the pull depends on how far the bond has been stretched since then. Breaking a bond takes the same work at
 //! every time step Δt, and collisions bounce.
 //!
-//! **Why the impulse of a bond is bounded in each step.** The bond alone would break or close in the time √(2δ_c
-//! m_ij/C₀). A step that is much longer than this time sees only the beginning of the break. If N ≥ −C₀ were the only
-//! condition on the normal force N, the bond could pull for all of Δt. It would then stop any opening slower than
-//! C₀Δt/m_ij and take any amount of work, so cohesion would grow with Δt. But a bond pulls only as long as it exists.
-//! So its impulse is bounded by C₀·min(Δt, τ), with τ (s) the time at which the bond has opened by δ_c.
+//! **Why the impulse of a bond is bounded in each step.** A pair that is thrown apart faster than the escape speed
+//! breaks its bond within the time √(2δ_c m_ij/C₀). In a step that is much longer than this time, the bond therefore
+//! exists only at the beginning of the step. If N ≥ −C₀ were the only condition on the normal force N, the bond could
+//! pull for all of Δt. It would then stop any opening slower than C₀Δt/m_ij and take any amount of work, so cohesion
+//! would grow with Δt. But a bond pulls only as long as it exists. So its impulse is bounded by C₀·min(Δt, τ), with τ
+//! (s) the time at which the bond has opened by δ_c.
 //!
 //! **The time τ in a step.** Let the bond be stretched by s (m) and open with the speed v (m/s) at the beginning of the
 //! step, after the collisions of the step, which are solved first (`sim::steppers::range::bonds`). Let the forces on
@@ -59,7 +60,7 @@ pub(crate) const TOUCH_IN_DIAMETERS: f64 = 1e-4;
 #[serde(deny_unknown_fields)]
 pub(crate) struct Bond {
     /// True if the bond exists: under the law `range`, if the two bodies have touched and their bond has not broken
-    /// since. Under other laws, true if the pair is in touch, so that cohesion acts.
+    /// since. Under other laws, true if the pair counts as touching, so that cohesion acts.
     pub alive: bool,
     /// Stretch s of the bond, m: the distance by which the two bonded bodies have been pulled apart. 0 if they touch.
     pub stretch: f64,

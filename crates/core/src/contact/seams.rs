@@ -35,9 +35,9 @@ pub(super) struct Seam {
     /// Index of the shared corner among the corners of the feature of another boundary on which it lies. `None` if the
     /// corner lies on a side of that feature, not at one of its corners.
     pub other_corner: Option<usize>,
-    /// True if the wall piece with this corner comes before the other wall piece that shares the corner, in the list of
-    /// all wall pieces. A grain that touches the corner would touch both pieces, so the contact is counted for the
-    /// later piece only.
+    /// True if the wall piece (segment or polygon) with this corner comes before the other wall piece that shares the
+    /// corner, in the list of all wall pieces. A grain that touches the corner would touch both pieces, so the contact
+    /// is counted for the later piece only.
     pub is_earlier: bool,
 }
 

@@ -132,7 +132,7 @@ const FARTHEST_IN_RADII: f64 = 1e15;
 const MOST_DIAMETERS_OF_MEAN: f64 = 100.0;
 
 /// Checks that a value is finite and above 0. `field` names the value in the error message. The name is formatted only
-/// if there is an error. This saves time, because a study checks each disc of each run.
+/// if there is an error. This saves time, because a study (a list of runs) checks each disc of each run.
 fn positive(field: Arguments<'_>, value: f64, unit: &str) -> Result<()> {
     if value > 0.0 && value.is_finite() {
         Ok(())
@@ -186,13 +186,15 @@ impl Scene {
         }
     }
 
-    /// Returns the settings of the scene: its stepper, parameters, solver settings and remedies.
+    /// Returns the settings of the scene: its stepper, parameters, solver settings and remedies (optional corrections
+    /// of a step, such as pushing overlapping grains apart).
     pub fn settings(&self) -> Settings {
         let Self { stepper, parameters, solver, remedies, .. } = *self;
         Settings { stepper, parameters, solver, remedies }
     }
 
-    /// Replaces the settings of the scene: its stepper, parameters, solver settings and remedies.
+    /// Replaces the settings of the scene: its stepper, parameters, solver settings and remedies (optional corrections
+    /// of a step, such as pushing overlapping grains apart).
     pub fn set_settings(&mut self, settings: Settings) {
         let Settings { stepper, parameters, solver, remedies } = settings;
         (self.stepper, self.parameters, self.solver, self.remedies) =
@@ -398,7 +400,7 @@ words! {
     }
 }
 
-/// Settings of the recording of a run, in scene files and studies.
+/// Settings of the recording of a run, in scene files and studies (lists of runs).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DataSettings {

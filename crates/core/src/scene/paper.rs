@@ -134,9 +134,9 @@ const START_IN_DIAMETERS: f64 = 7.865;
 /// point.
 ///
 /// Disc i is at the centre of attraction, and disc j touches it on the right. Disc k starts at rest on the left and
-/// falls onto disc i. Whether this shock separates i and j depends on the time step. At small time steps the remaining
-/// error of the solver also decides whether they separate, because in an exactly solved step the relative velocity of i
-/// and j after the shock is 0.
+/// falls onto disc i. Whether this shock (collision) separates i and j depends on the time step. At small time steps
+/// the remaining error of the solver also decides whether they separate, because in an exactly solved step the relative
+/// velocity of i and j after the shock is 0.
 pub fn cradle() -> Scene {
     cradle_from(START_IN_DIAMETERS)
 }

@@ -5,15 +5,15 @@ use crate::setting::{Group, words};
 use crate::sim::{REMEDIES, Remedies, Settings};
 use crate::solver::{Method, SolverSettings, StopTest};
 
-/// Touch tolerance (largest gap at which grains touch) of the preset `robust`, in mean diameters. If the errors of a
-/// step open a contact by less than this length, the two grains still touch.
+/// Touch tolerance (largest gap at which grains touch) of the preset (group of settings) `robust`, in mean diameters.
+/// If the errors of a step open a contact by less than this length, the two grains still touch.
 const TOUCH_TOLERANCE: f64 = 1e-3;
-/// Restitution threshold of the preset `robust`, in units of g·Δt (gravity times time step): contacts that close
-/// slower than this do not bounce. With the value 2 nearly every step has a solution.
+/// Restitution threshold of the preset (group of settings) `robust`, in units of g·Δt (gravity times time step):
+/// contacts that close slower than this do not bounce. With the value 2 nearly every step has a solution.
 const RESTITUTION_THRESHOLD: f64 = 2.0;
-/// Tolerance of the solver in the preset `robust`: largest residual of a solved step.
+/// Tolerance of the solver in the preset (group of settings) `robust`: largest residual of a solved step.
 const TOLERANCE: f64 = 1e-8;
-/// Largest number of sweeps of the solver per step in the preset `robust`.
+/// Largest number of sweeps of the solver per step in the preset (group of settings) `robust`.
 const MAX_SWEEPS: u32 = 5_000;
 
 words! {
@@ -26,14 +26,14 @@ words! {
 }
 
 impl Preset {
-    /// Sets the settings of a scene to those of the preset.
+    /// Sets the settings of a scene to those of this preset (group of settings).
     pub fn apply(self, scene: &mut Scene) {
         let mut settings = scene.settings();
         self.apply_to_settings(&mut settings);
         scene.set_settings(settings);
     }
 
-    /// Sets those settings that can change during a run to the values of the preset.
+    /// Sets those settings that can change during a run to the values of this preset (group of settings).
     pub fn apply_to_settings(self, settings: &mut Settings) {
         match self {
             Self::Paper => {

@@ -78,8 +78,8 @@ pub(super) fn on_turned_bonds(settings: &Settings) -> Advice {
     }
 }
 
-/// Returns the advice for a position, a velocity or a kinetic energy that is no longer finite: more substeps if the
-/// stepper `dem` has too few for stable springs, otherwise a shorter time step.
+/// Returns the advice for a position, a velocity or a kinetic energy that is no longer finite: more substeps (equal
+/// parts of a step) if the stepper `dem` has too few for stable springs, otherwise a shorter time step.
 pub(super) fn on_overflow(state: &State, settings: &Settings) -> Advice {
     match has_too_few_substeps(state, settings) {
         true => Advice::StableSubsteps,
@@ -88,10 +88,10 @@ pub(super) fn on_overflow(state: &State, settings: &Settings) -> Advice {
 }
 
 /// Returns the advice for bodies that overlap too deeply, and the present stiffness of the contact springs, N/m, if the
-/// advice is a larger stiffness. Only the stepper `dem` has contact springs. Under it the advice is more substeps if
-/// there are too few for stable springs. Otherwise the springs are too soft, which no shorter time step mends, so the
-/// advice is a larger stiffness. Under all other steppers the overlap is deep because the contact was detected too
-/// late, so the advice is a shorter time step.
+/// advice is a larger stiffness. Only the stepper `dem` has contact springs. Under it the advice is more substeps
+/// (equal parts of a step) if there are too few for stable springs. Otherwise the springs are too soft, which no
+/// shorter time step mends, so the advice is a larger stiffness. Under all other steppers the overlap is deep because
+/// the contact was detected too late, so the advice is a shorter time step.
 pub(super) fn on_depth(state: &State, settings: &Settings) -> (Advice, Option<f64>) {
     if settings.stepper != Stepper::Dem {
         return (Advice::TimeStep, None);
@@ -104,8 +104,8 @@ pub(super) fn on_depth(state: &State, settings: &Settings) -> (Advice, Option<f6
     (Advice::Stiffness, Some(stiffness))
 }
 
-/// True if the stepper is `dem` and the number of substeps in the settings is smaller than the number for which its
-/// springs are stable.
+/// True if the stepper is `dem` and the number of substeps (equal parts of a step) in the settings is smaller than the
+/// number for which its springs are stable.
 fn has_too_few_substeps(state: &State, settings: &Settings) -> bool {
     let (parameters, asked) = (&settings.parameters, settings.parameters.substeps);
     let stable = stable_substeps(&state.world, state.physics, parameters);

@@ -188,7 +188,8 @@ impl Watch {
     }
 
     /// Returns the alarm that reports grains placed in overlap; `None` if there is no such overlap or if the remedy
-    /// `push-out` is on. `observables` are the measurements before the next step.
+    /// `push-out` (an optional correction that moves such grains apart) is on. `observables` are the measurements
+    /// before the next step.
     pub(super) fn of_placed(
         &self,
         observables: &Observables,

@@ -1,4 +1,5 @@
-//! Quantities that follow from the settings and the world of a simulation, such as the number of substeps.
+//! Quantities that follow from the settings and the world of a simulation, such as the number of substeps (parts into
+//! which a stepper divides a step).
 
 use crate::sim::Settings;
 use crate::sim::settings::FractureWork;
@@ -6,7 +7,7 @@ use crate::sim::simulation::Simulation;
 use crate::solver::{Method, picked};
 
 impl Simulation {
-    /// Returns the number of substeps in the next step; 1 if the stepper solves the step as a whole.
+    /// Returns the number of substeps (equal parts) of the next step; 1 if the stepper solves the step as a whole.
     pub fn substeps(&self) -> u32 {
         let Settings { stepper, parameters, .. } = &self.settings;
         (stepper.info().substeps)(&self.state.world, self.state.physics, parameters)
@@ -24,8 +25,8 @@ impl Simulation {
         self.state.world.motions.iter().any(|motion| motion.drive.is_some())
     }
 
-    /// Returns the longest substep, s, for which the contact springs of the next step are guaranteed to be stable;
-    /// `None` if contacts are not springs.
+    /// Returns the longest substep (part of a step), s, for which the contact springs of the next step are guaranteed
+    /// to be stable; `None` if contacts are not springs.
     pub fn critical_time_step_secs(&self) -> Option<f64> {
         let Settings { stepper, parameters, .. } = &self.settings;
         (stepper.info().critical_time_step_secs)(&self.state.world, self.state.physics, parameters)

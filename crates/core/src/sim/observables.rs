@@ -106,7 +106,7 @@ pub struct Observables {
 
 impl Observables {
     /// True if these observables have columns that only some runs have, such as the energies of bonds, the residual
-    /// under a friction model, or the works of driven walls or sheared borders.
+    /// under a friction model, or the works of walls driven by a force or of sheared borders.
     pub fn has_further_columns(&self) -> bool {
         let Self { bond_work, model_residual, drive_energy, border_work, .. } = self;
         [bond_work, model_residual, drive_energy, border_work].iter().any(|some| some.is_some())

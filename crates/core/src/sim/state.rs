@@ -230,7 +230,8 @@ impl State {
         self.look_anew()
     }
 
-    /// Starts the neighbour search again from the present positions: replaces the list of candidate pairs.
+    /// Starts the neighbour search again from the present positions: replaces the list of candidate pairs (pairs of
+    /// bodies that may touch soon).
     pub(crate) fn look_anew(&mut self) -> Result<()> {
         let skin = SKIN_IN_DIAMETERS * self.world.mean_diameter;
         let gap_tolerance = self.candidates.gap_tolerance();

@@ -3,7 +3,8 @@
 /// Computing times of one step, s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepTimes {
-    /// Computing time of contact detection, s: finding candidate pairs and contacts.
+    /// Computing time of contact detection, s: finding candidate pairs (pairs of bodies that may touch soon) and
+    /// contacts.
     pub detection_secs: f64,
     /// Computing time of the solver, s, including the solution of collisions; 0 for the steppers that divide a step
     /// into substeps without a solver (`tgs-soft`, `avbd` and `dem`).

@@ -35,8 +35,8 @@ pub struct StepResult {
 /// this energy when it closes, and dissipates it when it breaks. So the work of a bond is −Δ(C₀ s). In the step in
 /// which a bond breaks, its work is −C₀ times the opening until the break. If b m_ij is the impulse of the bond until
 /// the break, with b in m/s and the effective mass m_ij, this work equals −b m_ij ½(v⁺ + v^n), with the opening speeds
-/// v⁺ after the shocks and v^n at the end of the step. A bond that breaks at the stretch δ_c has dissipated C₀δ_c in
-/// total. The rest of the normal work of a contact is done by the repulsion between the grains.
+/// v⁺ after the shocks (collisions) and v^n at the end of the step. A bond that breaks at the stretch δ_c has
+/// dissipated C₀δ_c in total. The rest of the normal work of a contact is done by the repulsion between the grains.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BondEnergies {
     /// Work of all bonds in this step, J.

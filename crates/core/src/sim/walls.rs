@@ -45,13 +45,13 @@ use crate::world::{Boundary, Carry, RigidVelocity, World};
 /// Value in `of_boundary`, `of_disc` and `of_feature` for a body that does not belong to a moving wall.
 const NONE: u32 = u32::MAX;
 
-/// Moving walls of the present step: boundaries and fixed discs with a motion, and pistons. The vectors keep their
-/// memory between steps.
+/// Moving walls of the present step: boundaries and fixed discs with a motion, and pistons (half-spaces that move by
+/// themselves at a given speed). The vectors keep their memory between steps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Walls {
     moving: Vec<Wall>,
     /// Time step for which the walls' velocities are means, s. For a stepper that detects contacts in each substep, the
-    /// length of a substep.
+    /// length of a substep (part of a step).
     secs: f64,
     /// For each boundary, the index of its wall in `moving`, or [`NONE`] if the boundary does not move.
     of_boundary: Vec<u32>,

@@ -118,7 +118,7 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     fn relative_to_image<T: Lanes>(_normal: Self::Normal<T>, velocity: [T; 2]) -> [T; 2] {
         velocity
     }
-    /// Returns the normal and tangential velocity, m/s, of body i relative to body j, or to j's image across a border.
+    /// Returns the normal and tangential velocity, m/s, of body i relative to body j, or to j's periodic image.
     fn relative_velocity<T: Lanes>(
         normal: Self::Normal<T>,
         i: &Self::Body<T>,

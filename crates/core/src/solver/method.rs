@@ -93,8 +93,8 @@ const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
 const BOUND_BY_BOUND: &str = "the same, the bound of friction taken anew every iteration";
 
 /// Returns the properties of a method that supports periodic borders that shear, and contact laws that differ between
-/// pairs of materials. The method supports neither friction models other than Coulomb's law nor driven walls nor
-/// rolling friction.
+/// pairs of materials. The method supports neither friction models other than Coulomb's law nor walls driven by a force
+/// nor rolling friction.
 const fn known(
     method: Method,
     order: MethodOrder,

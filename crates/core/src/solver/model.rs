@@ -84,8 +84,8 @@ pub struct Slot<M: Model> {
     pub memory: Memory,
 }
 
-/// For each model, its contact problem and work memory (a [`Slot`]). The memory of models that a scene does not use
-/// allocates nothing.
+/// For each model (variant of the mechanics, for example without friction), its contact problem and work memory (a
+/// [`Slot`]). The memory of models that a scene does not use allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Slots {
     line: Slot<Line>,
@@ -96,7 +96,8 @@ pub struct Slots {
     sheared_plane: Slot<ShearedPlane>,
 }
 
-/// A model whose contact problem and work memory are stored in [`Slots`].
+/// A model (variant of the mechanics, for example without friction) whose contact problem and work memory are stored in
+/// [`Slots`].
 pub trait Slotted: Model {
     /// Returns the contact problem and the work memory of this model.
     fn slot(slots: &mut Slots) -> &mut Slot<Self>;

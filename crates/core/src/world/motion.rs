@@ -110,16 +110,18 @@ pub enum MotionCourse {
 }
 
 impl Motion {
-    /// Returns the mean velocity of the bodies that the course prescribes for the next `secs` seconds.
+    /// Returns the mean velocity of the bodies that the course (their prescribed motion) gives for the next `secs`
+    /// seconds.
     pub(crate) fn velocity_in(&self, secs: f64) -> RigidVelocity {
         let course = self.course.as_ref();
         course.map_or(RigidVelocity::NONE, |course| course.velocity_in(self.elapsed_secs, secs))
     }
 
-    /// Returns the velocity that the bodies have just before a step of `secs` seconds. If the course is a sine or a
-    /// swing, which are smooth, this is the mean velocity over the `secs` seconds before the step. Under other courses
-    /// the velocity changes only by jumps, and after a jump the wall must strike the grains with its new velocity. So
-    /// for these courses the mean velocity during the step is returned.
+    /// Returns the velocity that the bodies have just before a step of `secs` seconds. If their course (prescribed
+    /// motion) is an oscillation along a line (sine) or about a pivot (swing), which is smooth, this is the mean
+    /// velocity over the `secs` seconds before the step. Under other courses the velocity changes only by jumps, and
+    /// after a jump the wall must strike the grains with its new velocity. So for these courses the mean velocity
+    /// during the step is returned.
     pub(crate) fn velocity_before(&self, secs: f64) -> RigidVelocity {
         match &self.course {
             Some(course @ (MotionCourse::Sine { .. } | MotionCourse::Swing { .. })) => {
@@ -181,7 +183,7 @@ impl Motion {
 }
 
 impl MotionCourse {
-    /// Returns the pivot of a course that rotates the bodies, m. `None` for other courses.
+    /// Returns the pivot of a course (prescribed motion) that rotates the bodies, m. `None` for other courses.
     pub(super) fn pivot(&self) -> Option<DVec2> {
         match self {
             Self::Rotation { pivot, .. }
@@ -278,10 +280,11 @@ pub struct Drive {
     pub width: Option<f64>,
     /// Total mass of the bodies that this drive moves, kg.
     pub mass: f64,
-    /// Damping coefficient of the driven bodies, kg/s: the force that opposes their motion, divided by their speed.
+    /// Damping coefficient of the bodies that the force drives, kg/s: the force that opposes their motion, divided by
+    /// their speed.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub damping: f64,
-    /// Speed of the driven bodies along the direction of the drive, m/s.
+    /// Speed of the bodies that the force drives along the direction of the drive, m/s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub speed: f64,
 }
@@ -313,7 +316,7 @@ impl Drive {
         }
     }
 
-    /// Kinetic energy ½mv² of the driven bodies, J (m: mass, v: speed).
+    /// Kinetic energy ½mv² of the bodies that the force drives, J (m: mass, v: speed).
     pub fn kinetic_energy(&self) -> f64 {
         0.5 * self.mass * self.speed * self.speed
     }
@@ -440,7 +443,7 @@ mod tests {
     }
 
     /// Checks that the displacements of steps of different lengths add up to the displacement that the course
-    /// prescribes for the whole time.
+    /// (prescribed motion) gives for the whole time.
     #[test]
     fn steps_add_up_to_the_course() {
         let pivot = DVec2::new(1.0, -2.0);

@@ -52,8 +52,8 @@ pub(super) fn check_motions(
     Ok(())
 }
 
-/// Checks that the drive of a motion (a force or pressure) is valid and compatible with the prescribed course of the
-/// motion. `field` is the name of the motion in error messages.
+/// Checks that the drive of a motion (a force or pressure) is valid and compatible with the course (prescribed part) of
+/// the motion. `field` is the name of the motion in error messages.
 fn check_drive(motion: &Motion, field: &str, periodic: Option<Periodic>) -> Result<()> {
     /// Largest absolute cosine of the angle between two directions that count as perpendicular. It allows for
     /// rounding.

@@ -24,8 +24,8 @@ pub const DEBONDING_DISTANCE: f64 = 0.01;
 /// collapse.
 const TOUCH_TOLERANCE: f64 = 1e-5;
 
-/// Largest allowed number of substeps per step. With a larger number, a single step of a pile would take many seconds
-/// of computing time.
+/// Largest allowed number of substeps (equal parts) per step. With a larger number, a single step of a pile would take
+/// many seconds of computing time.
 pub(crate) const MAX_SUBSTEPS: u32 = 100_000;
 
 /// Largest allowed number of steps of a run. Even in the smallest scene more steps would take months of computing

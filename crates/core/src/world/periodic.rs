@@ -53,7 +53,7 @@ impl Periodic {
         Self { x: Some(x), y: Some(y), shear_rate: 0.0, shift: 0.0 }
     }
 
-    /// Returns the width and the height of the cell, m. `None` for an axis without periodic borders.
+    /// Returns the width and the height of the periodic cell, m. `None` for an axis without periodic borders.
     pub fn periods(self) -> [Option<f64>; 2] {
         [self.x, self.y].map(|borders| borders.map(period))
     }
@@ -64,15 +64,15 @@ impl Periodic {
     }
 
     /// Returns the lower left and the upper right corner of the box with the given corners, m, extended or reduced
-    /// along each periodic axis to the borders of the cell.
+    /// along each periodic axis to the borders of the periodic cell.
     pub fn borders_or(self, [low, high]: [DVec2; 2]) -> [DVec2; 2] {
         let [left, right] = self.x.unwrap_or([low.x, high.x]);
         let [below, above] = self.y.unwrap_or([low.y, high.y]);
         [DVec2::new(left, below), DVec2::new(right, above)]
     }
 
-    /// Returns the one periodic image of a point that is inside the cell, m. The left and the lower border belong to
-    /// the cell. A point that is already in the cell is returned unchanged, bit for bit.
+    /// Returns the one periodic image of a point that is inside the periodic cell, m. The left and the lower border
+    /// belong to the cell. A point that is already in the cell is returned unchanged, bit for bit.
     pub fn wrap(self, place: DVec2) -> DVec2 {
         let x = match self.is_sheared() {
             true => place.x - self.lean(self.cells_above(place.y)),
@@ -97,8 +97,8 @@ impl Periodic {
     }
 
     /// Returns the displacements (m) by which periodic images of a shape differ from the shape, for all images that
-    /// extend into the cell. The shape itself is not one of them. The arguments are the corners of the bounding box of
-    /// the shape. A shape that is inside the cell, except for rounding, has no such images.
+    /// extend into the periodic cell. The shape itself is not one of them. The arguments are the corners of the
+    /// bounding box of the shape. A shape that is inside the cell, except for rounding, has no such images.
     pub fn images(self, [low, high]: [DVec2; 2]) -> impl Iterator<Item = DVec2> {
         let middle = 0.5 * (low.x + high.x);
         let along_y = reaching(self.y, [low.y, high.y]).into_iter().flatten();
@@ -166,7 +166,7 @@ pub(super) fn shortest(borders: Option<[f64; 2]>, offset: f64) -> f64 {
 }
 
 /// Returns the displacements (m) along one axis by which periodic images of an interval differ from the interval, for
-/// all images that overlap the cell. The first displacement is 0, for the interval itself.
+/// all images that overlap the periodic cell. The first displacement is 0, for the interval itself.
 fn reaching(borders: Option<[f64; 2]>, [from, to]: [f64; 2]) -> [Option<f64>; 3] {
     let over = borders.map_or([None; 2], |[low, high]| {
         let period = high - low;
@@ -177,7 +177,8 @@ fn reaching(borders: Option<[f64; 2]>, [from, to]: [f64; 2]) -> [Option<f64>; 3]
 }
 
 impl Periodic {
-    /// True if the cell has sheared borders: its periodic images above and below move along x or are shifted along x.
+    /// True if the periodic cell has sheared borders: its periodic images above and below move along x or are shifted
+    /// along x.
     #[inline(always)]
     pub fn is_sheared(self) -> bool {
         self.shear_rate != 0.0 || self.shift != 0.0
@@ -210,8 +211,8 @@ impl Periodic {
         DVec2::new(offset.x - self.lean(periods_in(self.y, offset.y)), offset.y)
     }
 
-    /// Returns the number of cell heights by which a point at the height `y` (m) is above its image in the cell: 0 in
-    /// the cell itself, 1 in the periodic image directly above it.
+    /// Returns the number of cell heights by which a point at the height `y` (m) is above its image in the periodic
+    /// cell: 0 in the cell itself, 1 in the periodic image directly above it.
     pub(super) fn cells_above(self, y: f64) -> f64 {
         periods_in(self.y, y - wrapped(self.y, y))
     }

@@ -33,8 +33,8 @@ pub(super) const FILES: [&str; 3] = ["grains.dump", "contacts.dump", "walls.dump
 const DRAFT: &str = "ITEM: DRAFT";
 /// Beginning of a line that identifies an incomplete frame, even if the line was cut because the program was killed.
 const OF_A_DRAFT: &str = "ITEM: D";
-/// Header line above the simulated time of a frame. The time is written ahead of the step. Frames of grains have no
-/// time.
+/// Header line above the simulated time of a frame, in the dumps of contacts and walls. The time is written ahead of
+/// the step. The dump of grains contains no times, because MDAnalysis expects only the sections that every dump has.
 const TIME: &str = "ITEM: TIME";
 /// Header line above the step of a frame.
 const STEP: &str = "ITEM: TIMESTEP";

@@ -143,8 +143,9 @@ pub(super) fn fixed_discs(moment: &Moment) -> impl Iterator<Item = GrainState> +
     })
 }
 
-/// Returns all walls of a scene. The second value of each pair is the number of the wall's prescribed motion in the
-/// scene; `None` for pistons (walls that a force drives) and for walls at rest.
+/// Returns all walls of a scene. The second value of each pair is the number of the wall's motion in the scene's list
+/// of motions; `None` for walls at rest and for pistons (half-spaces that move by themselves at a given speed, without
+/// an entry in that list).
 pub(super) fn walls(surroundings: &Surroundings) -> Vec<(MotionView, Option<f64>)> {
     let Surroundings { boundaries, fixed_discs, moving, .. } = surroundings;
     // Pistons come first in the list `moving` and have no number.

@@ -34,13 +34,14 @@ use crate::world::{Boundary, Edge, Periodic};
 /// Limit of the packing: the largest power |p − x|² − r² of a point p in the packing with respect to the nearest grain
 /// (centre x, radius r), in squares of the mean radius. The power is 3 in the centre of a pore that is surrounded by
 /// grains of the mean radius and just large enough for one more of them: the centre of the pore is 2 radii from the
-/// centres of the grains, and 2² − 1² = 3. If the limit is smaller, loose packings have open cells inside. If the limit
-/// is larger, more of the air above a free surface counts.
+/// centres of the grains, and 2² − 1² = 3. If the limit is smaller, loose packings have open cells (cells that are not
+/// entirely in the packing) inside. If the limit is larger, more of the air above a free surface counts.
 const LARGEST_POWER: f64 = 3.0;
 
-/// Relative margin for rounding errors in the test whether a cell is closed, which means that all corners of the cell
-/// are in the packing. The squared distance of each corner from the centre of the grain must be below the largest
-/// squared distance of a point in the packing, by at least this fraction of the latter.
+/// Relative margin for rounding errors in the test whether a cell (the region nearer to a grain than to any other disc)
+/// is closed, which means that all corners of the cell are in the packing. The squared distance of each corner from the
+/// centre of the grain must be below the largest squared distance of a point in the packing, by at least this fraction
+/// of the latter.
 const CLOSED_WITHIN: f64 = 1e-9;
 
 pub(super) struct PowerCells {
@@ -125,8 +126,8 @@ impl PowerCells {
     }
 }
 
-/// Returns the indices of the grains that are still in the scene, and the discs that have cells: first these grains,
-/// then the fixed discs.
+/// Returns the indices of the grains that are still in the scene, and the discs that have cells (regions nearer to a
+/// disc than to any other disc): first these grains, then the fixed discs.
 fn sites(network: &Network, surroundings: &Surroundings) -> (Vec<usize>, Vec<Site>) {
     let (indices, grains): (Vec<usize>, Vec<&GrainState>) = network.grains().unzip();
     let mean_radius = grains.iter().map(|grain| grain.radius).sum::<f64>() / grains.len() as f64;
@@ -141,8 +142,9 @@ fn sites(network: &Network, surroundings: &Surroundings) -> (Vec<usize>, Vec<Sit
     (indices, grains.chain(fixed).map(site).collect())
 }
 
-/// Returns the half-plane that bounds the cell of the disc `first` against the cell of the disc `second` (indices in
-/// `sites`). A point p on its border has the same power |p − x|² − r² with respect to both discs (centre x, radius r).
+/// Returns the half-plane that bounds the cell (the region nearer to a disc than to any other disc) of the disc `first`
+/// against the cell of the disc `second` (indices in `sites`). A point p on its border has the same power |p − x|² − r²
+/// with respect to both discs (centre x, radius r).
 fn cut(sites: &[Site], first: usize, second: usize) -> HalfPlane {
     let (site, other) = (&sites[first], &sites[second]);
     let branch = other.position - site.position;
@@ -157,9 +159,9 @@ fn cut(sites: &[Site], first: usize, second: usize) -> HalfPlane {
     HalfPlane { offset: 0.5 * (distance + powers / distance), direction: branch / distance }
 }
 
-/// Returns, for each of the first `grains` discs of `sites`, the indices of the discs whose cells may border on the
-/// cell of this disc. Each cell lies within the circle with the radius `reach` around the centre of its disc, so only
-/// cells whose circles overlap can border on each other.
+/// Returns, for each of the first `grains` discs of `sites`, the indices of the discs whose cells (regions nearer to a
+/// disc than to any other disc) may border on the cell of this disc. Each cell lies within the circle with the radius
+/// `reach` around the centre of its disc, so only cells whose circles overlap can border on each other.
 fn neighbours(sites: &[Site], grains: usize) -> Vec<Vec<usize>> {
     let mut neighbours = vec![Vec::new(); grains];
     let centres: Vec<DVec2> = sites.iter().map(|site| site.position).collect();
@@ -215,26 +217,30 @@ impl GrainBox {
     }
 }
 
-/// A half-plane that cuts a cell: the points p with (p − x)·direction ≤ offset, with the centre x of the cell's disc.
+/// A half-plane that cuts a cell (the region nearer to a disc than to any other disc): the points p with (p −
+/// x)·direction ≤ offset, with the centre x of the cell's disc.
 #[derive(Clone, Copy, Debug)]
 struct HalfPlane {
-    /// Distance of the half-plane's border from the centre of the cell's disc, m; negative if that centre is outside
-    /// the half-plane.
+    /// Distance of the half-plane's border from the centre of the cell's disc (the disc to which the points of the cell
+    /// are nearest), m; negative if that centre is outside the half-plane.
     offset: f64,
     /// Unit normal of the half-plane's border, pointing out of the half-plane.
     direction: DVec2,
 }
 
-/// A disc that has a cell: a grain, a fixed disc, or a periodic image of such a disc.
+/// A disc that has a cell (the region nearer to it than to any other disc): a grain, a fixed disc, or a periodic image
+/// of such a disc.
 #[derive(Clone, Copy)]
 struct Site {
     position: DVec2,
     radius: f64,
-    /// Radius of the circle around the disc's centre that contains its cell, m.
+    /// Radius of the circle around the disc's centre that contains its cell (the region nearer to this disc than to any
+    /// other disc), m.
     reach: f64,
 }
 
-/// Adds those periodic images of the discs whose cells may border on a cell of an original disc.
+/// Adds those periodic images of the discs whose cells (regions nearer to a disc than to any other disc) may border on
+/// a cell of an original disc.
 fn append_images(sites: &mut Vec<Site>, periodic: Option<Periodic>) {
     let Some(periodic) = periodic else { return };
     let reach = 2.0 * sites.iter().map(|site| site.reach).fold(0.0, f64::max);
@@ -264,15 +270,16 @@ fn with_images(site: &Site, periodic: Option<Periodic>) -> impl Iterator<Item = 
 
 /// Position of a grain relative to a straight side of a boundary.
 enum Stands {
-    /// The grain is in front of the side of a boundary. The half-plane cuts the grain's cell along the line of this
-    /// side.
+    /// The grain is in front of the side of a boundary. The half-plane cuts the grain's cell (the region nearer to the
+    /// grain than to any other disc) along the line of this side.
     Before(HalfPlane),
     /// The grain is beyond an end of the side of a boundary. The vector leads from the centre of the grain to the
     /// nearer end, m.
     Beside(DVec2),
 }
 
-/// Adds the half-planes by which the sides and corners of all boundaries can cut the cell of a disc.
+/// Adds the half-planes by which the sides and corners of all boundaries can cut the cell of a disc (the region nearer
+/// to it than to any other disc).
 fn cut_by_walls(boundaries: &[Vec<Edge>], site: &Site, cuts: &mut Vec<HalfPlane>) {
     for edges in boundaries {
         let mut before = false;
@@ -321,8 +328,8 @@ fn stands(centre: DVec2, edge: &Edge) -> Stands {
     }
 }
 
-/// Polygon of a cell during its construction: its corners, anticlockwise, relative to the centre of the cell's disc, m.
-/// The buffers are reused for the next cell.
+/// Polygon of a cell (the region nearer to a disc than to any other disc) during its construction: its corners,
+/// anticlockwise, relative to the centre of the cell's disc, m. The buffers are reused for the next cell.
 #[derive(Default)]
 struct CellPolygon {
     corners: Vec<DVec2>,
@@ -330,8 +337,8 @@ struct CellPolygon {
 }
 
 impl CellPolygon {
-    /// Sets the cell to a square that contains all points within `reach` (m) of the centre of the cell's disc, and then
-    /// reduces the cell by all half-planes `cuts`.
+    /// Sets the cell (the region nearer to a disc than to any other disc) to a square that contains all points within
+    /// `reach` (m) of the centre of the cell's disc, and then reduces the cell by all half-planes `cuts`.
     fn fill(&mut self, reach: f64, cuts: &mut [HalfPlane]) {
         self.corners.clear();
         let signs = [DVec2::NEG_ONE, DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
@@ -346,7 +353,8 @@ impl CellPolygon {
         }
     }
 
-    /// Reduces the cell to the part that is inside all half-planes `cuts`.
+    /// Reduces the cell (the region nearer to a disc than to any other disc) to the part that is inside all half-planes
+    /// `cuts`.
     fn clip<const COUNT: usize>(&mut self, cuts: [HalfPlane; COUNT]) {
         for HalfPlane { offset, direction } in cuts {
             if offset < 0.0 && offset * offset >= self.farthest_squared() {
@@ -358,21 +366,21 @@ impl CellPolygon {
         }
     }
 
-    /// True if the cell is not empty and the distance of all its corners from the centre of the cell's disc is below
-    /// `reach`, m.
+    /// True if the cell (the region nearer to a disc than to any other disc) is not empty and the distance of all its
+    /// corners from the centre of the cell's disc is below `reach`, m.
     fn is_closed(&self, reach: f64) -> bool {
         !self.corners.is_empty() && self.farthest_squared() < (1.0 - CLOSED_WITHIN) * reach * reach
     }
 
-    /// Returns the squared distance of the farthest corner of the cell from the centre of the cell's disc, m²; 0 if the
-    /// cell is empty.
+    /// Returns the squared distance of the farthest corner of the cell (the region nearer to a disc than to any other
+    /// disc) from the centre of the cell's disc, m²; 0 if the cell is empty.
     fn farthest_squared(&self) -> f64 {
         self.corners.iter().map(|corner| corner.length_squared()).fold(0.0, f64::max)
     }
 
-    /// Computes the area, m², of that part of the cell that is within `radius` (m) of the centre of the cell's disc.
-    /// Each side of the cell spans a triangle with the centre. The circle reduces this triangle to a smaller triangle
-    /// with a circular sector at either end.
+    /// Computes the area, m², of that part of the cell (the region nearer to a disc than to any other disc) that is
+    /// within `radius` (m) of the centre of the cell's disc. Each side of the cell spans a triangle with the centre.
+    /// The circle reduces this triangle to a smaller triangle with a circular sector at either end.
     fn area_within(&self, radius: f64) -> f64 {
         let nexts = self.corners.iter().cycle().skip(1);
         let sides = self.corners.iter().zip(nexts);

@@ -43,25 +43,25 @@ const QUADRATURE: [(f64, f64); 3] = [
 pub struct Fields {
     /// Smoothing width, m: the standard deviation of the smoothing function along each axis.
     pub width: f64,
-    /// Lower left corner of the cell with the index 0 along both axes, m: the origin of coordinates, or along a
+    /// Lower left corner of the grid cell with the index 0 along both axes, m: the origin of coordinates, or along a
     /// periodic axis the lower border.
     pub origin: DVec2,
     /// Width and height of a grid cell, m.
     pub cell: DVec2,
-    /// Indices of the first cell of the grid along x and y, counted from the cell at `origin`.
+    /// Indices of the first grid cell along x and y, counted from the cell at `origin`.
     pub first: [i64; 2],
     /// Numbers of grid cells along x and y.
     pub counts: [usize; 2],
-    /// Density ρ in each cell: mass per area, kg/m².
+    /// Density ρ in each grid cell: mass per area, kg/m².
     pub density: Vec<f64>,
-    /// Momentum p per area in each cell, kg/(m·s).
+    /// Momentum p per area in each grid cell, kg/(m·s).
     pub momentum: Vec<DVec2>,
-    /// Velocity V in each cell, m/s; NaN in a cell without mass.
+    /// Velocity V in each grid cell, m/s; NaN in a cell without mass.
     pub velocity: Vec<DVec2>,
-    /// Kinetic stress σ_k in each cell, due to velocity fluctuations, N/m.
+    /// Kinetic stress σ_k in each grid cell, due to velocity fluctuations, N/m.
     pub kinetic_stress: Vec<DMat2>,
-    /// Contact stress σ_c in each cell, N/m. The first index of the tensor is that of the force, the second that of the
-    /// branch vector.
+    /// Contact stress σ_c in each grid cell, N/m. The first index of the tensor is that of the force, the second that
+    /// of the branch vector.
     pub contact_stress: Vec<DMat2>,
 }
 
@@ -69,7 +69,7 @@ impl Fields {
     /// Computes the fields of all grains that are still in the scene, with the smoothing width `width`, m.
     ///
     /// # Errors
-    /// If the width is not a finite length > 0 or would need too many cells, or if a number of the snapshot is not
+    /// If the width is not a finite length > 0 or would need too many grid cells, or if a number of the snapshot is not
     /// finite.
     pub fn of(moment: &Moment, width: f64) -> Result<Self> {
         Self::in_box(moment, width, [DVec2::MIN, DVec2::MAX])
@@ -80,7 +80,7 @@ impl Fields {
     /// are spread into this grid.
     ///
     /// # Errors
-    /// If the width is not a finite length > 0 or would need too many cells, or if a number of the snapshot is not
+    /// If the width is not a finite length > 0 or would need too many grid cells, or if a number of the snapshot is not
     /// finite.
     pub fn in_box(moment: &Moment, width: f64, [least, most]: [DVec2; 2]) -> Result<Self> {
         if !(width > 0.0 && width.is_finite()) {
@@ -178,8 +178,8 @@ impl Fields {
         self.velocity = velocity;
     }
 
-    /// Returns the x coordinates of the columns of cells and the y coordinates of the rows of cells, at the centres of
-    /// the cells, m.
+    /// Returns the x coordinates of the columns of grid cells and the y coordinates of the rows of cells, at the
+    /// centres of the cells, m.
     pub fn centres(&self) -> [Vec<f64>; 2] {
         [0, 1].map(|axis| {
             let of = |number: usize| {

@@ -8,10 +8,11 @@ use super::rows::{CauseRow, Design, QuantityBudget, Trust};
 use super::words::paragraph;
 use crate::statistics::Mean;
 
-/// Tolerance of a test, as a fraction of the requested half-width of the confidence intervals. The test asks whether a
-/// quantity converges as the time step Δt goes to 0: the changes of the quantity in successive halvings of Δt should
-/// decrease by a constant factor. A deviation from this factor counts as zero if its confidence interval reaches to
-/// within this tolerance of 0.
+/// Tolerance of the test whether a quantity converges as the time step Δt goes to 0, as a fraction of the requested
+/// half-width of the confidence intervals. If a quantity converges, its changes in successive halvings of Δt decrease
+/// by a constant factor. The test subtracts from each change the value that the previous change and this factor
+/// predict. The difference counts as zero if its confidence interval reaches to within the tolerance of 0. With a
+/// quarter, differences that are small compared with the requested accuracy do not hide the convergence.
 const SLACK: f64 = 0.25;
 pub(super) fn budget_of(
     runs: &Runs,
@@ -90,8 +91,9 @@ fn row(runs: &Runs, variant: &Variant, series: usize, quantity: usize) -> CauseR
     }
 }
 
-/// Returns the indices of the three series of runs with the time steps Δt/2, Δt/4 and Δt/8; `None` if one of them gave
-/// no value of the quantity.
+/// Returns the indices of the three series with the time steps Δt/2, Δt/4 and Δt/8 (a series: all runs with the same
+/// change of the scene). Returns `None` if one of these series has too few runs, or a run without a value of the
+/// quantity.
 fn halvings(runs: &Runs, design: &Design<'_>, quantity: usize) -> Option<[usize; 3]> {
     let all = design.variants.iter().zip(1..);
     let of_steps = all.filter(|(variant, series)| {
@@ -138,9 +140,10 @@ mod tests {
     use super::*;
     use crate::scene::{NewPile, built_in};
 
-    /// Returns the error budget of made-up runs of a cohesive pile, for tests. The value of a run is the sum of four
-    /// numbers: 0.3; the effect that `of` returns for the run's change of the scene; a random number that all runs from
-    /// the same initial state share; and a random number of this run alone, with the standard deviation `scatter`.
+    /// Returns the error budget of made-up runs of a cohesive pile, for tests. The argument of `of` is the change that
+    /// a run makes to the scene (`None` for the unchanged scene). The value of a run is the sum of four numbers: 0.3;
+    /// the effect of this change, which `of` returns; a random number that all runs from the same initial state share;
+    /// and a random number of this run alone, with the standard deviation `scatter`.
     fn made_up(
         seed: u64,
         scatter: f64,
@@ -151,7 +154,10 @@ mod tests {
         made_up_at(seed, scatter, limits, of, &as_expected)
     }
 
-    /// Like `made_up`, but `cost_of` returns the computing time of a run, s, from the run's change of the scene.
+    /// Returns the error budget of made-up runs of a cohesive pile, for tests. `of` returns the effect of the change
+    /// that a run makes to the scene, and `cost_of` the computing time of the run, s; their argument is this change
+    /// (`None` for the unchanged scene). `scatter` is the standard deviation of a random number that is added to the
+    /// value of each run.
     fn made_up_at(
         seed: u64,
         scatter: f64,

@@ -54,8 +54,9 @@ pub(crate) enum Cause {
 }
 
 impl Cause {
-    /// Returns the group of the cause, the name of the cause, and the subject of a sentence about it, in which `{}`
-    /// stands for the changed value.
+    /// Returns three properties of the cause: its group, its name, and the phrase with which reports name the change
+    /// that tests the cause. In the phrase, as in "the contact law {} in place of this one", `{}` stands for the new
+    /// value.
     const fn row(self) -> (Share, &'static str, &'static str) {
         match self {
             Self::TimeStep => (Share::Method, "time step", "the {}"),
@@ -104,17 +105,17 @@ pub(crate) struct Variant {
 
 /// Divisors of the scene's time step Δt: an error budget also runs the scene with Δt/2, Δt/4 and Δt/8.
 pub(crate) const DIVISORS: [u32; 3] = [2, 4, 8];
-/// Factor by which an error budget multiplies the solver's default tolerance, to measure the effect of inaccurate
-/// solutions of steps. A smaller factor would not help: because of rounding, some steps cannot be solved to 1e-7 √(g
-/// d), with gravity g and mean diameter d.
+/// Factor by which an error budget multiplies the solver's default tolerance of the velocity error, 1e-4 √(g d), with
+/// gravity g and mean diameter d. The effect of this change on a result is the effect of inaccurate solutions of steps.
+/// A factor of 1e-3 would be too small, because rounding errors prevent the solution of some steps to 1e-7 √(g d).
 const TIGHTER: f64 = 1e-2;
 /// Touch tolerance (the gap up to which contacts pull) that an error budget tries instead of the scene's own, in mean
 /// diameters. It is larger than the gaps that remain in closed contacts after a step, and smaller than the roughness of
 /// grains.
 const TOUCH_TOLERANCE: f64 = 1e-3;
 /// Restitution threshold (the approach speed below which contacts do not bounce) that an error budget tries in a scene
-/// without a threshold, in units of g·Δt, the speed that gravity adds in one step. Bounces slower than about this
-/// threshold are not visible.
+/// without a threshold, in units of g·Δt, the speed that gravity adds in one step. It is small, so that the change only
+/// removes bounces that are too slow to be visible.
 const THRESHOLD: f64 = 2.0;
 
 /// Returns all variants of a scene (the scene with one change) that can be simulated and whose change can have an
@@ -211,8 +212,8 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
     all
 }
 
-/// Returns changed settings, with a solver so accurate that the errors of solved steps are negligible. `is_driven` is
-/// true if a force drives a wall, which not every solver supports.
+/// Returns the settings with another solver, which solves steps so accurately that the errors of solved steps are
+/// negligible. `is_driven` is true if a force drives a wall, which not every solver supports.
 fn tighter(mut settings: Settings, is_driven: bool) -> Settings {
     let solver = settings.solver;
     let method = match solver.friction_model {

@@ -51,7 +51,8 @@ pub struct BudgetOptions {
     /// Requested half-width of every confidence interval, in the unit of the examined quantity; `None` for a tenth of
     /// the quantity's value.
     pub within: Option<f64>,
-    /// Limit of the computing time, s of wall-clock time if all cores are in use.
+    /// Limit of the total computing time of all runs, divided by the number of threads, s. This is the wall-clock time
+    /// if no thread waits.
     pub cost_secs: f64,
     /// The part of the initial states that this call runs, if several machines share the error budget; `None` for all
     /// initial states.
@@ -91,15 +92,16 @@ impl ErrorBudget {
     }
 }
 
-/// Name of the journal that stores the runs of an error budget.
+/// Name of the journal of an error budget: the file that stores the results of finished runs.
 const JOURNAL: &str = "budget";
 /// Name of the quantity that is examined if the user gives none.
 const QUANTITY: &str = "slump";
 
 /// Computes an error budget and writes `report.md`, pictures, `budget.csv` and `budget.json` to `folder`. If the
-/// computation is stopped, the same call resumes it. With `options.shard`, the call only computes one part of the runs,
-/// stores them in the folder, and writes no report. Runs that other parts have stored in the folder do not count
-/// towards the time limit.
+/// computation is stopped, a call with the same arguments resumes it. If `options.shard` is set, several calls, for
+/// example on several machines, share the error budget: this call only computes its part of the runs, stores them in
+/// the folder, and writes no report. Runs of the other calls that are already in the folder do not count towards the
+/// time limit of this call.
 ///
 /// # Errors
 /// If a quantity, time or setting is not allowed, or if the folder cannot be written; the error names the cause. Also
@@ -121,9 +123,9 @@ pub fn budget(options: &BudgetOptions, folder: &Path) -> Result<ErrorBudget> {
     Ok(budget)
 }
 
-/// Like [`budget`], but only writes the files that are needed to resume, and shows no progress bar. Initial states of
-/// piles are stored in the folder `states`. After each group of runs, `watch` is called with the error budget so far.
-/// The computation ends if `watch` returns `Break`.
+/// Computes an error budget like [`budget`], but writes no report and no pictures, only the files that are needed to
+/// resume, and shows no progress bar. Initial states of piles are stored in the folder `states`. After each group of
+/// runs, `watch` is called with the error budget so far. The computation ends if `watch` returns `Break`.
 ///
 /// # Errors
 /// Returns the errors of [`budget`].
@@ -221,8 +223,9 @@ fn made_showing(
     Ok(of(&runs, ended))
 }
 
-/// Returns a runner that does not repeat the finished runs of an error budget in a folder, and the keys of those runs
-/// that belong to other parts of the error budget.
+/// Returns a runner, which computes the runs of an error budget and does not repeat the finished runs in `folder`. Also
+/// returns the keys (unique names) of those finished runs that other calls computed, if several calls, for example on
+/// several machines, share the error budget. `shard` is the part of this call.
 fn runner_of(shard: Option<Shard>, folder: &Path) -> Result<(Runner<RunValues>, HashSet<String>)> {
     let name = shard.map_or_else(|| JOURNAL.to_owned(), |shard| shard.journal(JOURNAL));
     let journal = Journal::open(folder, &name)?;

@@ -119,7 +119,8 @@ pub struct BudgetEffect {
     pub adds: [f64; 3],
 }
 
-/// The setup of an error budget: the changes of the scene, the sort of initial states, and the time step.
+/// The setup of an error budget: the changes of the scene, how the initial states are made (from seeds or by small
+/// displacements), and the time step, s.
 pub(super) struct Design<'a> {
     pub variants: &'a [Variant],
     /// True if the initial states are piles made from different seeds. False if they are copies of one scene whose
@@ -173,8 +174,8 @@ impl QuantityBudget {
         }
     }
 
-    /// Returns the row of the smallest tested time step whose effect is known. If no effect is known, returns the row
-    /// of the smallest tested time step.
+    /// Returns the row of the smallest tested time step whose effect is known; if no effect is known, the row of the
+    /// smallest tested time step. Returns `None` if no smaller time step than that of the scene was tested.
     pub(super) fn smallest_step(&self) -> Option<&CauseRow> {
         let of_steps = || self.causes.iter().filter(|row| row.kind == Cause::TimeStep);
         of_steps().rfind(|row| row.adds.is_some()).or_else(|| of_steps().next_back())

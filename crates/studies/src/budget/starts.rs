@@ -79,8 +79,8 @@ impl Starts {
     }
 
     /// Returns the seed with which the pile of initial state number `start` is made; `None` if initial states differ by
-    /// displaced grains and not by a seed. The seed of the shipped pile is never used, because that pile was chosen for
-    /// illustration.
+    /// displaced grains and not by a seed. The seed of the pile that is shipped with the program is never used, because
+    /// that pile was chosen for illustration and is not a random sample.
     fn seed(&self, start: u64) -> Option<u64> {
         let chosen = NewPile::default().seed;
         self.pile.as_ref().map(|_| if start < chosen { start } else { start + 1 })

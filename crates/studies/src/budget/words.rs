@@ -66,7 +66,7 @@ pub(super) fn paragraph(
     said.join(" ")
 }
 
-/// The sentences about one quantity of an error budget.
+/// Functions that describe the error budget of one quantity in sentences.
 impl QuantityBudget {
     /// Formats a number whose confidence interval has the half-width `half`. Decimals that are smaller than a
     /// negligible change (the requested half-width times [`SMOOTH`]) are left out.

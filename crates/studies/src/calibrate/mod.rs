@@ -24,16 +24,17 @@ use crate::output::{check_writable, print_line, print_text, remove_drafts};
 use crate::setting::Value;
 use crate::statistics::mean;
 
-/// Name of the journal that stores the runs of a calibration.
+/// Name of the journal of a calibration: the file that stores the results of finished runs.
 const JOURNAL: &str = "calibrate";
 /// Default number of runs of a calibration, divided by the number of coefficients of a cubic polynomial in the varied
-/// parameters.
+/// parameters. It is above 6, the ratio from which on the polynomials that predict the results are cubic.
 const RUNS_PER_COEFFICIENT: usize = 10;
 /// Largest allowed number of varied parameters, and largest allowed number of runs. Larger numbers are probably a
 /// mistake.
 const MOST: [usize; 2] = [4, 100_000];
 /// Number of initial states from which the calibrated scene is run with and without a change of the time step or the
-/// solver, to measure the effect of the change.
+/// solver, to measure the effect of the change. More initial states take more time and give a narrower confidence
+/// interval of the effect.
 const PAIRS: usize = 6;
 
 /// Options of a calibration, which finds the parameters with which a scene reproduces measured values.
@@ -54,8 +55,8 @@ pub struct CalibrateOptions {
 /// numerical method (if any), and the interval of simulated time in which results are evaluated.
 type Setup = (Starts, u64, Option<Variant>, Window);
 
-/// Calibrates a scene, and writes `report.md` and a picture of the confidence region to `folder`. The same call resumes
-/// a calibration that was stopped. A call for more runs adds to the runs in the folder.
+/// Calibrates a scene, and writes `report.md` and a picture of the confidence region to `folder`. A call with the same
+/// arguments resumes a calibration that was stopped. A call for more runs adds to the runs in the folder.
 ///
 /// # Errors
 /// If a target, parameter or setting is not allowed, or if the folder cannot be written; the error names the cause.

@@ -13,15 +13,18 @@ const CONFIDENCE: f64 = 0.9;
 const POINTS: usize = 16_384;
 
 /// A confidence region of parameters. It consists of the parameter values at which Hotelling's T² of the differences
-/// between predicted results and measured targets is below a limit. Polynomials fitted to runs predict the results. The
-/// covariance in T² is the sum of the covariances of the predictions and of the targets.
+/// between predicted results and measured targets is at most a limit, which follows from the confidence level of 90 %
+/// and the F-distribution. Polynomials fitted to runs predict the results. The covariance in T² is the sum of the
+/// covariances of the predictions and of the targets.
 #[derive(Clone, Debug)]
 pub struct Region {
     space: Vec<[f64; 2]>,
     targets: Vec<[f64; 2]>,
     pub(super) surrogate: Surrogate,
     limit: f64,
-    /// Points (parameter values) that fill the ranges of the parameters evenly, each with its [`Region::misfit`].
+    /// Points (parameter values) that fill the ranges of the parameters evenly. With each point is its
+    /// [`Region::misfit`], a measure of the disagreement between predicted results and targets, which is at most 1 in
+    /// the confidence region.
     pub(super) points: Vec<(Vec<f64>, f64)>,
 }
 
@@ -52,8 +55,9 @@ impl Region {
         Some(region)
     }
 
-    /// Returns Hotelling's T², a measure of the disagreement between predicted results and targets, for the parameter
-    /// values `point`, divided by its limit. The value is at most 1 in the confidence region.
+    /// Returns a measure of the disagreement between predicted results and targets for the parameter values `point`.
+    /// The measure is Hotelling's T², divided by the largest T² in the confidence region, so it is at most 1 in the
+    /// region.
     pub fn misfit(&self, point: &[f64]) -> f64 {
         let place = place_of(&self.space, point);
         let values = self.surrogate.values(&place);

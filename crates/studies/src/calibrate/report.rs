@@ -30,8 +30,9 @@ pub(super) struct Found<'a> {
     /// Number of all runs, including failed runs.
     pub count: usize,
     pub region: &'a Region,
-    /// Effects of changes of the numerical method on the targets, with the best parameter values: the name of the
-    /// target, the change, and the mean difference.
+    /// Effects of changes of the numerical method (such as half the time step) on the targets, measured at the
+    /// parameter values that agree best with the targets. An entry contains the name of the target, the change, and the
+    /// mean difference that the change makes.
     pub effects: Vec<(String, String, Mean)>,
     /// Quantities that the runs recorded and `region` predicts. The quantities of the targets come first.
     pub quantities: &'a [&'a BudgetQuantity],

@@ -18,7 +18,7 @@ use crate::png::png_of_rgb;
 const TITLE: u32 = 27;
 /// Font size of the labels of axes, pixels.
 const WORDS: u32 = 24;
-/// Font size of the caption of a sheet, pixels.
+/// Font size of the caption of a sheet of charts, pixels.
 const CAPTION: u32 = 20;
 /// Font size of text within a chart, pixels.
 const WITHIN: u32 = 18;
@@ -44,7 +44,7 @@ const FONT: &str = "sans-serif";
 
 type Context<'a, DB> = ChartContext<'a, DB, Cartesian2d<AxisCoordinates, AxisCoordinates>>;
 
-/// Returns the sheet as a PNG file that also contains the command that draws the sheet.
+/// Returns a sheet of charts as a PNG file, which also contains the command that draws the sheet.
 ///
 /// # Errors
 /// If plotters or the encoder fails.
@@ -61,7 +61,7 @@ pub fn png(sheet: &Sheet, command: &str) -> Result<Vec<u8>> {
     png_of_rgb(&image, &texts)
 }
 
-/// Returns the sheet as an SVG file.
+/// Returns a sheet of charts as an SVG file.
 ///
 /// # Errors
 /// If plotters fails.

@@ -165,12 +165,12 @@ pub struct Chart {
     pub(crate) y: Axis,
     /// Layers of the chart, from back to front.
     pub layers: Vec<Layer>,
-    /// Width of the chart on its sheet, relative to the other charts on the sheet.
+    /// Width of the chart relative to the other charts on the same sheet. The charts of a sheet are side by side.
     pub(crate) width: f64,
 }
 
 impl Chart {
-    /// Returns an empty chart with this title and these axes.
+    /// Returns a chart with the given title and axes, still without curves.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
         Self { title: title.into(), x, y, layers: Vec::new(), width: 1.0 }
     }

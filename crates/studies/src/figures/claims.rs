@@ -17,13 +17,13 @@ const NARROW: f64 = 3.0;
 pub(super) enum Verdict {
     Holds,
     Fails,
-    /// The data decide neither for nor against the claim.
+    /// The measured data decide neither for nor against the tested statement.
     Open,
 }
 
 impl Verdict {
-    /// Returns the verdict on a claim, from the p-value `p` of the claim and the p-value `p_contrary` of the opposite
-    /// claim.
+    /// Returns the verdict on a claim (a tested statement). `p` is the p-value of the claim and `p_contrary` the
+    /// p-value of the opposite claim.
     pub(super) fn of(p: f64, p_contrary: f64) -> Self {
         match (p < SIGNIFICANT, p_contrary < SIGNIFICANT) {
             (true, _) => Self::Holds,
@@ -85,15 +85,17 @@ impl Claim {
         Self { said: said.into(), measured: measured.into(), verdict, by_chance, hangs_on }
     }
 
-    /// Adds a phrase that says how often the test would find the claim true by chance.
+    /// Adds a phrase to the claim (a tested statement). The phrase says how often the test would find the claim true by
+    /// chance.
     pub(super) fn by_chance(self, by_chance: impl Into<String>) -> Self {
         Self { by_chance: by_chance.into(), ..self }
     }
 
-    /// Measures how often the test `holds` finds the claim true by chance, and adds this rate in words. For this
-    /// measurement, the time steps are shuffled among the runs of each group in `groups`, many times. `border` returns,
-    /// as a function of the number in which the runs of a group differ (such as log₁₀ Δt), the largest effect on the
-    /// result with which the claim is still false; this effect is added to the shuffled results.
+    /// Measures how often the test `holds` finds the claim true by chance, and adds this rate to the claim, in words.
+    /// The runs of each group in `groups` only differ in one number x, such as log₁₀ Δt. The results of the runs of a
+    /// group are exchanged at random, which removes every effect of x. Then `border(x)` is added to each result: the
+    /// strongest effect of x with which the claim is still false. This is repeated many times. The rate is the fraction
+    /// of repetitions in which `holds` returns true.
     pub(super) fn shuffled(
         self,
         groups: &[Alike],
@@ -118,9 +120,10 @@ const SHUFFLES: usize = 1000;
 /// A group of runs that only differ in one number, such as log₁₀ Δt: for each run, this number and the result.
 pub(super) type Alike = Vec<(f64, f64)>;
 
-/// Returns the fraction of shuffles after which the test `holds` finds the claim true. Each shuffle exchanges the
-/// results within every group of `groups` at random, and then adds `border` to them. `border` is the largest effect
-/// with which the claim is still false, as a function of the number in which the runs of a group differ.
+/// Returns the fraction of shuffles after which the test `holds` finds its claim true. The runs of each group in
+/// `groups` only differ in one number x, such as log₁₀ Δt. Each shuffle exchanges the results of the runs within every
+/// group at random, and then adds `border(x)` to each result: the strongest effect of x with which the claim is still
+/// false.
 fn share_by_chance(
     groups: &[Alike],
     border: impl Fn(f64) -> f64,

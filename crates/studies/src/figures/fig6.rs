@@ -1,5 +1,6 @@
 //! Draws Fig. 6 of Abramian & Staron (2020): slump against the cohesive time Bond·Δt/√(d/g), with mean diameter d and
-//! gravity g. Tests whether the slump falls with the cohesive time below 1 and rises above 1.
+//! gravity g. Tests whether the slump falls with increasing cohesive time up to a cohesive time of 1, and rises beyond
+//! it.
 
 use rand::{RngExt, SeedableRng};
 
@@ -12,9 +13,10 @@ use crate::harness::MeasuredCase;
 use crate::statistics::{mean, p_of_either, p_value, slope, turning_point};
 
 const RESAMPLINGS: usize = 400;
-/// Number of resamplings of the initial states, from which the confidence interval of the turning point is computed
-/// after each shuffle of Δt. It is smaller than [`RESAMPLINGS`] to save time. With fewer resamplings the interval is
-/// narrower, so it excludes a turning point of 1 more often.
+/// Number of resamplings of the initial states after each shuffle of Δt among the runs. They give the confidence
+/// interval of the turning point, the cohesive time at which the slump turns from falling to rising. The number is
+/// smaller than [`RESAMPLINGS`] to save time. With fewer resamplings the interval is narrower, so it excludes a turning
+/// point of 1 more often.
 const FEWER_RESAMPLINGS: usize = 20;
 
 /// Mean diameter d of the grains of the piles, m.
@@ -66,8 +68,8 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig6", sheet, claims, table: None })
 }
 
-/// Merges the groups of runs that have the same initial state. These groups follow each other in `groups`, and `count`
-/// is the number of initial states.
+/// Merges groups of runs, one group per initial state and Bond number, into one group per initial state. In `groups`,
+/// the groups with the same initial state are next to each other. `count` is the number of initial states.
 fn joined(groups: &[Alike], count: usize) -> Vec<Alike> {
     groups.chunks((groups.len() / count.max(1)).max(1)).map(<[_]>::concat).collect()
 }

@@ -47,8 +47,8 @@ fn open_of(rows: &Measurements<'_>) -> [usize; 2] {
     [rows.0.iter().filter(|run| is_open(run)).count(), rows.0.len()]
 }
 
-/// Returns the number of time steps at which the runs of the cradle have the outcome that Abramian & Staron (2020)
-/// report (bond open or closed). There is one run per time step.
+/// Returns the number of time steps at which the runs of the cradle (disc k hits the bonded discs i and j) have the
+/// outcome that Abramian & Staron (2020) report: bond between i and j open, or closed. There is one run per time step.
 fn agreed(rows: &Measurements<'_>) -> usize {
     let agrees = |&&(step, open): &&(f64, bool)| {
         rows.0.iter().any(|run| run.at("dt") == step && is_open(run) == open)
@@ -56,8 +56,9 @@ fn agreed(rows: &Measurements<'_>) -> usize {
     PAPER.iter().filter(agrees).count()
 }
 
-/// Draws how sensitive the outcomes of the cradle (Fig. 8 of Abramian & Staron (2020)) are to the settings: the pattern
-/// of open and closed bonds over the time step Δt, with one setting changed at a time.
+/// Draws how sensitive the outcomes of the cradle (disc k hits the bonded discs i and j; Fig. 8 of Abramian & Staron
+/// (2020)) are to the settings: the time steps Δt at which the bond opens or stays closed, with one setting changed at
+/// a time.
 pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("cradle-choices")?;
     let all = studies.choices("cradle-choices")?;
@@ -96,8 +97,9 @@ pub(super) fn choices(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "cradle-choices", sheet, claims, table: Some(table) })
 }
 
-/// Tests whether most start distances of disc k of the cradle give the pattern of open and closed bonds over the time
-/// step Δt that Abramian & Staron (2020) report, at the largest stopping tolerance of the study.
+/// Tests whether the cradle (disc k hits the bonded discs i and j) gives the outcomes that Abramian & Staron (2020)
+/// report at all time steps Δt, for most start distances of disc k. An outcome is the bond between i and j open or
+/// closed. The test uses the runs with the largest stopping tolerance of the study.
 fn pattern_is_usual(rows: &Measurements<'_>) -> Claim {
     let loosest = rows.values("tolerance").pop().unwrap_or(f64::NAN);
     let rows = rows.with("tolerance", loosest);
@@ -134,8 +136,8 @@ fn pattern_comes_out(rows: &Measurements<'_>) -> Claim {
     .hanging_on("that search, the stop of 2.2·10⁻³ m/s, ρ = 0.2 (the paper states none), the cold start")
 }
 
-/// Tests the statement of Abramian & Staron (2020) that the shock of disc k opens the bond of the cradle's other two
-/// discs at small time steps. The test uses the runs with the smallest stopping tolerance of the study.
+/// Tests the statement of Abramian & Staron (2020) that the shock opens the bond of the cradle (disc k hits the bonded
+/// discs i and j) at small time steps. The test uses the runs with the smallest stopping tolerance of the study.
 fn shock_opens(rows: &Measurements<'_>) -> Claim {
     let tolerance = rows.values("tolerance")[0];
     let tight = rows.with("tolerance", tolerance);
@@ -203,7 +205,8 @@ pub(super) fn share(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "fig8-share", sheet, claims, table: None })
 }
 
-/// Returns the colour of an outcome of the cradle: orange if the bond is open (`value` 1), blue if it is closed (0).
+/// Returns the colour of an outcome of the cradle, in which a disc hits two bonded discs: orange if their bond is open
+/// (`value` 1), blue if their bond is closed (0).
 fn colour(value: f64) -> Rgb {
     if value > 0.5 { (240, 176, 80) } else { (70, 120, 175) }
 }
@@ -221,8 +224,8 @@ pub(super) fn log_edges(values: &[f64]) -> Vec<[f64; 2]> {
     edges.windows(2).map(|pair| [pair[0], pair[1]]).collect()
 }
 
-/// Draws a map of the outcome of the cradle (bond open or closed) over the time step and the solver's stopping
-/// tolerance.
+/// Draws a map of the outcome of the cradle (disc k hits the bonded discs i and j, whose bond opens or stays closed)
+/// over the time step and the solver's stopping tolerance.
 pub(super) fn map(studies: &StudyRunner) -> Result<Figure> {
     let rows = studies.rows("cradle-map")?;
     let (steps, tolerances) = (rows.values("dt"), rows.values("tolerance"));

@@ -9,25 +9,25 @@ use crate::chart::{Axis, Chart, Layer, Look, PALETTE, Sheet, points};
 use crate::error::{Error, Result};
 use crate::scene::cradle;
 
-/// Time steps that the figure shows, s. According to Abramian & Staron (2020), the bond of the cradle's struck discs
-/// opens at the first time step and stays closed at the second. At the other four, the outcome depends on the start
-/// distance of the disc that hits them.
+/// Time steps that the figure shows, s. According to Abramian & Staron (2020), the bond of the cradle (disc k hits the
+/// bonded discs i and j) opens at the first time step and stays closed at the second. At the other four, the outcome
+/// depends on the start distance of disc k.
 const SHOWN_SECS: [f64; 6] = [5e-4, 1e-3, 4e-3, 5e-3, 6e-3, 1e-2];
 /// Upper ends of the axes in Fig. 8 of Abramian & Staron (2020): time, s, and position of the struck disc j, diameters.
 const ENDS: (f64, f64) = (2.0, 5.0);
-/// Range of time steps, s, at which disc j of the cradle flies off with the same velocity, according to Abramian &
-/// Staron (2020).
+/// Range of time steps, s, at which disc j of the cradle (disc k hits the bonded discs i and j) flies off with a
+/// velocity that does not depend on the time step, according to Abramian & Staron (2020).
 const FREE_SECS: RangeInclusive<f64> = 1e-4..=6e-4;
-/// Range of time steps, s, at which disc k of the cradle stays with the two discs that it has hit, according to
-/// Abramian & Staron (2020).
+/// Range of time steps, s, at which all three discs of the cradle (disc k hits the bonded discs i and j) stay together
+/// after the shock, according to Abramian & Staron (2020).
 const CLUSTER_SECS: RangeInclusive<f64> = 7e-4..=3e-3;
-/// Time step, s, at which the bond of the cradle's discs i and j opens and disc i then catches up with disc j,
-/// according to Abramian & Staron (2020).
+/// Time step, s, at which the bond of the cradle (disc k hits the bonded discs i and j) opens and disc i then catches
+/// up with disc j, according to Abramian & Staron (2020).
 const CAUGHT_SECS: f64 = 5e-3;
-/// Largest ratio of two final velocities of disc j of the cradle, from runs with different time steps, at which the
-/// velocities count as equal.
+/// Largest ratio of the final velocities of disc j of the cradle (disc k hits the bonded discs i and j) in two runs
+/// with different time steps, at which the two velocities count as equal.
 const ONE_VELOCITY: f64 = 1.1;
-/// Text for the report: choices on which the verdicts about the three discs of the cradle depend.
+/// Text for the report: choices on which the verdicts about the cradle (disc k hits the bonded discs i and j) depend.
 const CHOICES: &str = "the start of k (searched for), ρ = 0.2 (the paper states none), the stop and the cold start: \
                        cradle-choices";
 
@@ -40,7 +40,7 @@ struct DiscSeries {
     rows: Vec<SeriesRow>,
 }
 
-/// Returns the gap between the bonded discs i and j of the cradle, in diameters.
+/// Returns the gap between the bonded discs i and j of the cradle, in which disc k hits disc i, in diameters.
 fn gap((_, [i, j, _]): &SeriesRow) -> f64 {
     j - i - 1.0
 }
@@ -54,14 +54,15 @@ impl DiscSeries {
         self.rows.last().is_some_and(|row| gap(row) > OPEN_GAP)
     }
 
-    /// True if disc j of the cradle has turned back at the end of the run: it is no longer at its farthest position.
+    /// True if disc j of the cradle (disc k hits the bonded discs i and j) has turned back: at the end of the run it is
+    /// no longer at its largest distance from its start.
     fn turns_back(&self) -> bool {
         let farthest = self.after_shock().map(|(_, [_, j, _])| *j).fold(1.0, f64::max);
         self.rows.last().is_some_and(|(_, [_, j, _])| *j < farthest - OPEN_GAP)
     }
 
-    /// Returns the mean velocity of disc j of the cradle over the last quarter of a second of the run, diameters per
-    /// second.
+    /// Returns the mean velocity of disc j of the cradle (disc k hits the bonded discs i and j) over the last quarter
+    /// of a second of the run, diameters per second.
     fn final_velocity(&self) -> f64 {
         let Some((end, [_, last, _])) = self.rows.last() else { return 0.0 };
         let before = self.after_shock().find(|(secs, _)| *secs >= end - 0.25);

@@ -88,7 +88,8 @@ pub(super) fn make(studies: &StudyRunner) -> Result<Figure> {
     Ok(Figure { name: "pile-map", sheet, claims: vec![claim], table: None })
 }
 
-/// Returns lines of constant cohesive time Bond·Δt/√(d/g) with their labels, clipped to the axes.
+/// Returns lines of constant cohesive time Bond·Δt/√(d/g) (mean diameter d, gravity g) with their labels, clipped to
+/// the axes.
 fn contours(most_bond: f64, steps: RangeInclusive<f64>) -> Vec<Layer> {
     let mut layers = Vec::new();
     for time in CONTOURS {
@@ -118,9 +119,9 @@ fn scale() -> Chart {
     scale
 }
 
-/// Returns one difference of slumps per initial state: the mean slump of runs whose cohesive time Bond·Δt/√(d/g) is not
-/// near 1, minus the mean slump of runs whose cohesive time is near 1. The difference is computed for each Bond number
-/// that has runs of both kinds, and then averaged over these Bond numbers.
+/// Returns one difference of slumps per initial state: the mean slump of runs whose cohesive time Bond·Δt/√(d/g) (mean
+/// diameter d, gravity g) is not near 1, minus the mean slump of runs whose cohesive time is near 1. The difference is
+/// computed for each Bond number that has runs of both kinds, and then averaged over these Bond numbers.
 fn depths(groups: &[Alike], states: usize) -> Vec<f64> {
     let of_group = |runs: &Alike| {
         let (near, away): (Vec<_>, Vec<_>) =
@@ -139,9 +140,9 @@ fn depths(groups: &[Alike], states: usize) -> Vec<f64> {
     groups.chunks(each).map(of_state).filter(|depth| depth.is_finite()).collect()
 }
 
-/// Tests whether the slump is lower at cohesive times Bond·Δt/√(d/g) near 1 than at other cohesive times. The test does
-/// not look for the time step with the lowest slump at each Bond number, because such a time step exists even without
-/// any effect of Δt.
+/// Tests whether the slump is lower at cohesive times Bond·Δt/√(d/g) (mean diameter d, gravity g) near 1 than at other
+/// cohesive times. The test does not look for the time step with the lowest slump at each Bond number, because such a
+/// time step exists even without any effect of Δt.
 fn claim(groups: &[Alike], states: usize) -> Claim {
     let depth = |groups: &[Alike]| mean(&depths(groups, states));
     let verdict = |depth: Mean| Verdict::of(depth.p_above(0.0), depth.p_below(0.0));

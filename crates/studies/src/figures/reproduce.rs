@@ -22,9 +22,9 @@ pub fn figure_names() -> Vec<&'static str> {
 }
 
 /// Writes the figures with these names to `folder`, each as PNG, SVG and CSV, and the file `report.md`. All runs are
-/// stored in a folder below `folder`, so if the reproduction is stopped, the same call resumes it. If `quick` is true,
-/// the figures have fewer runs. The function `snapshots` draws the pictures of grains (Figs. 3, 4 and 7) into a folder.
-/// `version` is the version of the program that the report names.
+/// stored in a folder below `folder`, so if the reproduction is stopped, a call with the same arguments resumes it. If
+/// `quick` is true, the figures have fewer runs. The function `snapshots` draws the pictures of grains (Figs. 3, 4 and
+/// 7) into a folder. `version` is the version of the program that the report names.
 ///
 /// # Errors
 /// If a name is unknown, the folder cannot be written, or a study fails.

@@ -220,8 +220,9 @@ mod tests {
         RunResult { status, lost_grains, alarms, ..RunResult::of_slump(0.0) }
     }
 
-    /// Returns a claim with the verdict "holds", after [`StudyRunner::qualify`] has changed it because of runs with
-    /// these results.
+    /// Returns, for tests, a claim (a tested statement) with the verdict "holds", after [`StudyRunner::qualify`] has
+    /// added the warnings of the runs `results`. If grains left the scene in one of these runs, or one of them did not
+    /// reach its end, the verdict has become open.
     fn qualified(results: &[&RunResult]) -> Claim {
         let mut studies = StudyRunner::new(PathBuf::new(), Effort::Quick);
         let text = "name = \"pile\"\n[base]\nscene = \"cradle\"\n";

@@ -1,8 +1,9 @@
 //! Draws figures of two bodies in contact. Fig. 2 of Abramian & Staron (2020) shows two contact laws as graphs of the
 //! normal force N against the formal velocity v̄: Signorini's law, and the same law shifted by the cohesion force. The
-//! lines N = K v̄ + A are the equation of motion for three values of A. The solution of a step is at the intersection
-//! of line and graph, and dots show simulated steps. A second figure shows the opening speed after one step against Δt
-//! (§2.2 of the article), with theory as lines and simulation as points.
+//! lines N = K v̄ + A are the equation of motion for three values of the constant A, with K = m_ij (1 + ρ)/Δt, the
+//! effective mass m_ij, the restitution ρ and the time step Δt. The solution of a step is at the intersection of line
+//! and graph, and dots show simulated steps. A second figure shows the opening speed after one step against Δt (§2.2 of
+//! the article), with theory as lines and simulation as points.
 
 use glam::DVec2;
 
@@ -12,8 +13,9 @@ use crate::error::Result;
 use crate::scene::{Scene, collision};
 use crate::world::{Grain, Parameters};
 
-/// Three values of the constant A of the equation of motion N = K v̄ + A (N: normal force, v̄: formal velocity), in
-/// units of the cohesion force C₀, and the name of each case.
+/// Three values of the constant A of the equation of motion N = K v̄ + A, in units of the cohesion force C₀, and the
+/// name of each case. N is the normal force and v̄ the formal velocity. K is m_ij (1 + ρ)/Δt, with the effective mass
+/// m_ij, the restitution ρ and the time step Δt.
 const CASES: [(f64, &str); 3] = [(1.2, "A > 0"), (-0.5, "−C₀ < A < 0"), (-2.2, "A < −C₀")];
 const TIME_STEP_SECS: f64 = 1e-3;
 /// Upper ends of the two axes; the lower ends are the negative of these values. The first axis is the formal velocity
@@ -90,7 +92,7 @@ fn chart(title: &str, shift: f64) -> Result<(Chart, f64)> {
 /// Restitution ρ of the simulated contacts, large enough for the bounce to be visible in the figures.
 const RESTITUTION: f64 = 0.2;
 
-/// Opening speeds of the contact at the beginning of the step, m/s.
+/// Opening speeds of the contact at the beginning of the simulated steps, m/s; negative if the contact closes.
 const SPEEDS: [f64; 5] = [-0.02, 0.01, 0.02, 0.04, 0.06];
 const TIME_STEPS_SECS: (f64, f64) = (0.0, 0.012);
 const POINTS: u32 = 25;

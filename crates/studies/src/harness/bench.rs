@@ -31,8 +31,9 @@ impl Bench {
         self.folder.join("states")
     }
 
-    /// Opens a runner, which computes the runs of the experiment and stores each result in a journal. Every program,
-    /// every machine, and the quick and the full pass of an experiment have separate journals.
+    /// Opens a runner, which computes the runs of the experiment and stores each result in a journal, a file with one
+    /// line per finished run. Each build of the program and each type of processor has its own journals, and so have
+    /// the quick pass (with fewer and smaller systems) and the full pass of an experiment.
     pub(crate) fn runner<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
         &self,
         name: &str,

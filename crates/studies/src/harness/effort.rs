@@ -1,4 +1,4 @@
-//! Defines the extent of an experiment: a quick pass or the full pass.
+//! Defines the extent of an experiment: a quick pass, which has fewer and smaller systems, or the full pass.
 
 /// The extent of an experiment: a quick pass, which has smaller and fewer systems, or the full pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,7 +12,8 @@ impl Effort {
         if is_quick { Self::Quick } else { Self::Full }
     }
 
-    /// Returns the first value for a quick pass and the second value for the full pass.
+    /// Returns the value `quick` for a quick pass of an experiment (a pass with fewer and smaller systems), and the
+    /// value `full` for the full pass.
     pub(crate) fn pick<T>(self, quick: T, full: T) -> T {
         match self {
             Self::Quick => quick,
@@ -20,18 +21,19 @@ impl Effort {
         }
     }
 
-    /// Returns the name of the folder in which the results of this pass are stored.
+    /// Returns the name of the folder in which the results of this pass of an experiment (quick or full) are stored.
     pub(crate) fn name(self) -> &'static str {
         self.pick("quick", "full")
     }
 
-    /// Returns the command-line option that selects this pass, with a space before the option; empty for the full pass.
+    /// Returns the command-line option that selects this pass of an experiment, with a space before the option, for a
+    /// quick pass (a pass with fewer and smaller systems); returns an empty text for the full pass.
     pub(crate) fn option(self) -> &'static str {
         self.pick(" --quick", "")
     }
 
-    /// Returns a note for captions, which says that the results are from a quick pass, with a space after the note;
-    /// empty for the full pass.
+    /// Returns a note for captions, which says that the results are from a quick pass (a pass with fewer and smaller
+    /// systems), with a space after the note; returns an empty text for the full pass.
     pub(crate) fn note(self) -> &'static str {
         self.pick("Quick pass. ", "")
     }

@@ -66,8 +66,8 @@ impl Journal {
     }
 }
 
-/// Reads all finished cases from the journals in some folders, and returns them by key. Fails if the same case has two
-/// different results.
+/// Reads all finished cases (runs) from the journals in `folders`. The key of the returned map is the unique name of
+/// the case. Fails if the same case has two different results.
 pub(crate) fn read_all<T: Serialize + DeserializeOwned>(
     folders: &[PathBuf],
 ) -> Result<HashMap<String, FinishedCase<T>>> {
@@ -88,7 +88,7 @@ pub(crate) fn read_all<T: Serialize + DeserializeOwned>(
     Ok(all)
 }
 
-/// Reads all records of one journal. Damaged lines are reported and left out.
+/// Reads the results that the lines of one journal contain. Damaged lines are reported and left out.
 pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
     let bytes = std::fs::read(path).map_err(|error| Error::file(path, error))?;
     let mut entries = Vec::new();
@@ -151,7 +151,7 @@ pub(crate) fn files_in(folder: &Path) -> Result<Vec<PathBuf>> {
     entries.map(path).collect::<std::io::Result<_>>().map_err(|error| Error::file(folder, error))
 }
 
-/// Returns the paths of all journals in a folder.
+/// Returns the paths of all journals (files of results) in a folder.
 ///
 /// # Errors
 /// If another program has one of the journals open.

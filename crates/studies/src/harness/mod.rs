@@ -1,5 +1,6 @@
-//! Provides the common parts of all experiments: cases (the runs to compute), the journal of finished cases, the
-//! runner, the machine on which cases are timed, and reports.
+//! Provides the common parts of all experiments: cases (the runs to compute), the journal (the file that stores the
+//! results of finished cases), the runner (which computes the cases), the machine on which cases are timed, and
+//! reports.
 
 mod bench;
 mod case;

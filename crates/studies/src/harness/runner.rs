@@ -1,5 +1,5 @@
 //! Runs the cases (runs) of a study or an experiment. The runner computes the cases that are not finished, writes each
-//! result to a journal as soon as the case ends, and returns all results in the order of the cases.
+//! result to a journal (file of results) as soon as the case ends, and returns all results in the order of the cases.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -35,8 +35,9 @@ pub(crate) struct Runner<T> {
 }
 
 impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
-    /// Opens a runner that resumes an experiment after the last result in a journal in `folder`. The number of results
-    /// in the journal is printed.
+    /// Opens a runner, which computes the cases (runs) of an experiment and appends each result to the journal
+    /// `journal_name` in `folder`, a file with one line per finished case. Cases whose results are already in the
+    /// journal are not computed again. If there are such results, their number is printed.
     pub(crate) fn open(name: &str, folder: &Path, journal_name: &str) -> Result<Self> {
         // Opening the journal cuts off an incomplete last line, so the journal is opened before it is read.
         let journal = Journal::open(folder, journal_name)?;
@@ -48,8 +49,8 @@ impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
         Ok(Self::new(name, journal, finished.into_iter().map(by_key).collect()))
     }
 
-    /// Returns a runner that appends results to `journal`. Cases (runs of the experiment) whose keys are in `finished`
-    /// are not computed again.
+    /// Returns a runner, which computes the cases (runs) of an experiment and appends each result to `journal`, a file
+    /// with one line per finished case. Cases whose keys (names) are in `finished` are not computed again.
     pub(crate) fn new(
         name: &str,
         journal: Journal,
@@ -102,8 +103,9 @@ impl<T: Clone + Send + Sync + Serialize + DeserializeOwned> Runner<T> {
         Ok(results.into_iter().flatten().collect())
     }
 
-    /// Returns the result of a single case: from the journal if the case is finished, otherwise computed by `compute`.
-    /// This function is for a case that depends on the results of other cases.
+    /// Returns the result of the case (run of an experiment) with the name `key`. If the case is finished, the result
+    /// is already known. Otherwise `compute` computes the result, which is then appended to the journal, the file of
+    /// results. This function is for a case that depends on the results of other cases.
     pub(crate) fn result(
         &self,
         key: &str,

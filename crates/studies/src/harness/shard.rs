@@ -18,7 +18,8 @@ impl Shard {
         run % self.count == self.index - 1
     }
 
-    /// Returns the name of this part's journal. `of` is the name of the journal of the whole study.
+    /// Returns the name of the journal (the file that stores the results of finished runs) of this part of a study.
+    /// `of` is the name of the journal of the whole study.
     pub(crate) fn journal(self, of: &str) -> String {
         format!("{of}-{}-of-{}", self.index, self.count)
     }

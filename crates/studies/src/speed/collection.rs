@@ -43,7 +43,7 @@ pub(super) struct CollectionPlan {
     pub time_steps_secs: Vec<f64>,
     /// Simulated times at which the collected steps begin, s, in ascending order.
     pub times_secs: Vec<f64>,
-    /// Seeds of the initial states of the piles. The piles get these seeds in turn.
+    /// Seeds of the initial states of the piles. There are more piles than seeds, so several piles have the same seed.
     pub seeds: Vec<u64>,
     pub grains: usize,
     /// Width of the box in which the initial states are made, in diameters.
@@ -60,9 +60,9 @@ pub(super) struct CollectionPlan {
 }
 
 impl CollectionPlan {
-    /// Returns the description of a collection of 48 steps (24 in a quick pass) of piles of 138 grains. In the full
-    /// pass, the steps are from the first motion, from the collapse (which takes about 0.3 s), from its end, and from
-    /// the state of rest.
+    /// Returns the description of a collection of 48 steps (24 in a quick pass, a pass with fewer runs) of piles of 138
+    /// grains. In the full pass, the steps are from the first motion, from the collapse (which takes about 0.3 s), from
+    /// its end, and from the state of rest.
     pub(super) fn piles(restitution_threshold: f64, effort: Effort) -> Self {
         let rain = NewPile::default();
         Self {
@@ -158,10 +158,10 @@ impl CollectionPlan {
     }
 }
 
-/// Simulates the piles of a collection on all cores. Returns the simulations just before the collected steps, in the
-/// order of `CollectionPlan::names`. `Simulation::next_problem` gives the contact problem of such a step. Initial
-/// states are stored in `states_folder`. Two calls with the same plan return simulations that are equal to the last
-/// bit.
+/// Simulates the piles of a collection on all cores. Returns one simulation for each collected step, in its state just
+/// before this step. The simulations are sorted by Bond number, then by time step, then by simulated time.
+/// `Simulation::next_problem` gives the contact problem of the collected step. Initial states are stored in
+/// `states_folder`. Two calls with the same plan return simulations that are equal to the last bit.
 pub(super) fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec<Simulation>> {
     let configs = plan.configs();
     let states = States::of(states_folder.to_owned(), configs.iter())?;
@@ -196,8 +196,8 @@ pub(super) fn collect(plan: &CollectionPlan, states_folder: &Path) -> Result<Vec
     Ok(piles?.into_iter().flatten().collect())
 }
 
-/// Returns the results of `compute` for each step of a collection. A result that is already in the journal named
-/// `journal` is read from there and not computed again.
+/// Returns the results of `compute` for each step of a collection. Each result is stored in the journal (file of
+/// results) named `journal`. A result that is already in this file is read and not computed again.
 pub(super) fn over_steps<T: Clone + Send + Sync + Serialize + DeserializeOwned>(
     bench: &Bench,
     journal: &str,

@@ -2,7 +2,7 @@
 //! simulations, and draws charts of them. The charts compare all solver methods of the program.
 //!
 //! The folder of a chart contains pictures (PNG and SVG), tables (CSV), `chart.md`, initial states, and the folder
-//! `measured/`. In the latter, each build of the program and each processor has its own journals of measurements. If a
+//! `measured/`. In `measured/`, each build of the program and each processor has its own journals of measurements. If a
 //! command is stopped, the same command resumes its work, and times of different builds are never mixed.
 
 mod collection;
@@ -21,7 +21,7 @@ use crate::error::Result;
 use crate::harness::{Bench, Effort, ReportTable};
 use crate::output::{note_line, print_text};
 
-/// A part of the chart of speed: one kind of measurement.
+/// A part of the charts that compare the speed and the accuracy of solver methods: one kind of measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum ChartPart {
     /// Error against the time of a step
@@ -34,7 +34,7 @@ pub enum ChartPart {
     Solutions,
 }
 
-/// Options of a chart.
+/// Options of the charts that compare the speed and the accuracy of solver methods.
 #[derive(clap::Args, Clone, Debug)]
 pub struct ChartOptions {
     /// Folder for pictures, tables and measurements; the same command continues where it stopped

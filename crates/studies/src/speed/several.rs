@@ -13,8 +13,8 @@ const BONDS: [f64; 3] = [0.0, 20.0, 100.0];
 /// Time steps Δt of the piles, s.
 const TIME_STEPS_SECS: [f64; 2] = [1e-3, 5e-3];
 const FRICTIONS: [f64; 3] = [0.2, 0.5, 0.9];
-/// Smallest distance between the velocities of two solutions of a step that the chart shows, √(g d), with gravity g and
-/// mean diameter d.
+/// Smallest distance between the velocities of two solutions of a step that the chart shows, in units of √(g d), with
+/// gravity g and mean diameter d.
 const LEAST_DISTANCE: f64 = 1e-6;
 /// Factor that shifts the points of a chart horizontally, so that they do not hide each other: for each further Bond
 /// number, the number of grains on the x axis is multiplied by this factor.

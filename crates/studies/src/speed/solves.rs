@@ -41,11 +41,11 @@ pub(super) struct References {
     #[serde(skip)]
     velocities: Vec<Vec<[f64; 3]>>,
     pub found: usize,
-    /// Largest distance between the velocities of two known solutions of the step, √(g d), with gravity g and mean
-    /// diameter d; 0 for a single solution.
+    /// Largest distance between the velocities of two known solutions of the step, in units of √(g d), with gravity g
+    /// and mean diameter d; 0 for a single solution.
     pub spread: f64,
     /// Estimated distance between the velocities of the least accurate known solution and those of an exact solution,
-    /// √(g d), with gravity g and mean diameter d.
+    /// in units of √(g d), with gravity g and mean diameter d.
     #[serde(with = "number")]
     pub told: f64,
     /// Largest residual of the known solutions of the step, dimensionless.
@@ -92,8 +92,8 @@ pub(super) struct TimedSolve {
     pub sweeps: u32,
     /// Computing time of the solve, s: the shortest among its repetitions.
     pub secs: f64,
-    /// Distance of the velocities to the nearest known solution under Coulomb friction, √(g d), with gravity g and mean
-    /// diameter d.
+    /// Distance of the velocities to the nearest known solution under Coulomb friction, in units of √(g d), with
+    /// gravity g and mean diameter d.
     #[serde(with = "number")]
     pub error: f64,
 }
@@ -162,8 +162,8 @@ impl SolveTimer<'_> {
         (effort, has_ended)
     }
 
-    /// Returns the error of a solved step, √(g d), with gravity g and mean diameter d: the distance of its velocities
-    /// from those of the nearest known solution.
+    /// Returns the error of a solved step, in units of √(g d), with gravity g and mean diameter d: the distance of its
+    /// velocities from those of the nearest known solution.
     fn error<M: Model>(&self, solved: &StepProblem<M>) -> f64 {
         let all = self.references.velocities.iter();
         let distances = all.map(|reference| distance_to_velocities(solved, reference));

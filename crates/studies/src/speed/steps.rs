@@ -18,12 +18,12 @@ use crate::solver::{FrictionModel, Method, Ordering, SolutionSearch};
 /// Restitution threshold (the approach speed below which contacts do not bounce) with which nearly every step has a
 /// solution, in units of g·Δt, the speed that gravity adds in one step.
 const THRESHOLD: f64 = 2.0;
-/// Errors of the velocities, √(g d), with gravity g and mean diameter d. The report says how long each solver method
-/// takes to reach each of these errors.
+/// Errors of the velocities, in units of √(g d), with gravity g and mean diameter d. The report says how long each
+/// solver method takes to reach each of these errors.
 const REPORTED: [f64; 3] = [1e-2, 1e-3, 1e-4];
 const BASE: (Method, Ordering) = (Method::Nsgs, Ordering::Interleaved);
 const SIZES: [usize; 4] = [138, 500, 2_000, 10_000];
-/// Smallest error of the velocities that the chart shows, √(g d), with gravity g and mean diameter d.
+/// Smallest error of the velocities that the chart shows, in units of √(g d), with gravity g and mean diameter d.
 const LEAST_ERROR: f64 = 1e-8;
 const BAND: Rgb = (225, 225, 225);
 
@@ -106,7 +106,8 @@ struct CollectionTimer {
 
 impl CollectionTimer {
     /// Measures the time and the error of every solver variant on every step of a collection, one after the other.
-    /// Steps whose results are already in the journal are not measured again.
+    /// Results are stored in the journal (file of results) named `journal`, and steps whose results are already in this
+    /// file are not measured again.
     fn time(
         &self,
         bench: &Bench,
@@ -154,7 +155,7 @@ impl TimedCollection {
     }
 
     /// Returns, for each number of sweeps of a solver variant, the median time of a solve, ms, and the median error of
-    /// the velocities, in √(g d), over all steps.
+    /// the velocities, in √(g d) with gravity g and mean diameter d, over all steps.
     fn medians(&self, variant: usize) -> Vec<(f64, f64)> {
         let solves = || self.steps.iter().map(|step| &step.solves[variant]);
         let longest = solves().map(|solves| solves.0.len()).max().unwrap_or(0);
@@ -167,8 +168,9 @@ impl TimedCollection {
         (0..longest).map(point).collect()
     }
 
-    /// Returns the best results of a family of methods as points (median time, ms; median error): those points for
-    /// which no other point of the family is at least as fast and at least as accurate, by increasing time.
+    /// Returns the best results of a family of methods (a group of similar solver methods) as points (median time, ms;
+    /// median error), by increasing time. A result is one of the best if no other result of the family is at least as
+    /// fast and at least as accurate.
     fn front(&self, family: Family) -> Vec<(f64, f64)> {
         let its = (0..self.variants.len()).filter(|&one| self.variants[one].family() == family);
         let all: Vec<(f64, f64)> = its.flat_map(|one| self.medians(one)).collect();

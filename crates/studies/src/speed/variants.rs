@@ -1,4 +1,5 @@
-//! Lists the solver variants that the charts of speed compare: every solver method of the program, with its settings.
+//! Lists the solver variants whose speed and accuracy the charts compare: every solver method of the program, with its
+//! settings.
 
 use crate::chart::{PALETTE, Rgb};
 use crate::harness::{Change, distinct};
@@ -57,7 +58,7 @@ impl Family {
     }
 }
 
-/// Returns a text for captions, which lists the names of the variants in each family.
+/// Returns a text for captions, which lists the names of the variants in each family of similar solver methods.
 pub(super) fn members<'a>(variants: impl Iterator<Item = &'a Change> + Clone) -> String {
     let of = |family: Family| {
         let its = variants.clone().filter(|variant| variant.family() == family);
@@ -68,7 +69,7 @@ pub(super) fn members<'a>(variants: impl Iterator<Item = &'a Change> + Clone) ->
     format!("{}.", all.join("; "))
 }
 
-/// Returns the steppers that use no solver method, such as `dem`. Each of them is a variant of its own.
+/// Returns the steppers that use no solver method, such as `dem`. The charts show each of them like a solver variant.
 fn without_method() -> impl Iterator<Item = Stepper> {
     Stepper::ALL.iter().copied().filter(|stepper| !stepper.uses_method())
 }
@@ -129,7 +130,7 @@ fn of_model(method: Method, friction_model: FrictionModel) -> Change {
     Change::of_solver(name, Stepper::Moreau, &solver)
 }
 
-/// Properties of solver variants for the charts of speed.
+/// Properties of a solver variant, for the charts that compare the speed and the accuracy of variants.
 impl Change {
     /// True for the [`default`] solver, which determines its number of sweeps itself.
     pub(super) fn is_default(&self) -> bool {

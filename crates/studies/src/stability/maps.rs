@@ -39,22 +39,26 @@ use crate::solver::METHODS;
 /// solver keeps a scene at rest.
 const DURATION_SECS: f64 = 0.1;
 /// Limit of the sinking distance and of the overlap, in diameters d. A run above this limit is marked as sinking on the
-/// stability map.
+/// stability map, a chart that shows where a solver keeps a scene at rest.
 const COUNTS: f64 = 0.01;
 /// Amplitude A, at the top of a tall column, of the mode (velocity pattern) that Gauss–Seidel sweeps reduce most
-/// slowly, dimensionless. The velocity with which a column sinks is proportional to A.
+/// slowly, dimensionless. If all discs fall with the same velocity, 4/π of this velocity is in this mode. The velocity
+/// with which a column sinks is proportional to A.
 const TOP_OF_COLUMN: f64 = 4.0 / PI;
 /// Displacement of a grain during a run, in diameters d, above which the grain counts as torn off or thrown away on a
-/// stability map.
+/// stability map (a chart that shows where a solver keeps a scene at rest).
 const LOST: f64 = 1.0;
 /// Root mean square speed of the grains at the end of a run above which the scene counts as shaking, in √(g d), with
-/// gravity g and diameter d. The first value is for rigid grains, the second for grains on springs.
+/// gravity g and diameter d. The first value is for rigid grains. It is larger, because a scene whose steps are not
+/// solved accurately sinks steadily and must not count as shaking. The second value is for grains on springs, which are
+/// at rest at the end of a run if the springs are stable.
 const SHAKES: [f64; 2] = [0.05, 4e-3];
-/// Number of discs of a column in those stability maps that do not vary this number.
+/// Number of discs of a column in those stability maps (charts that show where a solver keeps a scene at rest) that do
+/// not vary this number.
 const DISCS: usize = 20;
 /// Width and height of the chart of a stability map, pixels.
 const CHART: (u32, u32) = (500, 500);
-/// Number of stability maps side by side on a sheet.
+/// Number of charts side by side on a sheet of stability maps.
 const ABREAST: usize = 5;
 
 /// A parameter that is varied along one of the two axes of a stability map, a chart that shows where a solver keeps a
@@ -74,8 +78,9 @@ const fn sweeps(to: f64) -> Parameter {
 }
 
 impl Parameter {
-    /// Returns the tested values of the parameter: twelve (six in a quick pass), with a constant ratio. Each value
-    /// comes with the lower and the upper edge of its cell on the map.
+    /// Returns the tested values of the parameter: twelve (six in a quick pass, a pass with fewer runs), with a
+    /// constant ratio of neighbouring values. Each value comes with the lower and the upper edge of its cell on the
+    /// map.
     fn values(&self, effort: Effort) -> Vec<(f64, [f64; 2])> {
         let count = effort.pick(6, 12);
         let ratio = (self.to / self.from).powf(1.0 / f64::from(count));
@@ -92,8 +97,9 @@ impl Parameter {
     }
 }
 
-/// A theoretical boundary on a stability map: its name; the name of the stepper or solver method on whose maps it is
-/// drawn, empty for all maps; and the y value as a function of x.
+/// A theoretical boundary on a stability map, a chart that shows where a solver keeps a scene at rest. The first text
+/// is the name of the boundary. The second text is the name of the stepper or solver method on whose charts the
+/// boundary is drawn; empty for all. The function returns the y value of the boundary from the x value.
 type Border = (&'static str, &'static str, fn(f64) -> Result<f64>);
 
 /// Description of a stability map (a chart that shows where a solver keeps a scene at rest): the scene, the two varied
@@ -107,7 +113,8 @@ struct Map {
     borders: &'static [Border],
 }
 
-/// All stability maps.
+/// All stability maps, charts that show where a solver keeps a scene at rest: the map of a cantilever over time step
+/// and Bond number, and three maps of columns and of a heavy disc on a light disc.
 const MAPS: [Map; 4] = [
     Map {
         name: "map-dt-bond",
@@ -213,8 +220,9 @@ fn of_registry() -> impl Iterator<Item = &'static Change> {
     VARIANTS.iter().filter(move |variant| names.contains(&&*variant.name))
 }
 
-/// Draws all stability maps, with the charts of several solver methods and steppers side by side on a sheet. Returns
-/// each sheet with the name of its file. `progress` is called after each chart.
+/// Draws all stability maps (charts that show where a solver keeps a scene at rest), with the charts of several solver
+/// methods and steppers side by side on a sheet. Returns each sheet with the name of its file. `progress` is called
+/// after each chart.
 ///
 /// # Errors
 /// If a scene is invalid.
@@ -245,14 +253,14 @@ pub fn maps(quick: bool, progress: impl Fn() + Sync) -> Result<Vec<(String, Shee
     Ok(sheets)
 }
 
-/// Returns the number of charts on all sheets of stability maps: one chart per map and solver method or stepper.
+/// Returns the number of charts that [`maps`] draws: one chart per stability map and solver method or stepper.
 pub fn count_of_maps() -> usize {
     MAPS.len() * of_registry().count()
 }
 
 impl Map {
-    /// True for the map of the cantilever. With the stepper `dem`, the cantilever swings on its springs for longer than
-    /// a run.
+    /// Returns true if springs between grains may swing at the end of a run on this map without the scene counting as
+    /// shaking. This is so for the map of the cantilever, which swings under the stepper `dem` for longer than a run.
     fn can_swing(&self) -> bool {
         self.borders.iter().any(|(name, ..)| *name == STATICS)
     }

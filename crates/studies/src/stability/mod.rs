@@ -35,8 +35,8 @@ pub struct Challenge {
     /// Values of the driving parameter in a quick pass (a pass with fewer runs), from the easiest to the most
     /// difficult.
     pub quick: &'static [f64],
-    /// Values of the driving parameter that only the full pass tests, in addition to those of the quick pass. They are
-    /// more difficult.
+    /// Values of the driving parameter that only the full pass tests, in addition to those of the quick pass (a pass
+    /// with fewer runs). They are more difficult than the values of the quick pass.
     further: &'static [f64],
     /// Two limits of the error, in its unit: up to the first limit a method gets the verdict "holds", up to the second
     /// "degrades", and above the second "fails".
@@ -112,8 +112,8 @@ impl Challenge {
         Self { further, ..self }
     }
 
-    /// Runs a trial (one solver variant at one difficulty) and returns its error; infinite if positions or velocities
-    /// become NaN or infinite.
+    /// Runs this stability test with one solver variant and one value of the driving parameter (a trial), and returns
+    /// the error; infinite if positions or velocities become NaN or infinite.
     fn error(&self, trial: &Trial) -> Result<f64> {
         match (self.error)(trial) {
             Ok(error) if error.is_nan() => Ok(f64::INFINITY),
@@ -129,7 +129,8 @@ const TIME_STEP: &str = "time step (s)";
 /// Name of the driving parameter (the parameter that makes the test more difficult) of those stability tests in which
 /// it is the ratio of two masses.
 const MASSES: &str = "ratio of masses";
-/// Time steps of a quick pass (a pass with fewer runs), s, in stability tests whose driving parameter is the time step.
+/// Time steps of a quick pass (a pass with fewer runs), s, in the stability tests of a hanging chain, a cantilever and
+/// a bridge.
 const STEPS: &[f64] = &[2e-4, 1e-3, 5e-3, 2e-2];
 /// Time steps of a quick pass (a pass with fewer runs), s, in the stability tests of heaps, arches and logs.
 const LONG_STEPS: &[f64] = &[1e-3, 5e-3, 2e-2];

@@ -1,6 +1,6 @@
-//! Measures the errors of stability tests with moving grains: sliding friction, impacts, invariances, and sudden
-//! changes. Each function runs a trial (one solver variant at one difficulty) and returns an error that is 0 for the
-//! right answer.
+//! Measures the errors of stability tests with moving grains: sliding friction, impacts, sudden changes, and changes
+//! that must not affect the result (a shift of the scene, another numbering of the grains). Each function runs a trial
+//! (one solver variant at one difficulty) and returns an error that is 0 for the right answer.
 
 use glam::DVec2;
 use rand::seq::SliceRandom;
@@ -145,7 +145,7 @@ pub(super) fn thin_wall(trial: &Trial) -> Result<f64> {
     Ok(f64::from(through) / f64::from(PHASES))
 }
 
-// Invariances: the distance from the origin and the order of the contacts must not change the result.
+// Changes that must not affect the result: another distance of the heap from the origin, another order of the contacts.
 
 const FAR_ROWS: usize = 4;
 const FAR_SECS: f64 = 0.1;
@@ -196,7 +196,7 @@ pub(super) fn shuffle(trial: &Trial) -> Result<f64> {
     Ok(differences.fold(0.0, f64::max) / largest)
 }
 
-// Sudden changes: a grain is removed, the time step changes, or all sliders move at random.
+// Sudden changes: a grain is removed, the time step changes, or all sliders of the graphical window move at random.
 
 /// Number of steps before the sudden change in a test (a removed grain, or another time step).
 const BEFORE: u64 = 50;
@@ -204,19 +204,21 @@ const BEFORE: u64 = 50;
 const AFTER: u64 = 30;
 /// Time step in the test of a sudden change of the time step, before the change, s.
 const SMALL_STEP_SECS: f64 = 2e-4;
-/// Number of rows of discs in the heap of the tests with a sudden change of the time step or with randomly moved
-/// sliders.
+/// Number of rows of discs in the heap of two tests: one with a sudden change of the time step, and one in which the
+/// sliders of the graphical window (Bond number, time step, restitution, friction) move at random.
 const ROWS: usize = 4;
-/// Half the side length of the box around the heap, in the test with randomly moved sliders, in mean diameters d.
+/// Half the side length of the box around the heap, in mean diameters d, in the test in which the sliders of the
+/// graphical window (Bond number, time step, restitution, friction) move at random.
 const BOX: f64 = 12.0;
-/// Simulated time between two random changes of all sliders, in the test with randomly moved sliders, s.
+/// Simulated time between two random changes of Bond number, time step, restitution and friction, s, in the test in
+/// which the sliders of the graphical window move at random.
 const CHANGE_SECS: f64 = 0.05;
-/// Most sweeps per step in the test with randomly moved sliders. The number is so small that the graphical window could
-/// show the run in real time.
+/// Most sweeps per step in the test in which the sliders of the graphical window (Bond number, time step, restitution,
+/// friction) move at random. The number is so small that the window could show the run in real time.
 const LIVE_SWEEPS: u32 = 200;
 
 /// Removes a heavy disc from the top of a column at rest, and returns the largest kinetic energy afterwards, divided by
-/// the weight of a disc of the column times the mean diameter (m g d).
+/// the weight of a disc of the column times the mean diameter.
 pub(super) fn lift_off(trial: &Trial) -> Result<f64> {
     let mut simulation = trial.start(scenes::lift_off(trial.level))?;
     simulation.take_steps(BEFORE)?;

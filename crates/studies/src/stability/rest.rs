@@ -72,8 +72,8 @@ fn sunk_in(trial: &Trial, scene: &Scene) -> Result<f64> {
     Ok(sunk(&simulation, scene))
 }
 
-/// Returns the displacement of the last grain, such as the top disc of a column, since the initial state in `scene`, in
-/// mean diameters d.
+/// Returns the displacement of the grain that is last in the list of grains, such as the top disc of a column, since
+/// the initial state in `scene`, in mean diameters d.
 pub(super) fn sunk(simulation: &Simulation, scene: &Scene) -> f64 {
     let last = scene.grains.len() - 1;
     let [before, now] = [scene.grains[last].position, simulation.world().grains.positions[last]];
@@ -132,9 +132,9 @@ pub(super) fn arch(trial: &Trial) -> Result<f64> {
 
 /// Measures the smallest rolling friction with which a leaning column stays at rest, and returns its relative error.
 ///
-/// If the moment of the lowest contact is smaller than the necessary moment by the fraction ε, the column of n discs turns
-/// about this contact like a rod, and its top moves by about (3/8) ε g t²/n in the time t. So the test of n discs takes a
-/// time that grows with √n.
+/// If the moment of the lowest contact is smaller than the necessary moment by the fraction ε, the column of n discs
+/// turns about this contact like a rod, and its top moves by about (3/8) ε g t²/n in the time t, with gravity g. So the
+/// test of n discs takes a time that grows with √n.
 pub(super) fn leaning_column(trial: &Trial) -> Result<f64> {
     let right = scenes::ROLLING_FRICTION_OF_COLUMN;
     let scene = with_sweeps(FEW_SWEEPS, scenes::leaning_column(trial.count()));
@@ -207,8 +207,9 @@ pub(super) fn hyperstatic(trial: &Trial) -> Result<f64> {
     Ok(unrest(&simulation, &scene).max(simulation.observables().residual))
 }
 
-/// Runs a heap that must stay at rest, with the number of grains that the trial gives. Returns the larger of two
-/// numbers: the longest displacement, in mean diameters d, and the root mean square speed, in √(g d) with gravity g.
+/// Runs a heap that must stay at rest. Its number of grains is the driving parameter of `trial` (the parameter that
+/// makes the test more difficult). Returns the larger of two numbers: the longest displacement, in mean diameters d,
+/// and the root mean square speed, in √(g d) with gravity g.
 pub(super) fn size(trial: &Trial) -> Result<f64> {
     let scene = scenes::heap_of(trial.count());
     let mut simulation = trial.start_within(WINDOW_SWEEPS, scene.clone())?;
@@ -229,8 +230,9 @@ const HANG_SECS: f64 = 0.04;
 /// Bond number of the chain while it hangs at rest before it is tested, divided by the Bond number at which it breaks.
 /// With a much larger value, bonds with springs would recoil when the Bond number is reduced for the test.
 const SURE: f64 = 1.5;
-/// Number of bisections with which the Bond number is searched at which a chain breaks. They determine it to a factor
-/// of 4^(1/2^8), that is, 0.5 %.
+/// Number of bisections with which the Bond number is searched at which a chain breaks. The search begins between a
+/// quarter of the right value and four times the right value. Nine bisections reduce the ratio of the two ends from 16
+/// to 16^(1/2⁹) = 1.005.
 const CHAIN_HALVINGS: u32 = 9;
 /// Duration of the tests of a cohesive bridge and a cohesive cantilever, s. If the bridge or the cantilever is torn
 /// off, it falls by 30 diameters in this duration.

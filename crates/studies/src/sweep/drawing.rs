@@ -24,7 +24,8 @@ fn is_level(chart: &SweepChart, group: &RunGroup) -> bool {
 }
 
 /// Draws the mean slump of each group of runs (the runs that only differ in their initial state). A setting that varies
-/// in the full pass can be constant in a quick pass; then it does not distinguish panels and curves.
+/// in the full pass can be constant in a quick pass (a pass with fewer runs); then it does not distinguish panels and
+/// curves.
 pub(super) fn sheet(
     choice: &SweepChart,
     groups: &[RunGroup],

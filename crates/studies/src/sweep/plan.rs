@@ -57,7 +57,7 @@ struct Quick {
 pub struct SeriesSettings {
     /// Simulated time between two rows of a time series, s.
     pub interval: f64,
-    /// Indices of the grains whose positions the rows contain.
+    /// Indices of the grains whose positions the rows of a time series contain.
     #[serde(default)]
     pub grains: Vec<usize>,
 }
@@ -69,13 +69,13 @@ pub struct Study {
     pub name: String,
     /// Identity of the study: a hash of the keys of all runs.
     pub fingerprint: String,
-    /// True if the runs are those of a quick pass, and the study file gives the quick pass other values than the full
-    /// pass.
+    /// True if the runs are those of a quick pass (a pass with fewer runs), for which the study file gives other values
+    /// than for the full pass.
     pub is_quick_pass: bool,
     /// Settings of the time series that each run writes, if any.
     pub series: Option<SeriesSettings>,
-    /// Settings of the recording of each run, if any. A recording is stored in the folder of results, in a folder named
-    /// after the run's key.
+    /// Settings of the recordings, if any. A recording contains the grains of a run over time. It is stored in the
+    /// folder of results, in a folder named after the run's key.
     pub data: Option<DataSettings>,
     /// Description of the chart of the results, if any.
     pub chart: Option<SweepChart>,
@@ -87,8 +87,8 @@ pub struct Study {
 }
 
 impl Study {
-    /// Reads a study file, and lists and checks all its runs. `quick` selects the quick pass, with the values of the
-    /// file's table `quick`.
+    /// Reads a study file, and lists and checks all its runs. `quick` selects the quick pass (a pass with fewer runs),
+    /// with the values of the file's table `quick`.
     ///
     /// # Errors
     /// If the file cannot be read or is not a valid study.
@@ -97,8 +97,8 @@ impl Study {
         Self::parse(&text, path, quick)
     }
 
-    /// Reads a study from the text of its file, and lists and checks all its runs. `quick` selects the quick pass.
-    /// `path` is the file's path, for error messages and relative paths.
+    /// Reads a study from the text of its file, and lists and checks all its runs. `quick` selects the quick pass (a
+    /// pass with fewer runs). `path` is the file's path, for error messages and relative paths.
     ///
     /// # Errors
     /// If the text is not a valid study.
@@ -145,9 +145,10 @@ impl Study {
     }
 }
 
-/// Replaces values in the table `to` of a study file by `values`, the values of a quick pass. A setting that varies in
-/// the study may be constant in the quick pass, and the other way round, so the setting is removed from the table
-/// `other`. `from` is the name of the table with the values, for error messages.
+/// Replaces settings in the table `to` of a study file, which is `base` or `vary`, by `values`, the settings of a quick
+/// pass (a pass with fewer runs). A setting that varies in the full pass may be constant in the quick pass or vice
+/// versa, so each setting in `values` is also removed from `other`, the second of these two tables. `from` is the name
+/// of the table that contains `values`, for error messages.
 fn replace(from: &str, to: &mut Table, other: &mut Table, values: Table) -> Result<()> {
     for (key, value) in values {
         if other.remove(&key).is_none() && !to.contains_key(&key) {
@@ -333,8 +334,8 @@ fn hash(said: &impl Serialize, scene: &str) -> Result<blake3::Hasher> {
     Ok(hasher)
 }
 
-/// Returns the first half of a hash as hexadecimal digits, which are used as a key. With these 128 bits, two runs
-/// practically never have the same key.
+/// Returns the first half of a hash (128 bits) as hexadecimal digits. With this many bits, two different inputs
+/// practically never give the same digits.
 fn short(hasher: &blake3::Hasher) -> String {
     hasher.finalize().to_hex()[..32].to_owned()
 }

@@ -78,7 +78,7 @@ impl RunResult {
     }
 }
 
-/// A finished run of a sweep, as the journal stores it.
+/// A finished run of a sweep, as one line of the journal (file of results) stores it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct SweptRun {
     pub outcome: RunResult,

@@ -1,6 +1,6 @@
 //! Writes the time series of runs, as one CSV file per run in the folder `series/`, with one row per interval of
-//! simulated time. The checksums of these files are in the journal and not in the files, so that the files are plain
-//! tables.
+//! simulated time. The checksums of these files are in the journal (the file that stores the results of finished runs)
+//! and not in the files, so that the files are plain tables.
 
 use std::path::{Path, PathBuf};
 

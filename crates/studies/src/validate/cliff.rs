@@ -3,8 +3,8 @@
 //! Consider a packing of discs of diameter d with the solid fraction φ, Z contacts per grain, and isotropic directions
 //! of the contacts. Then φZ/(πd) contacts cross a unit of length. Each contact bears the cohesion force C₀, so the
 //! tensile strength is σ_t = φ Z C₀/(π d). By Mohr and Coulomb the cohesion is c = σ_t tan φ_f with the friction angle
-//! φ_f, and the height of a stable cliff is at most H = (4c/(ρ_b g)) tan(45° + φ_f/2) with the bulk density ρ_b. With
-//! C₀ = Bond·m g/2, the mass m = σπd²/4, the areal density σ and ρ_b = φσ, the solid fraction cancels:
+//! φ_f, and the height of a stable cliff is at most H = (4c/(ρ_b g)) tan(45° + φ_f/2) with the bulk density ρ_b and
+//! gravity g. With C₀ = Bond·m g/2, the mass m = σπd²/4, the areal density σ and ρ_b = φσ, the solid fraction cancels:
 //!
 //! > H/d = ½ Z Bond tan φ_f tan(45° + φ_f/2).
 //!
@@ -74,8 +74,9 @@ fn standing_from(of_seed: &Measurements) -> f64 {
     (falls * runs[first].at("bond")).sqrt()
 }
 
-/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
-/// lower end of the band of values that agree, published value, upper end of the band | source.
+/// Table of published values as text, with one row for each quantity that the function [`judge`] computes from the
+/// runs. A row has the form: name of the quantity | lower end of the band of values that agree, published value, upper
+/// end of the band | kind of the source (`read`, `recalled`, `derived` or `exact`): source.
 const PUBLISHED: &str = "
     rank correlation of run-out and Bond | -1 -1 -0.7 | recalled: Abramian et al. 2020, Gans et al. 2023: it falls
     rank correlation of roughness and Bond, of those that fall | 0.5 1 1 \

@@ -8,7 +8,8 @@
 //! restitution.
 //!
 //! **Stepper `range`, ρ = 1.** Each collision makes a bond, and breaking the bond takes the work W = C₀ δ_c, with the
-//! cohesion force C₀ and the debonding distance δ_c (bonds pull up to this gap). So dT/dt = −R W √(T/T₀):
+//! cohesion force C₀ and the debonding distance δ_c (bonds pull up to this gap). So dT/dt = −R W √(T/T₀), with the time
+//! t:
 //!
 //! > T = T₀ (1 − t/t₀)²,  t₀ = 2 T₀/(R W),  until T is about W.
 //!
@@ -16,9 +17,11 @@
 //! collision of such a pair breaks its bond.
 //!
 //! **Stepper `moreau`, touch tolerance 0.** A pair bounces in the first step that begins with an overlap. In this step,
-//! cohesion takes no energy: in the contact law of `docs/theory.md`, u = 0 and σ > 0. For ρ = 1 the velocity of the
-//! pair is reversed. So at the end of the step the pair is as far apart as it was one step before the overlap. It no
-//! longer touches, and cohesion does not act in later steps.
+//! cohesion takes no energy, because the contact pushes: in the contact law of `docs/theory.md`, σ > 0 and u = 0. Here
+//! σ is the impulse divided by the effective mass, plus the capture speed, and u = v_n⁺ + ρ v_n⁻ with the normal
+//! velocities v_n⁻ before and v_n⁺ after the step. For ρ = 1 the velocity of the pair is reversed. So at the end of the
+//! step the pair is as far apart as it was one step before the overlap. It no longer touches, and cohesion does not act
+//! in later steps.
 //!
 //! > Without a loss by restitution, cohesion of any strength takes no energy: T = T₀.
 //!
@@ -29,7 +32,8 @@
 //!
 //! > dx/dt = ½ R (1 − ρ²) + ¼ R (1 − ρ) (√π ρ k x − ½ k² x²),  k = c √(m/T₀).
 //!
-//! For k x ≪ 1 this is Haff's law with an exponential: x = (1 + b) e^{t/2τ} − b, b = (1 − ρ²) R τ, and
+//! For k x ≪ 1 this is Haff's law with an exponential: x = (1 + b) e^{t/2τ} − b, with b = (1 − ρ²) R τ and the time τ,
+//! in which cohesion alone lowers T by the factor 1/e:
 //!
 //! > 1/τ = ½ π ρ (1 − ρ) n d χ C₀Δt/m_ij:  τ Δt is constant.
 //!
@@ -207,10 +211,12 @@ impl GasRun {
     }
 }
 
-/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
-/// lower end of the band of values that agree, published value, upper end of the band | source. The bands of times are
-/// as wide as in the experiment on Haff's law. The rates 1/τ have wider bands, because only a tenth of the collisions
-/// of 2,000 discs determines them.
+/// Table of published values as text, with one row for each quantity that the function [`judge`] computes from the
+/// runs. A row has the form: name of the quantity | lower end of the band of values that agree, published value, upper
+/// end of the band | kind of the source (`read`, `recalled`, `derived` or `exact`): source. t₀ is the time in which
+/// breaking bonds would take all energy of the gas, 1/τ the rate at which cohesion lowers the temperature. The bands of
+/// t₀ are as wide as that of the cooling time in `validate::cooling`. The bands of 1/τ are wider, because only a tenth
+/// of the collisions of 2,000 discs determines this rate.
 const PUBLISHED: &str = "
     range: t₀ over that of kinetic theory, short Δt | 0.9 1 1.1 | derived: Enskog's rate, work of a bond
     range: t₀ over that of kinetic theory, long Δt | 0.9 1 1.1 | derived: Enskog's rate, work of a bond

@@ -2,8 +2,8 @@
 //! layer, at one inertial number I (defined in `validate::shear`).
 //!
 //! Flows of grains of diameter d that attract each other with the force C₀, under the pressure P, have a second
-//! dimensionless number in addition to I, the cohesion η = C₀/(P d). With C₀ = Bond·m g/2 for two grains of mass m, and
-//! P in units of m g/d, η = Bond/(2P).
+//! dimensionless number in addition to I, the cohesion η = C₀/(P d). With C₀ = Bond·m g/2 for two grains of mass m
+//! under gravity g, and P in units of m g/d, η = Bond/(2P).
 //!
 //! If the contact law defines the work W that breaks a bond, there is a third number, E = W/(m γ̇² d²) with the shear
 //! rate γ̇. It is the ratio of this work to the kinetic energy with which grains pass each other. With the stepper
@@ -65,8 +65,9 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     layers(effort, variant, &kinds)
 }
 
-/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
-/// lower end of the band of values that agree, published value, upper end of the band | source.
+/// Table of published values as text, with one row for each quantity that the function [`judge`] computes from the
+/// runs. A row has the form: name of the quantity | lower end of the band of values that agree, published value, upper
+/// end of the band | kind of the source (`read`, `recalled`, `derived` or `exact`): source.
 const PUBLISHED: &str = "
     T/N at η = 1 over that without cohesion | 0.85 1 1.2 | recalled: Rognon et al. 2006: weak cohesion leaves it
     φ at η = 1 less that without cohesion | -0.04 -0.01 0 | recalled: Rognon et al. 2006: weak cohesion dilates

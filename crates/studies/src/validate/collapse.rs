@@ -66,8 +66,8 @@ pub(super) struct CollapsingColumn {
 }
 
 impl CollapsingColumn {
-    /// Lets the grains of the column fall and come to rest between walls, replaces the walls by gates, removes the
-    /// gates, and measures the final heap.
+    /// Lets the grains of the column fall and come to rest between two walls, pulls the walls away (then called gates),
+    /// and measures the final heap.
     pub(super) fn run(&self, variant: StepVariant) -> Result<RunReadings> {
         let half = half_width(self.grains, self.aspect);
         let settled = settled(&self.between_walls(half, variant))?;
@@ -156,8 +156,9 @@ fn reach_and_top(grains: &[GrainState]) -> [f64; 2] {
     [0.5 * (left + right), top]
 }
 
-/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
-/// lower end of the band of values that agree, published value, upper end of the band | source.
+/// Table of published values as text, with one row for each quantity that the function [`judge`] computes from the
+/// runs. A row has the form: name of the quantity | lower end of the band of values that agree, published value, upper
+/// end of the band | kind of the source (`read`, `recalled`, `derived` or `exact`): source.
 const PUBLISHED: &str = "
     run-out over a, a ≤ 2, simulated | 1.9 2.5 3.1 | recalled: Staron, Hinch 2005: 2.5
     run-out over a, a ≤ 2, in a channel | 0.9 1.2 1.5 | recalled: Lube et al. 2005: 1.2

@@ -15,8 +15,9 @@
 //!
 //! > dT/dt = −2 T √(T/T₀)/τ,  2/τ = (1 − e²) √(T₀/m) (√π n d χ + L_w n_w/(√(2π) N)),
 //!
-//! so that T = T₀/(1 + t/τ)². The distribution of velocities stays close to Maxwell's: at e = 0.9 its fourth cumulant
-//! is −0.03, which changes the cooling rate by half a per cent (T. P. C. van Noije, M. H. Ernst 1998).
+//! with the temperature T₀ at the time t = 0, so that T = T₀/(1 + t/τ)². The distribution of velocities stays close to
+//! Maxwell's: at e = 0.9 its fourth cumulant is −0.03, which changes the cooling rate by half a per cent (T. P. C. van
+//! Noije, M. H. Ernst 1998).
 
 use std::f64::consts::{PI, TAU};
 
@@ -51,7 +52,8 @@ const SOLID_FRACTION: f64 = 0.1;
 /// Thermal speed √(2T₀/m) at the start, m/s, with the initial temperature T₀ and the mass m of a disc. At this speed a
 /// disc moves by 1e-4 m, a hundredth of its diameter, in 1e-3 s.
 pub(super) const THERMAL_SPEED: f64 = 0.1;
-/// Duration of a run, in units of the cooling time τ of Haff's law, T = T₀/(1 + t/τ)².
+/// Duration of a run, in units of the cooling time τ of Haff's law, by which the temperature T of a gas falls with the
+/// time t as T = T₀/(1 + t/τ)² from its initial value T₀.
 const TIMES: f64 = 6.0;
 /// Number of simulated times at which the temperature is measured in a run.
 const MOMENTS: u32 = 120;
@@ -78,12 +80,14 @@ fn contact_value() -> f64 {
 }
 
 /// Returns √π n d χ, 1/m, with n discs of diameter d per area and the pair correlation χ at contact. Multiplied by the
-/// speed √(T/m), this is the number of collisions per second, divided by the number of discs.
+/// speed √(T/m), with the temperature T (an energy) and the mass m of a disc, this is the number of collisions per
+/// second, divided by the number of discs.
 pub(super) fn collisions_per_distance(discs: f64) -> f64 {
     PI.sqrt() * discs / side(discs).powi(2) * DIAMETER * contact_value()
 }
 
-/// Returns the theoretical cooling time τ of Haff's law, T = T₀/(1 + t/τ)², s. It includes collisions with the walls.
+/// Returns the theoretical cooling time τ of Haff's law, s. By this law, the temperature T of a gas falls with the time
+/// t as T = T₀/(1 + t/τ)² from its initial value T₀. The collisions with the walls are included.
 fn time_secs(discs: f64) -> f64 {
     let at_wall = discs / side(discs).powi(2) * (1.0 + 2.0 * SOLID_FRACTION * contact_value());
     let of_walls = 4.0 * (side(discs) - DIAMETER) * at_wall / (TAU.sqrt() * discs);
@@ -146,8 +150,9 @@ fn cool(discs: usize, seed: u64, variant: StepVariant) -> Result<RunReadings> {
     Ok(run.with([("exponent", exponent), ("time", 1.0 / slope(&roots) / expected)]))
 }
 
-/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
-/// lower end of the band of values that agree, published value, upper end of the band | source.
+/// Table of published values as text, with one row for each quantity that the function [`judge`] computes from the
+/// runs. A row has the form: name of the quantity | lower end of the band of values that agree, published value, upper
+/// end of the band | kind of the source (`read`, `recalled`, `derived` or `exact`): source.
 const PUBLISHED: &str = "
     exponent p of T = T₀ (1 + t/τ)^−p | 1.85 2 2.15 | exact: Haff 1983
     τ over that of kinetic theory | 0.9 1 1.1 | recalled: Enskog's collision rate, Henderson 1975, walls included

@@ -144,8 +144,9 @@ fn ring(variant: &SweepVariant, discs: usize, sweeps: u32) -> Result<RunReadings
     })
 }
 
-/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
-/// lower end of the band of values that agree, published value, upper end of the band | source.
+/// Table of published values as text, with one row for each quantity that the function [`judge`] computes from the
+/// runs. A row has the form: name of the quantity | lower end of the band of values that agree, published value, upper
+/// end of the band | kind of the source (`read`, `recalled`, `derived` or `exact`): source.
 const PUBLISHED: &str = "
     q of jacobi, from the period | 0.245 0.25 0.255 | derived: half of ½ by mass splitting
     q of jacobi, from the damping | 0.245 0.25 0.255 | derived: half of ½ by mass splitting

@@ -13,7 +13,8 @@ pub(super) struct Experiment {
     /// Description of the experiment, with references.
     pub about: &'static str,
     pub cases: ExperimentCases,
-    /// Table of published quantities as text, one row per quantity, in the form that [`PublishedQuantity::new`] reads.
+    /// Table of published quantities as text, with one row per quantity: name | lower end of the band of values that
+    /// agree, published value, upper end of the band | kind of the source: source.
     pub published: &'static str,
     /// Function that computes, from the results of all cases with one solver variant, the measured values of each
     /// published quantity, in the order of `published`.
@@ -26,7 +27,8 @@ impl Experiment {
     }
 }
 
-/// Function that returns the cases (runs to compute) of an experiment, for a quick or a full pass.
+/// Function that returns the cases (runs to compute) of an experiment, for a quick pass (a pass with fewer and smaller
+/// systems) or for the full pass.
 pub(super) enum ExperimentCases {
     /// The experiment prescribes the solver methods of its cases, and ignores the methods that the user chooses.
     Own(fn(Effort) -> Vec<ExperimentCase>),
@@ -136,9 +138,9 @@ pub(super) struct PublishedQuantity {
 
 impl PublishedQuantity {
     /// Reads a row of a table of published values, and computes the mean of the measured `values`. The row has the
-    /// form: name | lower end of the band, published value, upper end | kind of source: source. The confidence interval
-    /// of a `rank correlation` is limited to −1 … 1, because a correlation cannot be larger. Returns `None` if the row
-    /// has another form.
+    /// form: name | lower end of the band of values that agree, published value, upper end of the band | kind of the
+    /// source: source. If the name begins with `rank correlation`, the confidence interval is limited to −1 … 1,
+    /// because a correlation cannot be larger. Returns `None` if the row has another form.
     pub(super) fn new(row: &'static str, (system, values): Measured) -> Option<Self> {
         let mut cells = row.split(" | ").map(str::trim);
         let (name, numbers, (kind, source)) =

@@ -2,7 +2,8 @@
 
 use crate::statistics::{mean, slope};
 
-/// The change per step of a damped wave x_n = c rⁿ cos(nθ + φ), where n is the number of the step.
+/// The change per step of a damped wave x_n = c rⁿ cos(nθ + φ): the factor r of the amplitude and the angle θ. Here n
+/// is the number of the step, c the amplitude and φ the phase at n = 0.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DampedWave {
     /// Angle θ by which the phase of the wave advances per step, rad.
@@ -11,8 +12,9 @@ pub(super) struct DampedWave {
     pub shrinkage: f64,
 }
 
-/// Fits a damped wave x_n = c rⁿ cos(nθ + φ) to evenly spaced values. The fit uses G. de Prony's recursion between
-/// values at the distance `lag` = m,
+/// Fits a damped wave x_n = c rⁿ cos(nθ + φ) to evenly spaced values x_n. The result contains r, the factor of the
+/// amplitude per value, and θ, the change of the phase per value; c and φ are the amplitude and the phase at n = 0. The
+/// fit uses G. de Prony's recursion between values at the distance `lag` = m,
 ///
 /// > x_{n+m} = 2 r^m cos(mθ) x_n − r^{2m} x_{n−m},
 ///
@@ -38,9 +40,9 @@ pub(super) fn damped_wave(values: &[f64], lag: usize) -> DampedWave {
     }
 }
 
-/// Returns the power p and the time τ of the law y = y₀ (1 + t/τ)^−p that best fits points (t, y) in the logarithm of
-/// y. All y must be positive, and t must increase from 0. For a given τ, ln y is a linear function of ln(1 + t/τ), so p
-/// follows from a straight line; τ is searched.
+/// Returns the power p and the time τ of the law y = y₀ (1 + t/τ)^−p, with the time t and the value y₀ of y at t = 0,
+/// that best fits points (t, y) in the logarithm of y. All y must be positive, and t must increase from 0. For a given
+/// τ, ln y is a linear function of ln(1 + t/τ), so p follows from a straight line; τ is searched.
 pub(super) fn cooling_law(points: &[(f64, f64)]) -> [f64; 2] {
     let line = |tau: f64| {
         let line: Vec<(f64, f64)> =
@@ -91,7 +93,7 @@ pub(super) fn power_law(points: &[(f64, f64)]) -> (f64, f64) {
 /// Returns the rank correlation of x and y in pairs (x, y) (C. Spearman 1904). Equal values get their mean rank. The
 /// result is NaN if a value is NaN, or if all x or all y are equal.
 pub(super) fn rank_correlation(pairs: &[(f64, f64)]) -> f64 {
-    // Twice the rank of each value, counted from the middle of the column.
+    // Twice the difference of the rank of each value from the mean rank.
     let ranks = |of: fn(&(f64, f64)) -> f64| -> Vec<f64> {
         let compare = |one: &(f64, f64), other: &(f64, f64)| {
             of(one).partial_cmp(&of(other)).map_or(f64::NAN, |order| f64::from(order as i8))

@@ -1,10 +1,10 @@
 //! Validates a narrow closed silo: how much of the weight of the grains its bottom carries, and how much its walls (H.
 //! A. Janssen 1895).
 //!
-//! Consider grains of the bulk density ρ_b between two walls at a distance W, with the friction coefficient μ_w at the
-//! walls. Let the horizontal pressure be K times the vertical pressure p, and let the friction at the walls be fully
-//! mobilised. Then a slice of height dz satisfies W dp = ρ_b g W dz − 2 μ_w K p dz, so that at the depth z below the
-//! surface
+//! Consider grains of the bulk density ρ_b under gravity g between two walls at a distance W, with the friction
+//! coefficient μ_w at the walls. Let the horizontal pressure be K times the vertical pressure p, and let the friction
+//! at the walls be fully mobilised. Then a slice of height dz satisfies W dp = ρ_b g W dz − 2 μ_w K p dz, so that at
+//! the depth z below the surface
 //!
 //! > p = λ ρ_b g (1 − e^(−z/λ)),  λ = W/(2 μ_w K),
 //!
@@ -125,8 +125,9 @@ fn length_of(points: &[(f64, f64)]) -> [f64; 2] {
     [length, misfit(length)]
 }
 
-/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
-/// lower end of the band of values that agree, published value, upper end of the band | source.
+/// Table of published values as text, with one row for each quantity that the function [`judge`] computes from the
+/// runs. A row has the form: name of the quantity | lower end of the band of values that agree, published value, upper
+/// end of the band | kind of the source (`read`, `recalled`, `derived` or `exact`): source.
 const PUBLISHED: &str = "
     K of Janssen's λ = W/(2 μ_w K) | 0.35 0.7 1.1 | recalled: Janssen 1895; K of 0.4 … 1 for grains
     deviation of the share from Janssen's law, r.m.s. | 0 0.03 0.1 | recalled: Janssen 1895

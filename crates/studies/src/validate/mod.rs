@@ -8,7 +8,7 @@
 //! looked up are marked as such and have wide bands.
 //!
 //! The folder of results contains `report.md`, `quantities.csv`, a figure (`errors.png`, `.svg`, `.csv`), and the
-//! folder `measured/`. In the latter, each build of the program and each processor has its own journals of finished
+//! folder `measured/`. In `measured/`, each build of the program and each processor has its own journals of finished
 //! runs. If a command is stopped, the same command resumes its work from these journals.
 
 mod cliff;

@@ -99,9 +99,9 @@ fn bearing<'a>(moment: &'a Moment, is_rattler: &[bool]) -> Vec<&'a ContactState>
     moment.contacts.iter().filter(bears).collect()
 }
 
-/// Returns the constant β of the exponential tail P(f) ∝ exp(−βf) in the distribution of the normal forces f. Forces
-/// are divided by the mean force at the same height, and the tail consists of the forces f > 1. For an exponential tail
-/// the mean of f − 1 is 1/β.
+/// Returns the constant β of the exponential tail P(f) ∝ exp(−βf) of the probability density P of the normal forces f.
+/// Forces are divided by the mean force at the same height, and the tail consists of the forces f > 1. For an
+/// exponential tail the mean of f − 1 is 1/β.
 fn tail(bearing: &[&ContactState]) -> f64 {
     let mut layers: BTreeMap<i64, Vec<f64>> = BTreeMap::new();
     for contact in bearing {
@@ -118,8 +118,9 @@ fn tail(bearing: &[&ContactState]) -> f64 {
     1.0 / mean(&beyond).mean
 }
 
-/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
-/// lower end of the band of values that agree, published value, upper end of the band | source.
+/// Table of published values as text, with one row for each quantity that the function [`judge`] computes from the
+/// runs. A row has the form: name of the quantity | lower end of the band of values that agree, published value, upper
+/// end of the band | kind of the source (`read`, `recalled`, `derived` or `exact`): source.
 const PUBLISHED: &str = "
     φ without friction | 0.82 0.84 0.86 | read: reported for nearly monodisperse discs
     Z without friction | 3.9 4 4.1 | read: 2D = 4: isostatic

@@ -27,9 +27,9 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// Number that represents the scene with a rotating drum among the parameters of a run.
+/// Value of the parameter that says which scene a run simulates: a rotating drum.
 const DRUM: f64 = 0.0;
-/// Number that represents the scene with a tilted plane among the parameters of a run.
+/// Value of the parameter that says which scene a run simulates: a tilted plane.
 const INCLINE: f64 = 1.0;
 /// Simulated time from which on the slope in the drum is measured, s. The drum has then turned by three radians.
 const STEADY_SECS: f64 = 1.5;
@@ -94,8 +94,9 @@ fn tilt(scene: &Scene) -> Result<RunReadings> {
     Ok(run.with([("angle", angle.to_degrees())]))
 }
 
-/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
-/// lower end of the band of values that agree, published value, upper end of the band | source.
+/// Table of published values as text, with one row for each quantity that the function [`judge`] computes from the
+/// runs. A row has the form: name of the quantity | lower end of the band of values that agree, published value, upper
+/// end of the band | kind of the source (`read`, `recalled`, `derived` or `exact`): source.
 const PUBLISHED: &str = "
     angle without cohesion, drum, degrees | 18 25 32 | recalled: slopes of discs with μ = 0.5: 20° … 30°
     rank correlation of angle and Bond, drum | 0.5 1 1 | recalled: it grows with cohesion

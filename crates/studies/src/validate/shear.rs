@@ -139,7 +139,8 @@ impl ShearedLayer {
         f64::from(self.cell.columns) * f64::from(self.cell.rows)
     }
 
-    /// Returns the height of the compressed layer, in diameters.
+    /// Returns the expected height of the compressed layer, in diameters: the area of its grains divided by the
+    /// expected solid fraction and by the width of the layer.
     fn height(&self) -> f64 {
         let area = 0.25 * PI * self.grains();
         area / (DENSE * f64::from(self.cell.wide))
@@ -152,7 +153,9 @@ impl ShearedLayer {
     }
 
     /// Returns the shear (displacement of the plate divided by the height of the layer) after which the flow counts as
-    /// steady. The comment of the module derives the formula.
+    /// steady: the first value of [`STRAINS`], plus [`TIMES_TO_STEADY`] times the shear over which a transient decays,
+    /// (H/d)² I²/(π² T/N). H is the height of the layer, d the diameter, I the inertial number, and T/N the friction of
+    /// the layer, here [`SLOWEST`].
     fn strains_to_steady(&self) -> f64 {
         let times = (self.height() * self.kind.inertial).powi(2) / (PI * PI * SLOWEST);
         STRAINS[0] + TIMES_TO_STEADY * times
@@ -244,8 +247,9 @@ fn rate(moment: &Moment) -> f64 {
     slope(&points)
 }
 
-/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
-/// lower end of the band of values that agree, published value, upper end of the band | source.
+/// Table of published values as text, with one row for each quantity that the function [`judge`] computes from the
+/// runs. A row has the form: name of the quantity | lower end of the band of values that agree, published value, upper
+/// end of the band | kind of the source (`read`, `recalled`, `derived` or `exact`): source.
 const PUBLISHED: &str = "
     T/N, extended to I = 0 | 0.2 0.25 0.32 | recalled: da Cruz et al. 2005: 0.25
     slope of T/N in I | 0.6 1.1 1.6 | recalled: da Cruz et al. 2005: 1.1
@@ -288,7 +292,7 @@ mod tests {
 
     /// Checks that breaking a bond takes the prescribed work, and that the debonding distance δ_c of the stepper
     /// `range` then gives the expected dimensionless energy E = η (δ_c/d)/I², with the cohesion η = Bond/(2P), the
-    /// pressure P in m g/d, the diameter d and the inertial number I.
+    /// pressure P in m g/d, the mass m and diameter d of a grain, gravity g and the inertial number I.
     #[test]
     fn a_bond_takes_the_energy_that_its_layer_asks_for() {
         let (bond, energy, inertial) = (6.0, 3.0, 0.08);

@@ -95,13 +95,14 @@ fn discharge(
         }
     }
     let rate = if part < OUT[1] { f64::NAN } else { slope(&fallen) };
-    // The unit of the rate is σ d √(g d), with the diameter d and the areal density σ = 1 kg/m².
+    // The unit of the rate is σ d √(g d), with the diameter d, gravity g and the areal density σ = 1 kg/m².
     let unit = DIAMETER.powf(1.5) * GRAVITY.sqrt();
     Ok(run.with([("rate", rate / unit)]))
 }
 
-/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
-/// lower end of the band of values that agree, published value, upper end of the band | source.
+/// Table of published values as text, with one row for each quantity that the function [`judge`] computes from the
+/// runs. A row has the form: name of the quantity | lower end of the band of values that agree, published value, upper
+/// end of the band | kind of the source (`read`, `recalled`, `derived` or `exact`): source.
 const PUBLISHED: &str = "
     k of (W − k d) | 0.8 1.4 2 | recalled: Beverloo et al. 1961: 1.3 … 1.5
     exponent of Q in W − 1.4 d | 1.3 1.5 1.7 | recalled: Beverloo et al. 1961 in the plane: 1.5

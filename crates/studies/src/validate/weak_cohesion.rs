@@ -49,9 +49,10 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     layers(effort, variant, &kinds)
 }
 
-/// Published values with which measured values are compared, with one row per quantity that [`judge`] measures: name |
-/// lower end of the band of values that agree, published value, upper end of the band | source. The rows are in the
-/// order of [`BOUNDS`].
+/// Table of published values as text, with one row for each quantity that the function [`judge`] computes from the
+/// runs. A row has the form: name of the quantity | lower end of the band of values that agree, published value, upper
+/// end of the band | kind of the source (`read`, `recalled`, `derived` or `exact`): source. The rows are in the order
+/// of [`BOUNDS`].
 const PUBLISHED: &str = "
     T/N over that without cohesion, shifted cone, tolerance 0 \
         | 0.85 1 1.2 | recalled: Rognon et al. 2006: weak cohesion leaves it

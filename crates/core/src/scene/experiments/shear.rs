@@ -10,7 +10,7 @@ use crate::world::{Disc, Drive, Motion, MotionCourse, Periodic};
 /// Size of a shear cell (grains between two plates): the width of the plates, and the number of grains between them.
 #[derive(Clone, Copy, Debug)]
 pub struct ShearCell {
-    /// Width of the cell in diameters. It is also the number of discs of each plate.
+    /// Width of the shear cell (grains between two plates) in diameters. It is also the number of discs of each plate.
     pub wide: u8,
     /// Number of columns of grains in the initial lattice.
     pub columns: u8,
@@ -89,8 +89,8 @@ const COLUMNS: u32 = 16;
 /// Number of rows of grains at the start in the scene `shear-periodic`. This number is even, because every other row is
 /// shifted by half a spacing and the rows repeat across the periodic borders.
 const ROWS: u32 = 14;
-/// Distance between the centres of neighbouring grains at the start, in diameters. It is slightly more than the
-/// largest diameter. The grains cover a fraction of 0.74 of the cell.
+/// Distance between the centres of neighbouring grains at the start, in diameters. It is slightly more than the largest
+/// diameter. The grains cover a fraction of 0.74 of the periodic cell (the rectangle that repeats in all directions).
 const PERIODIC_SPACING: f64 = 1.11;
 /// Largest deviation of a diameter from the mean diameter, relative to the mean diameter.
 const SPREAD: f64 = 0.1;

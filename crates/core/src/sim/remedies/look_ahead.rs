@@ -1,10 +1,11 @@
-//! Remedy `speculative`: adds pairs of bodies that would meet within a step to the contact problem of this step.
+//! Remedy (optional correction of a step) `speculative`: adds pairs of bodies that would meet within a step to the
+//! contact problem of this step.
 
 use crate::contact::{InTouch, LookAhead};
 use crate::sim::state::State;
 
-/// Largest gap at which the remedy `speculative` searches for pairs that may meet within a step, in mean diameters.
-/// Without this limit the search would cover nearly all pairs if all grains are fast.
+/// Largest gap at which the remedy (optional correction of a step) `speculative` searches for pairs that may meet
+/// within a step, in mean diameters. Without this limit the search would cover nearly all pairs if all grains are fast.
 const FARTHEST_IN_DIAMETERS: f64 = 8.0;
 
 /// Returns the distances (m) by which a step selects the pairs that may meet within it. Pairs with a gap above `reach`
@@ -14,9 +15,9 @@ const FARTHEST_IN_DIAMETERS: f64 = 8.0;
 /// that is due to these forces.
 ///
 /// Contacts are found at the beginning of a step, so a pair that meets later in the step is missed. A fast disc may
-/// then end up inside a wall or behind it. So this remedy adds the pairs whose gap would close within the step to the
-/// contact problem. With the normal impulse P and the normal velocity v_n, such a pair may close its gap, but may not
-/// overlap (E. Catto, *Continuous collision*, 2013):
+/// then end up inside a wall or behind it. So this remedy (the optional correction `speculative`) adds the pairs whose
+/// gap would close within the step to the contact problem. With the normal impulse P and the normal velocity v_n, such
+/// a pair may close its gap, but may not overlap (E. Catto, *Continuous collision*, 2013):
 ///
 /// > 0 ≤ P ⟂ v_n + gap/Δt ≥ 0.
 ///

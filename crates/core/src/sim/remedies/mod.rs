@@ -17,8 +17,8 @@ use crate::sim::settings::Settings;
 use crate::sim::stepping::Stage;
 use crate::solver::{Model, SolveReport};
 
-/// Solves the contact problem of a step after it has been set up. If the settings turn the remedy `sequential-impacts`
-/// on, this includes its computation of shocks.
+/// Solves the contact problem of a step after it has been set up. If the settings turn on the remedy (optional
+/// correction) `sequential-impacts`, this includes its computation of shocks (collisions).
 pub(super) fn solve<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> SolveReport {
     if settings.remedies.sequential_impacts {
         sequential_impacts::solve(stage, settings)
@@ -27,7 +27,8 @@ pub(super) fn solve<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> 
     }
 }
 
-/// Pushes overlapping grains apart after the grains have moved, if the settings turn the remedy `push-out` on.
+/// Pushes overlapping grains apart after the grains have moved, if the settings turn on the remedy (optional
+/// correction) `push-out`.
 pub(super) fn after_step<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     if settings.remedies.push_out {
         push_out::push_out(stage.state, settings.parameters.time_step_secs);

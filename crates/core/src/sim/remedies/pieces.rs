@@ -1,4 +1,4 @@
-//! Remedy `max-travel`: divides a step into pieces in which no grain moves far.
+//! Remedy (optional correction of a step) `max-travel`: divides a step into pieces in which no grain moves far.
 
 use crate::sim::settings::Settings;
 use crate::sim::state::State;

@@ -1,4 +1,4 @@
-//! Remedy `push-out`: pushes overlapping grains apart after a step.
+//! Remedy (optional correction of a step) `push-out`: pushes overlapping grains apart after a step.
 
 use glam::DVec2;
 
@@ -6,8 +6,9 @@ use crate::contact::Numbering;
 use crate::number::Parts;
 use crate::sim::state::State;
 
-/// Overlap that the remedy leaves, in mean diameters. Cohesive contacts need some overlap: with a smaller value,
-/// rounding breaks contacts. A larger value is visible in the measurements.
+/// Overlap that the remedy `push-out` (an optional correction, which pushes overlapping grains apart) leaves, in mean
+/// diameters. Cohesive contacts need some overlap: with a smaller value, rounding breaks contacts. A larger value is
+/// visible in the measurements.
 const LEFT: f64 = 2e-4;
 /// Fraction of the overlap beyond [`LEFT`] that is removed per step. With a larger value, piles visibly jump; with a
 /// smaller value, the removal takes more steps.

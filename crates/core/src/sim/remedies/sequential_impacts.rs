@@ -1,4 +1,5 @@
-//! Remedy `sequential-impacts`: lets shocks travel through touching grains one after the other, within one step.
+//! Remedy (optional correction of a step) `sequential-impacts`: lets shocks (collisions) travel through touching grains
+//! one after the other, within one step.
 //!
 //! **Problem.** The term ρ v_n^{n−1} of the contact law of Abramian & Staron (2020) (restitution ρ, normal velocity
 //! v_n^{n−1} before step number n) treats all shocks of a step at once, and depends only on a contact's velocity before
@@ -58,25 +59,25 @@ const LEAST_IN_STEPS_OF_GRAVITY: f64 = 2.0;
 /// serves scenes without gravity: for ρ < 1 the contacts of a chain close infinitely often, ever more slowly. With a
 /// smaller value, more passes are spent on invisible motion.
 const LEAST_IN_FASTEST: f64 = 1e-6;
-/// Largest number of passes in the calculation of a step's shocks. A pass solves all contacts that close at the same
-/// time. A shock through a row of n balls needs n − 1 passes.
+/// Largest number of passes in the calculation of a step's shocks (collisions). A pass solves all contacts that close
+/// at the same time. A shock through a row of n balls needs n − 1 passes.
 const MOST_PASSES: u32 = 2000;
 
 /// Ratio of two works in a step above which contacts count as creating energy: the total work of all contacts, divided
 /// by the sum of the absolute works of the normal impulses. Rounding and the tolerance of a step cause smaller values.
 const LEAST_GAIN: f64 = 1e-6;
 
-/// Largest number of times that the opening speeds after shocks are reduced in a step because bounces create energy.
-/// Each of the first four times the speeds are halved, and the fifth time they are set to 0.
+/// Largest number of times that the opening speeds after shocks (collisions) are reduced in a step because bounces
+/// create energy. Each of the first four times the speeds are halved, and the fifth time they are set to 0.
 const HALVINGS: u32 = 5;
 
-/// Solver settings for a pass of shocks, which solves the contacts that close at the same time. They do not depend on
-/// the solver of the step, because only few contacts close at the same time.
+/// Solver settings for a pass of shocks (collisions), which solves the contacts that close at the same time. They do
+/// not depend on the solver of the step, because only few contacts close at the same time.
 const PASS: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-12, 1000);
 
-/// Computes the shocks of a step whose contact problem has been set up, and solves the step so that its contacts open
-/// with the speeds that the shocks have given them. As long as bounces create energy, reduces these speeds and solves
-/// the step again.
+/// Computes the shocks (collisions) of a step whose contact problem has been set up, and solves the step so that its
+/// contacts open with the speeds that the shocks have given them. As long as bounces create energy, reduces these
+/// speeds and solves the step again.
 pub(in crate::sim) fn solve<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -100,9 +101,10 @@ pub(in crate::sim) fn solve<M: Model>(
     report.after(earlier)
 }
 
-/// Computes the shocks of a step whose contact problem has been set up, and changes this problem so that its contacts
-/// open with the resulting speeds. Returns a report with the sweeps for the shocks; the report of the step itself shows
-/// if the step is solved. With cohesion, or without shocks that bounce, returns `None` and does not change the problem.
+/// Computes the shocks (collisions) of a step whose contact problem has been set up, and changes this problem so that
+/// its contacts open with the resulting speeds. Returns a report with the sweeps for the shocks; the report of the step
+/// itself shows if the step is solved. With cohesion, or without shocks that bounce, returns `None` and does not change
+/// the problem.
 pub(in crate::sim) fn follow<M: Model>(
     stage: &mut Stage<'_, M>,
     settings: &Settings,
@@ -156,16 +158,18 @@ fn gains_energy<M: Model>(problem: &StepProblem<M>) -> bool {
     gain > LEAST_GAIN * scale
 }
 
-/// State of the calculation of a step's shocks, between two passes. A pass solves all contacts that close at the same
-/// time.
+/// State of the calculation of a step's shocks (collisions), between two passes. A pass solves all contacts that close
+/// at the same time.
 struct ImpactSequence<M: Model> {
-    /// Velocities of the grains after the shocks computed so far.
+    /// Velocities of the grains after the shocks (collisions) computed so far.
     bodies: Vec<M::Body<f64>>,
-    /// Normal velocity u of each contact after the shocks computed so far, m/s.
+    /// Normal velocity u of each contact after the shocks (collisions) computed so far, m/s.
     speeds: Vec<f64>,
-    /// Normal impulse of each contact, summed over the shocks computed so far and divided by the effective mass, m/s.
+    /// Normal impulse of each contact, summed over the shocks (collisions) computed so far and divided by the effective
+    /// mass, m/s.
     impulses: Vec<f64>,
-    /// True for each contact whose pair touches. A pair that will only touch later in the step takes no part in shocks.
+    /// True for each contact whose pair touches. A pair that will only touch later in the step takes no part in shocks
+    /// (collisions).
     touching: Vec<bool>,
 }
 
@@ -188,8 +192,8 @@ impl<M: Model> ImpactSequence<M> {
             .fold(0.0, |fastest, (speed, _)| fastest.max((-speed).positive_part()))
     }
 
-    /// Fills `pass`, the contact problem of the next pass of shocks, with the contacts that close faster than `least`
-    /// (m/s). Returns false if no contact closes faster.
+    /// Fills `pass`, the contact problem of the next pass of shocks (collisions), with the contacts that close faster
+    /// than `least` (m/s). Returns false if no contact closes faster.
     fn select(
         &self,
         problem: &StepProblem<M>,
@@ -216,7 +220,7 @@ impl<M: Model> ImpactSequence<M> {
     }
 
     /// Adds the impulses of `pass`, the solved contact problem of the contacts that close at the same time, to the
-    /// impulses of the shocks so far, and updates the velocities.
+    /// impulses of the shocks (collisions) so far, and updates the velocities.
     fn take(&mut self, problem: &StepProblem<M>, pass: &mut StepProblem<M>) {
         for ((_, row), &number) in pass.rows().zip(&pass.rows.contacts) {
             self.impulses[number as usize] += row.shifted_impulse;
@@ -225,8 +229,8 @@ impl<M: Model> ImpactSequence<M> {
         relative_velocities(problem, &self.bodies, &mut self.speeds);
     }
 
-    /// Stops all contacts that still close after the last computed shock, without friction. Uses the solver of the
-    /// step, because many contacts may close.
+    /// Stops all contacts that still close after the last computed shock (collision), without friction. Uses the solver
+    /// of the step, because many contacts may close.
     fn stop_the_rest(
         &mut self,
         problem: &StepProblem<M>,
@@ -255,9 +259,9 @@ impl<M: Model> ImpactSequence<M> {
         report
     }
 
-    /// Changes the law of each struck contact so that it opens with the speed that the shocks have given it. A touching
-    /// contact without such a shock may not bounce. The impulses of the shocks become the starting values of the
-    /// solver.
+    /// Changes the law of each struck contact so that it opens with the speed that the shocks (collisions) have given
+    /// it. A touching contact without such a shock may not bounce. The impulses of the shocks become the starting
+    /// values of the solver.
     fn set_rebounds(&self, problem: &mut StepProblem<M>) {
         for (number, (row, wall_speed)) in problem.rows_with_walls().enumerate() {
             let impulse = self.impulses[number];

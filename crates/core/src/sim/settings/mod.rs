@@ -23,8 +23,9 @@ use crate::world::{
     FrictionCone, Gravity, MaterialPair, Motion, Parameters, Periodic, Physics, World,
 };
 
-/// Settings of a simulation: the stepper, the parameters of the contact laws, the solver and the remedies. A simulation
-/// checks them with [`Settings::validate`] before it uses them.
+/// Settings of a simulation: the stepper, the parameters of the contact laws, the solver and the remedies (optional
+/// corrections of a step, such as pushing overlapping grains apart). A simulation checks them with
+/// [`Settings::validate`] before it uses them.
 ///
 /// ```
 /// use slump_core::sim::{Settings, Stepper};
@@ -189,8 +190,8 @@ impl Settings {
         Ok(())
     }
 
-    /// Checks that the settings support the features of a world: its driven walls, gravity, periodic borders, pairs of
-    /// materials and rolling friction.
+    /// Checks that the settings support the features of a world: its walls driven by a force, gravity, periodic
+    /// borders, pairs of materials and rolling friction.
     pub(crate) fn check_in(&self, world: &World, physics: Physics) -> Result<()> {
         self.check_drives(&world.motions)?;
         self.check_tilt(&world.gravity, physics)?;
@@ -218,7 +219,8 @@ impl Settings {
         }
     }
 
-    /// Checks that the stepper, the solver and the remedies support walls driven by a force, if `motions` contain one.
+    /// Checks that the stepper, the solver and the remedies (optional corrections of a step) support walls driven by a
+    /// force, if `motions` contain one.
     pub(crate) fn check_drives(&self, motions: &[Motion]) -> Result<()> {
         if motions.iter().all(|motion| motion.drive.is_none()) {
             return Ok(());
@@ -258,8 +260,8 @@ impl Settings {
         Err(Error::value("solver", method, allowed))
     }
 
-    /// Checks that the stepper, the solver and the remedies support separate contact laws for pairs of materials, if
-    /// `pairs` is not empty.
+    /// Checks that the stepper, the solver and the remedies (optional corrections of a step) support separate contact
+    /// laws for pairs of materials, if `pairs` is not empty.
     fn check_pairs(&self, pairs: &[MaterialPair]) -> Result<()> {
         let refuse = |field: &str, found: &dyn Display, takers: Vec<&str>| {
             let allowed = format!("{} where the scene has pairs of materials", takers.join(" or "));
@@ -286,8 +288,9 @@ impl Settings {
         }
     }
 
-    /// Returns a copy of these settings without unsupported parts. Remedies that the stepper does not support are
-    /// switched off. If the stepper or the solver does not support the friction model, Coulomb friction replaces it.
+    /// Returns a copy of these settings without unsupported parts. Remedies (optional corrections of a step) that the
+    /// stepper does not support are switched off. If the stepper or the solver does not support the friction model,
+    /// Coulomb friction replaces it.
     pub fn with_only_what_is_taken(mut self) -> Self {
         self.solver = self.solver.by(self.solver.method);
         if !self.stepper.reads("friction-model") {

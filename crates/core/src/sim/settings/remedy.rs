@@ -5,29 +5,32 @@
 use crate::setting::{Group, Value, settings};
 use crate::sim::settings::stepper::Stepper;
 
-/// Value of the remedy `max-travel` in the preset `robust`, in mean diameters. The remedy divides a step into pieces in
-/// which no grain moves farther than this distance. In a piece longer than half a diameter, the radius of a grain, a
-/// grain that does not yet touch a wall could pass through the wall. The value is half of this length.
+/// Value of the remedy `max-travel` in the preset (group of settings) `robust`, in mean diameters. The remedy divides a
+/// step into pieces in which no grain moves farther than this distance. In a piece longer than half a diameter, the
+/// radius of a grain, a grain that does not yet touch a wall could pass through the wall. The value is half of this
+/// length.
 const ROBUST_TRAVEL: f64 = 0.25;
 
-/// Registry entry of a remedy: its name, the steppers that support it and its value in the preset `robust`.
+/// Registry entry of a remedy (an optional correction of a step): its name, the steppers that support it and its value
+/// in the preset (group of settings) `robust`.
 #[derive(Clone, Copy, Debug)]
 pub struct Remedy {
-    /// Name of the remedy's setting.
+    /// Name of the setting that turns the remedy (optional correction of a step) on.
     pub name: &'static str,
-    /// Steppers that support the remedy.
+    /// Steppers that support the remedy (optional correction of a step).
     pub taken_by: &'static [Stepper],
-    /// Value of the remedy's setting in the preset `robust`; `None` if the preset leaves the remedy off.
+    /// Value of the setting of the remedy (optional correction of a step) in the preset (group of settings) `robust`;
+    /// `None` if the preset leaves the remedy off.
     pub robust: Option<Value>,
 }
 
 impl Remedy {
-    /// True if the settings `remedies` turn this remedy on.
+    /// True if the settings `remedies` turn this remedy (optional correction of a step) on.
     pub(crate) fn is_on(&self, remedies: &Remedies) -> bool {
         remedies.get(self.name) != Remedies::default().get(self.name)
     }
 
-    /// Turns this remedy off in the settings `remedies`.
+    /// Turns this remedy (optional correction of a step) off in the settings `remedies`.
     pub(crate) fn leave_out(&self, remedies: &mut Remedies) {
         if let Some(value) = Remedies::default().get(self.name) {
             remedies.set(self.name, value);
@@ -82,13 +85,13 @@ settings! {
 }
 
 impl Remedies {
-    /// True if all remedies are off.
+    /// True if all remedies (optional corrections of a step) are off.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
 }
 
-/// All remedies, in the order of the settings of [`Remedies`].
+/// All remedies (optional corrections of a step), in the order of the settings of [`Remedies`].
 pub const REMEDIES: [Remedy; 5] = {
     const fn row(
         name: &'static str,

@@ -46,16 +46,17 @@ use crate::sim::settings::fracture_work::effective_mass_of_mean;
 use crate::world::{MAX_SUBSTEPS, Parameters, Physics, World};
 
 /// Overlap at the bottom of a pile, caused by the weight of the whole pile, if the stiffness is chosen automatically,
-/// in mean diameters. A smaller value makes springs stiffer; they cost more, because the stable substep is proportional
-/// to the square root of this value. A larger value makes grains so soft that their overlap shows in the shape of the
-/// pile.
+/// in mean diameters. A smaller value makes springs stiffer; they cost more, because the longest stable substep (part
+/// of a step) is proportional to the square root of this value. A larger value makes grains so soft that their overlap
+/// shows in the shape of the pile.
 const STATIC_OVERLAP: f64 = 1e-3;
 /// Smallest restitution that the dashpots reproduce; smaller restitutions are raised to this value. A smaller value
-/// requires more damping, and makes the stable substep shorter: its length is proportional to the square root of this
-/// value.
+/// requires more damping, and makes the longest stable substep (part of a step) shorter: its length is proportional to
+/// the square root of this value.
 const LEAST_RESTITUTION: f64 = 0.02;
-/// Length of a substep divided by the critical time step, if the number of substeps is automatic. With a larger value a
-/// collision has fewer substeps and its restitution is less exact; at 1 the simulation may become unstable.
+/// Length of a substep (part of a step) divided by the critical time step, if the number of substeps is automatic. With
+/// a larger value a collision has fewer substeps and its restitution is less exact; at 1 the simulation may become
+/// unstable.
 const SAFE_FRACTION: f64 = 0.5;
 /// Number of equal discs that fit around one disc: 6 in the plane, and 2 on a line.
 const NEIGHBOURS: [f64; 2] = [6.0, 2.0];
@@ -93,9 +94,9 @@ impl SpringDashpot {
         2.0 * self.damping_ratio * (self.stiffness * effective_mass).sqrt()
     }
 
-    /// Returns the critical time step, s: the longest stable substep of contacts with this effective mass (kg) whose
-    /// bodies have `neighbours` contacts each. The value is exact for one contact per body, and a lower bound for more
-    /// contacts.
+    /// Returns the critical time step, s: the longest substep (part of a step) that is stable for contacts with this
+    /// effective mass (kg) whose bodies have `neighbours` contacts each. The value is exact for one contact per body,
+    /// and a lower bound for more contacts.
     pub fn critical_time_step_secs(&self, effective_mass: f64, neighbours: f64) -> f64 {
         let frequency = (neighbours * self.stiffness / effective_mass).sqrt();
         let damping_ratio = self.damping_ratio * neighbours.sqrt();
@@ -166,8 +167,8 @@ fn angle_and_root(damping_ratio: f64) -> Option<(f64, f64)> {
     (root != 0.0).then_some((angle, root))
 }
 
-/// Returns the longest substep, s, for which the springs are stable even if the smallest grains have as many neighbours
-/// as fit around them.
+/// Returns the longest substep (part of a step), s, for which the springs are stable even if the smallest grains have
+/// as many neighbours as fit around them.
 pub(super) fn critical_time_step_secs(
     world: &World,
     physics: Physics,
@@ -190,8 +191,8 @@ pub(super) fn contact_time_secs(world: &World, physics: Physics, parameters: &Pa
     springs.contact_time_secs(effective_mass_of_mean(world))
 }
 
-/// Returns the number of substeps of a step: the number in the parameters or, if that is 0, the number for which the
-/// springs are stable. [`check_substeps`] refuses parameters that need too many substeps.
+/// Returns the number of substeps (equal parts) of a step: the number in the parameters or, if that is 0, the number
+/// for which the springs are stable. [`check_substeps`] refuses parameters that need too many substeps.
 pub(super) fn substeps(world: &World, physics: Physics, parameters: &Parameters) -> u32 {
     match parameters.substeps {
         0 => (stable_substeps(world, physics, parameters) as u32).clamp(1, MAX_SUBSTEPS),
@@ -199,8 +200,8 @@ pub(super) fn substeps(world: &World, physics: Physics, parameters: &Parameters)
     }
 }
 
-/// Returns the number of substeps per step for which a substep is at most [`SAFE_FRACTION`] of the critical time step.
-/// There is no upper limit.
+/// Returns the number of substeps (equal parts) per step for which a substep is at most [`SAFE_FRACTION`] of the
+/// critical time step. There is no upper limit.
 pub(in crate::sim) fn stable_substeps(
     world: &World,
     physics: Physics,
@@ -210,8 +211,8 @@ pub(in crate::sim) fn stable_substeps(
     (parameters.time_step_secs / longest_secs).ceil()
 }
 
-/// Checks that the automatic number of substeps, for which the springs are stable, is at most [`MAX_SUBSTEPS`]. The
-/// error names the stiffness if it is too large, or else the time step if it is too long.
+/// Checks that the automatic number of substeps (equal parts of a step), for which the springs are stable, is at most
+/// [`MAX_SUBSTEPS`]. The error names the stiffness if it is too large, or else the time step if it is too long.
 pub(super) fn check_substeps(
     world: &World,
     physics: Physics,

@@ -44,9 +44,10 @@ pub struct StepperInfo {
     pub check: fn(&Parameters) -> Result<()>,
     /// Checks the parameters for a world; the error names a parameter that the stepper does not support in that world.
     pub check_in: fn(&World, Physics, &Parameters) -> Result<()>,
-    /// Returns the number of substeps per step; 1 if the stepper solves a step as a whole.
+    /// Returns the number of substeps (equal parts) per step; 1 if the stepper solves a step as a whole.
     pub substeps: fn(&World, Physics, &Parameters) -> u32,
-    /// Returns the longest substep, s, for which the stepper is always stable; `None` if the stepper has no such limit.
+    /// Returns the longest substep (part of a step), s, for which the stepper is always stable; `None` if the stepper
+    /// has no such limit.
     pub critical_time_step_secs: fn(&World, Physics, &Parameters) -> Option<f64>,
     /// Returns the duration of a collision of two grains of the mean mass, s; `None` if the contact law does not define
     /// it.

@@ -42,8 +42,8 @@ use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{Model, Row, StepProblem};
 use crate::world::Parameters;
 
-/// Number of iterations per substep, as in the examples of the authors of augmented vertex block descent (Giles, Diaz
-/// and Yuksel, 2025).
+/// Number of iterations per substep (part of a step), as in the examples of the authors of augmented vertex block
+/// descent (Giles, Diaz and Yuksel, 2025).
 const ITERATIONS: u32 = 10;
 
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
@@ -97,23 +97,24 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
     substepping.end_step_of(stage, &contacts, substeps * (ITERATIONS + 1))
 }
 
-/// Dimensionless stiffness κ = k h²/m_ij of a new contact (stiffness k, substep h, effective mass m_ij), and smallest
-/// stiffness of any contact. With a smaller value grains with new contacts overlap more; with a larger value iterations
-/// that change one body at a time cannot transmit a force from body to body.
+/// Dimensionless stiffness κ = k h²/m_ij of a new contact (stiffness k, length h of a substep, which is a part of a
+/// step, effective mass m_ij), and smallest stiffness of any contact. With a smaller value grains with new contacts
+/// overlap more; with a larger value iterations that change one body at a time cannot transmit a force from body to
+/// body.
 const SOFTEST: f64 = 1.0;
-/// Largest dimensionless stiffness κ = k h²/m_ij of a contact (stiffness k, substep h, effective mass m_ij). A stiffer
-/// contact would dominate all other forces on its two bodies.
+/// Largest dimensionless stiffness κ = k h²/m_ij of a contact (stiffness k, length h of a substep, which is a part of a
+/// step, effective mass m_ij). A stiffer contact would dominate all other forces on its two bodies.
 const STIFFEST: f64 = 1e6;
 /// Increase of a contact's dimensionless stiffness κ (stiffness times squared substep length, divided by effective
 /// mass) per iteration, if the velocity that violates the contact equals the speed that gravity adds in a substep. With
 /// a larger value columns are more stable, but impacts make contacts so stiff that iterations that change one body at a
 /// time cannot transmit forces, and the grains of collapsing piles fly apart.
 const GROWTH: f64 = 0.1;
-/// Factor that multiplies the stiffnesses of all contacts at the beginning of each substep. With a smaller value,
-/// contacts of resting grains soften.
+/// Factor that multiplies the stiffnesses of all contacts at the beginning of each substep (part of a step). With a
+/// smaller value, contacts of resting grains soften.
 const KEPT: f64 = 0.99;
-/// Overlap that remains after the correction of positions at the end of a substep, in mean diameters. Cohesive contacts
-/// need some overlap to pull.
+/// Overlap that remains after the correction of positions at the end of a substep (part of a step), in mean diameters.
+/// Cohesive contacts need some overlap to pull.
 const MARGIN: f64 = 5e-4;
 
 /// One side of a contact: its effect on one of its two bodies.
@@ -129,10 +130,10 @@ struct Side {
 struct BlockDescent {
     substep_secs: f64,
     law: ContactLaw,
-    /// Speed that gravity adds in a substep, g·h (gravity g, substep h), m/s: the unit in which the velocities that
-    /// violate contacts are measured.
+    /// Speed that gravity adds in a substep (part of a step), g·h (gravity g, length h of the substep), m/s: the unit
+    /// in which the velocities that violate contacts are measured.
     speed_scale: f64,
-    /// Overlap that remains after the correction of positions at the end of a substep, m.
+    /// Overlap that remains after the correction of positions at the end of a substep (part of a step), m.
     margin: f64,
     /// Dimensionless stiffnesses of each contact along normal and tangent: stiffness times squared substep length,
     /// divided by effective mass.
@@ -191,9 +192,9 @@ impl BlockDescent {
         }
     }
 
-    /// Begins a substep: reduces the stiffnesses of all contacts slightly. Bodies in contact start from their
-    /// velocities at the beginning of the substep, without gravity, because the contacts that carried them before will
-    /// carry them again.
+    /// Begins a substep (part of a step): reduces the stiffnesses of all contacts slightly. Bodies in contact start
+    /// from their velocities at the beginning of the substep, without gravity, because the contacts that carried them
+    /// before will carry them again.
     fn begin<M: Model>(&mut self, problem: &mut StepProblem<M>, start: &[M::Body<f64>]) {
         for stiffness in self.stiffness.as_flattened_mut() {
             *stiffness = (KEPT * *stiffness).clamp(SOFTEST, STIFFEST);

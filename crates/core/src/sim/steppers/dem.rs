@@ -18,9 +18,9 @@ use crate::sim::steppers::substeps::{Substepping, add_work, set_drive_speeds};
 use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{DrivenWall, Model, cone_of};
 
-/// Takes one step, and detects the contacts in each substep. The contact problem of the step, from which its residual
-/// is computed, contains the contacts at the beginning of the step. At the end of the step, each of these contacts
-/// receives the impulse that its pair has transmitted in all substeps.
+/// Takes one step, and detects the contacts in each substep (part of the step). The contact problem of the step, from
+/// which its residual is computed, contains the contacts at the beginning of the step. At the end of the step, each of
+/// these contacts receives the impulse that its pair has transmitted in all substeps.
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
     let (world, physics) = (&stage.state.world, stage.state.physics);
     let parameters = &settings.parameters;
@@ -79,7 +79,7 @@ fn velocity<M: Model>(
     }
 }
 
-/// Contact law of a substep: springs, dashpots, cohesion and friction.
+/// Contact law of a substep (part of a step): springs, dashpots, cohesion and friction.
 struct Elements {
     springs: SpringDashpot,
     /// Cohesion force divided by the effective mass, m/s²: the Bond number times an acceleration (the parameter
@@ -117,9 +117,10 @@ impl Elements {
         }
     }
 
-    /// Changes the velocities of the grains by the forces of a substep, computed from the present overlaps and from the
-    /// velocities `start` at the beginning of the substep. Fills `pushes` with three values for each contact: the
-    /// effective mass (kg), the impulses divided by this mass (m/s), and the velocity of the contact's wall (m/s).
+    /// Changes the velocities of the grains by the forces of a substep (part of a step), computed from the present
+    /// overlaps and from the velocities `start` at the beginning of the substep. Fills `pushes` with three values for
+    /// each contact: the effective mass (kg), the impulses divided by this mass (m/s), and the velocity of the
+    /// contact's wall (m/s).
     fn push<M: Model>(
         &self,
         stage: &mut Stage<'_, M>,
@@ -164,9 +165,9 @@ impl Elements {
     }
 }
 
-/// Ends a substep of walls driven by a force. Like grains, these walls move with the forces at the beginning of the
-/// substep. `pushes` contains for each contact the effective mass (kg), the impulses divided by this mass (m/s), and
-/// the velocity of the contact's wall (m/s).
+/// Ends a substep (part of a step) of walls driven by a force. Like grains, these walls move with the forces at the
+/// beginning of the substep. `pushes` contains for each contact the effective mass (kg), the impulses divided by this
+/// mass (m/s), and the velocity of the contact's wall (m/s).
 ///
 /// The motion of a wall of mass M with n contacts of stiffness k is stable if the substep h is below 2 √(M/nk). This is
 /// guaranteed if M is at least the mass of n of the lightest grains, because substeps are short enough for these

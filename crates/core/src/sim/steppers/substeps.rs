@@ -13,16 +13,16 @@ use crate::sim::stepping::{Stage, StepResult};
 use crate::sim::turned_bonds::{is_open_against, is_within_bounds};
 use crate::solver::{DrivenRow, Measures, Model, Row, SolveReport, StepProblem, measure};
 
-/// Data of a step during its substeps. The data are dropped at the end of the step; the world and the contacts store
-/// the data that later steps need.
+/// Data of a step during its substeps (the equal parts into which the stepper divides it). The data are dropped at the
+/// end of the step; the world and the contacts store the data that later steps need.
 pub(super) struct Substepping<M: Model> {
-    /// Number of substeps of the step.
+    /// Number of substeps (equal parts) of the step.
     pub count: u32,
-    /// Length h of a substep, s.
+    /// Length h of a substep (part of a step), s.
     pub substep_secs: f64,
-    /// Velocities of the grains at the beginning of the present substep.
+    /// Velocities of the grains at the beginning of the present substep (part of a step).
     pub start: Vec<M::Body<f64>>,
-    /// Velocities that the grains would have at the end of the substep if no contact acted.
+    /// Velocities that the grains would have at the end of the substep (part of a step) if no contact acted.
     pub free: Vec<M::Body<f64>>,
     /// Works of gravity, contacts, walls and borders, J, summed over the substeps since the beginning of the step.
     pub works: StepResult,
@@ -82,7 +82,8 @@ impl<M: Model> Substepping<M> {
         StepResult { report, measures, ..self.works }
     }
 
-    /// Begins a substep: changes the velocities of the grains by gravity, body forces and the user's spring on a grain.
+    /// Begins a substep (part of a step): changes the velocities of the grains by gravity, body forces and the user's
+    /// spring on a grain.
     pub(super) fn begin(&mut self, stage: &mut Stage<'_, M>) {
         let pushes = stage.state.pushes(M::AXES, self.substep_secs);
         let (world, bodies) = (&stage.state.world, &mut stage.problem.bodies.now);
@@ -98,7 +99,7 @@ impl<M: Model> Substepping<M> {
         self.free.clone_from(bodies);
     }
 
-    /// Moves the grains for one substep with their present velocities.
+    /// Moves the grains for one substep (part of a step) with their present velocities.
     pub(super) fn place(&self, stage: &mut Stage<'_, M>) {
         self.store(stage);
         stage.state.integrate::<M>(self.substep_secs);
@@ -111,8 +112,8 @@ impl<M: Model> Substepping<M> {
         }
     }
 
-    /// Adds the work of gravity, body forces and the user's spring in a substep. `bodies` are the velocities of the
-    /// grains at the end of the substep, and `masses` their masses, kg.
+    /// Adds the work of gravity, body forces and the user's spring in a substep (part of a step). `bodies` are the
+    /// velocities of the grains at the end of the substep, and `masses` their masses, kg.
     pub(super) fn add_gravity_work(&mut self, bodies: &[M::Body<f64>], masses: &[f64]) {
         for (index, body) in bodies.iter().enumerate() {
             let (start, free) = (&self.start[index], &self.free[index]);
@@ -121,9 +122,10 @@ impl<M: Model> Substepping<M> {
     }
 }
 
-/// Adds the work of one contact in a substep. `impulse` contains the impulses λ divided by the effective mass, m/s. As
-/// for a whole step (`solver::measure`), the work is the impulse times the mean of the velocities at the beginning and
-/// the end. `wall` contains the normal and tangential velocity of the contact's wall, m/s.
+/// Adds the work of one contact in a substep (part of a step). `impulse` contains the impulses λ divided by the
+/// effective mass, m/s. As for a whole step (`solver::measure`), the work is the impulse times the mean of the
+/// velocities at the beginning and the end. `wall` contains the normal and tangential velocity of the contact's wall,
+/// m/s.
 #[inline(always)]
 pub(super) fn add_work<M: Model>(
     works: &mut StepResult,
@@ -167,9 +169,10 @@ pub(super) struct Touching {
     /// Restitution term, m/s, which the contact law adds to the normal velocity relative to the wall: minus the
     /// separation speed that restitution requires, so below 0 if the contact was closing.
     pub rebound: f64,
-    /// Capture speed: the opening speed that cohesion can stop in this substep, m/s; 0 without cohesion.
+    /// Capture speed: the opening speed that cohesion can stop in this substep (part of a step), m/s; 0 without
+    /// cohesion.
     pub capture_speed: f64,
-    /// Normal and tangential impulses (λ_n, λ_t) of this substep divided by the effective mass, m/s.
+    /// Normal and tangential impulses (λ_n, λ_t) of this substep (part of a step) divided by the effective mass, m/s.
     pub impulse: [f64; 2],
     /// Normal and tangential impulses (λ_n, λ_t) since the beginning of the step divided by the effective mass, m/s.
     pub total: [f64; 2],
@@ -183,7 +186,8 @@ impl Touching {
 }
 
 /// Returns the contacts in the order of the rows of the contact problem (a row is the data of one contact). The
-/// impulses with which they start are the forces of the previous step times `warm_secs` (s); 0 s gives a cold start.
+/// impulses with which they start are the forces of the previous step times `warm_secs` (s); 0 s gives a cold start
+/// (from zero impulses).
 pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<Touching> {
     let (contacts, problem) = (&stage.state.contacts, &stage.problem);
     let contact = |((number, row), &index): ((usize, &Row<M>), &u32)| {
@@ -205,7 +209,7 @@ pub(super) fn touching<M: Model>(stage: &Stage<'_, M>, warm_secs: f64) -> Vec<To
     problem.rows().zip(&problem.rows.contacts).map(contact).collect()
 }
 
-/// Changes the gaps of the contacts by the motion of grains and walls during one substep.
+/// Changes the gaps of the contacts by the motion of grains and walls during one substep (part of a step).
 pub(super) fn follow_gaps<M: Model>(
     problem: &StepProblem<M>,
     contacts: &mut [Touching],
@@ -217,7 +221,7 @@ pub(super) fn follow_gaps<M: Model>(
     }
 }
 
-/// Adds the impulses and works of all contacts in a substep to the sums of the step.
+/// Adds the impulses and works of all contacts in a substep (part of a step) to the sums of the step.
 pub(super) fn end_substep<M: Model>(
     problem: &StepProblem<M>,
     contacts: &mut [Touching],
@@ -236,7 +240,8 @@ pub(super) fn end_substep<M: Model>(
     }
 }
 
-/// Stores the forces of the last substep in the contacts, for the warm start of the next step.
+/// Stores the forces of the last substep in the contacts, for the warm start of the next step (a start from these
+/// forces).
 pub(super) fn remember<M: Model>(
     stage: &mut Stage<'_, M>,
     contacts: &[Touching],
@@ -255,7 +260,8 @@ pub(super) fn remember<M: Model>(
     }
 }
 
-/// Writes the impulses of all contacts, summed over the substeps, to the contact problem of the step.
+/// Writes the impulses of all contacts, summed over the substeps (equal parts) of a step, to the contact problem of
+/// this step.
 pub(super) fn hand_over<M: Model>(problem: &mut StepProblem<M>, contacts: &[Touching]) {
     let capture_speed = problem.law.capture_speed();
     for (row, contact) in problem.rows.iter_mut().zip(contacts) {

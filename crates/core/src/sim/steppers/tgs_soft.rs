@@ -143,8 +143,8 @@ fn update<M: Model>(
 /// as in game engines. A higher frequency makes overlaps smaller; it is limited to [`FREQUENCY_PER_SUBSTEP`] times the
 /// number of substeps per second.
 const FREQUENCY: f64 = 10.0;
-/// Largest product of the frequency ω/2π of the contact springs and the length h of a substep. With a larger value
-/// contacts are nearly rigid, and one sweep no longer transmits forces through a pile.
+/// Largest product of the frequency ω/2π of the contact springs and the length h of a substep (part of a step). With a
+/// larger value contacts are nearly rigid, and one sweep no longer transmits forces through a pile.
 const FREQUENCY_PER_SUBSTEP: f64 = 0.25;
 /// Damping ratio ζ of the contact springs, dimensionless; 1 is critical damping. With a smaller value overlap is
 /// removed too fast, and piles jitter.
@@ -169,7 +169,7 @@ const PUSH_OUT_SPEED: f64 = 1.0;
 struct Softness {
     substep_secs: f64,
     /// Rate at which a contact spring closes an overlap, 1/s: closing speed divided by overlap. It is ω/(2ζ + hω), with
-    /// the spring's angular frequency ω, its damping ratio ζ and the length h of a substep.
+    /// the spring's angular frequency ω, its damping ratio ζ and the length h of a substep (part of a step).
     rate: f64,
     /// Softness c of a contact, dimensionless: 0 for a rigid contact, near 1 for a soft contact ([`Softness`]).
     compliance: f64,
@@ -194,7 +194,8 @@ impl Softness {
         }
     }
 
-    /// Limits the impulses of the previous substep to the range that the contact law allows now, and returns them.
+    /// Limits the impulses of the previous substep (part of a step) to the range that the contact law allows now, and
+    /// returns them.
     #[inline(always)]
     fn warm_start<M: Model>(&self, contact: &mut Touching) -> [f64; 2] {
         let shifted = law::signorini(contact.impulse[0] + contact.capture_speed);
@@ -277,9 +278,9 @@ impl Touching {
     }
 }
 
-/// Returns the walls driven by a force, with their speeds at the beginning of a substep. Sets `answers` (the changes of
-/// relative velocity by unit impulses) of the contacts with these walls. With `substep_secs` = 0 the walls are prepared
-/// for impulses that act in zero time.
+/// Returns the walls driven by a force, with their speeds at the beginning of a substep (part of a step). Sets
+/// `answers` (the changes of relative velocity by unit impulses) of the contacts with these walls. With `substep_secs`
+/// = 0 the walls are prepared for impulses that act in zero time.
 fn begin_walls<M: Model>(
     stage: &Stage<'_, M>,
     contacts: &mut [Touching],
@@ -299,7 +300,7 @@ fn begin_walls<M: Model>(
 }
 
 /// Stores the speeds of the walls driven by a force after a sweep. Returns the work of the driving forces since the
-/// substep began, minus the loss in the walls' damping, J.
+/// substep (part of a step) began, minus the loss in the walls' damping, J.
 fn take_walls<M: Model>(
     stage: &mut Stage<'_, M>,
     contacts: &mut [Touching],

@@ -277,8 +277,8 @@ impl Postorder {
 pub(crate) struct ContactGraph {
     /// The elimination order, and the pattern of nonzero blocks in the factors.
     pub elimination: Elimination,
-    /// For each contact between two moving bodies (grains or driven walls), the number of its block, an index in
-    /// [`Elimination::later`].
+    /// For each contact between two moving bodies (grains or walls driven by a force), the number of its block, an
+    /// index in [`Elimination::later`].
     pub pair_blocks: Vec<u32>,
     /// Number of bodies for which `elimination` was computed.
     bodies: usize,

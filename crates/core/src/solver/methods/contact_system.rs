@@ -219,10 +219,10 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
     ///
     /// > 1/d = k_i g_i + k_j (1 − g_i), or 1/d = k_i against a fixed body,
     ///
-    /// and 1/d = k_i + k κ(b_n² + b_t² m_t/m_n) against a driven wall with k contacts. Here κ is the ratio of the
-    /// grain's mass to the effective mass of the wall (mass plus damping coefficient times time step), b_n and b_t are
-    /// the components of the wall's direction of motion along normal and tangent (`problem::walls`), and m_n and m_t
-    /// are the effective masses along them.
+    /// and 1/d = k_i + k κ(b_n² + b_t² m_t/m_n) against a wall that is driven by a force and has k contacts. Here κ is
+    /// the ratio of the grain's mass to the effective mass of the wall (mass plus damping coefficient times time step),
+    /// b_n and b_t are the components of the wall's direction of motion along normal and tangent (`problem::walls`),
+    /// and m_n and m_t are the effective masses along them.
     fn splitting(&self, weights: &mut Vec<f64>) {
         let ContactRows { fixed, pairs, .. } = &self.problem.rows;
         // The first entries of `weights` temporarily contain the number of contacts of each body.

@@ -59,7 +59,7 @@ pub(super) fn solve_by_method<M: Model>(
 }
 
 /// Solves a contact problem with `method`, which may differ from the method of the settings; `effort` limits Newton's
-/// method.
+/// method and the conjugate gradients that follow if it fails.
 fn solve_by<M: Model>(
     method: Method,
     problem: &mut StepProblem<M>,

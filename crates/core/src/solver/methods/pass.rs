@@ -106,8 +106,8 @@ fn pass_with_avx<M: Model, P: FrictionProjection, const MEASURE: bool>(
 }
 
 /// Performs one sweep over all contacts. Returns the change of the impulses, which is measured if `MEASURE` is set and
-/// otherwise 0. If walls are driven (`problem::walls`), the impulse of a contact changes the velocity of its wall at
-/// once, and each contact is solved with the compliance of its wall as well as of its grain.
+/// otherwise 0. If a force drives walls (`problem::walls`), the impulse of a contact changes the velocity of its wall
+/// at once, and each contact is solved with the compliance of its wall as well as of its grain.
 #[inline(always)]
 fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool>(
     problem: &mut StepProblem<M>,
@@ -177,9 +177,9 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
     change
 }
 
-/// Solves the contact of a grain with a driven wall. Returns the change of the normal and tangential impulse divided by
-/// the effective mass, m/s. If the wall moves obliquely to the contact's normal, a normal impulse also changes the
-/// wall's speed along the tangent, so the tangential velocity is computed after the normal update.
+/// Solves the contact of a grain with a wall that a force drives. Returns the change of the normal and tangential
+/// impulse divided by the effective mass, m/s. If the wall moves obliquely to the contact's normal, a normal impulse
+/// also changes the wall's speed along the tangent, so the tangential velocity is computed after the normal update.
 fn solve_driven<M: Model>(
     project: impl Fn([f64; 2]) -> [f64; 2],
     row: &mut FixedRow<M>,

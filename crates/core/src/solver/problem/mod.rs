@@ -58,8 +58,8 @@ pub struct StepProblem<M: Model> {
     pub bodies: Bodies<M>,
     /// The data of the contacts, one row per contact.
     pub rows: ContactRows<M>,
-    /// The contact law that all contacts share. Contacts with their own friction coefficient and capture speed modify
-    /// it ([`StepProblem::law_of`]).
+    /// The contact law that all contacts share. Contacts with their own friction coefficient and capture speed (the
+    /// opening speed that cohesion cancels in one step) modify it ([`StepProblem::law_of`]).
     pub law: ContactLaw,
     /// Moving surfaces of walls and other bodies that are not grains, and walls that a force drives.
     pub(crate) walls: MovingWalls,
@@ -96,9 +96,9 @@ pub struct ProblemNumbers {
     /// Coefficient of rolling friction μ_r; if contacts have their own coefficients ([`RowNumbers`]), the largest
     /// coefficient of all pairs of materials.
     pub rolling_friction: f64,
-    /// Capture speed C₀Δt/m_ij (cohesion force times time step, divided by effective mass), m/s; 0 without cohesion. If
-    /// contacts have their own coefficients ([`RowNumbers`]), the largest capture speed of all pairs of materials for
-    /// grains of the mean mass.
+    /// Capture speed C₀Δt/m_ij (cohesion force times time step, divided by effective mass), m/s: the opening speed that
+    /// cohesion cancels in one step; 0 without cohesion. If contacts have their own coefficients ([`RowNumbers`]), the
+    /// largest capture speed of all pairs of materials for grains of the mean mass.
     pub capture_speed: f64,
     /// Friction cone: the bound of friction, which is μ (N + C₀) in the shifted cone and μ max(N, 0) in the compressive
     /// cone (μ: friction coefficient, N: normal force, C₀: cohesion force). Without cohesion both bounds are the same,
@@ -176,8 +176,8 @@ impl<M: Model> StepProblem<M> {
         self.begin_friction(settings.friction_model);
     }
 
-    /// Records the coefficients of each contact's law: friction, restitution and capture speed. The capture speed is 0
-    /// for a pair of bodies that does not touch yet.
+    /// Records the coefficients of each contact's law: friction, restitution and capture speed (the opening speed that
+    /// cohesion cancels in one step, m/s). The capture speed is 0 for a pair of bodies that does not touch yet.
     fn take_numbers(
         &mut self,
         world: &World,
@@ -392,8 +392,8 @@ impl<M: Model> StepProblem<M> {
         rows.contacts = sorted.iter().map(|&row| rows.contacts[row as usize]).collect();
     }
 
-    /// Returns the capture speed of the contact in row `number`, C₀Δt/m_ij (cohesion force times time step, divided by
-    /// effective mass), m/s.
+    /// Returns the capture speed (the opening speed that cohesion cancels in one step) of the contact in row `number`,
+    /// C₀Δt/m_ij (cohesion force times time step, divided by effective mass), m/s.
     #[inline(always)]
     pub fn capture(&self, number: usize) -> f64 {
         self.rows.capture(number, &self.law)

@@ -247,8 +247,9 @@ impl RowOrder {
 /// between tiles. With more grains, the data of the contacts push velocities out of the cache, and a small pile has too
 /// few tiles for several threads.
 const GRAINS_IN_TILE: usize = 512;
-/// Maximum number of grains of a scene that is not divided into tiles: the data of the contacts of this number of
-/// grains fit in the second-level cache, and waking a second thread would cost more than it gains.
+/// Maximum number of grains of a scene that is not divided into tiles (regions whose contacts one thread solves): the
+/// data of the contacts of this number of grains fit in the second-level cache, and waking a second thread would cost
+/// more than it gains.
 const GRAINS_IN_ONE: usize = 2048;
 /// Minimum number of grains per tile (square region whose contacts one thread solves), on average, in a scene with
 /// large gaps between grains: an eighth of the number in a dense pile. With a smaller number, more tiles may be empty;
@@ -266,8 +267,8 @@ struct Tiles {
 }
 
 impl Tiles {
-    /// Divides the grains of a world into square tiles of equal size. The tiles depend only on the relative positions
-    /// of the grains.
+    /// Divides the grains of a world into square tiles (regions whose contacts one thread solves) of equal size. The
+    /// tiles depend only on the relative positions of the grains.
     fn lay(&mut self, world: &World) {
         let positions = &world.grains.positions;
         if positions.len() <= GRAINS_IN_ONE {

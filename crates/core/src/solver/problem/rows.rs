@@ -50,7 +50,8 @@ pub struct Row<M: Model> {
     /// normal velocity at the beginning of the step; it is replaced by 0 if the bodies approach each other more slowly
     /// than the threshold of restitution.
     pub restitution_velocity: f64,
-    /// Shifted normal impulse σ of the contact, m/s: normal impulse divided by effective mass, plus the capture speed.
+    /// Shifted normal impulse σ of the contact, m/s: normal impulse divided by effective mass, plus the capture speed
+    /// (the opening speed that cohesion cancels in one step).
     pub shifted_impulse: f64,
     /// Tangential impulse λ_t of the contact, divided by the effective mass, m/s.
     pub tangential_impulse: f64,
@@ -143,9 +144,10 @@ pub struct ContactRows<M: Model> {
     pub pairs: Vec<PairRow<M>>,
     /// Index of each row's contact in the list of detected contacts.
     pub contacts: Vec<u32>,
-    /// Capture speed of each contact (cohesion force times time step, divided by effective mass), m/s, if contacts have
-    /// different capture speeds (contact law `range`, pairs of materials); else empty. Sweeps with the shifted friction
-    /// cone do not need it, because the sum of normal impulse and cohesion impulse is stored and bounds friction.
+    /// Capture speed of each contact (the opening speed that cohesion cancels in one step: cohesion force times time
+    /// step, divided by effective mass), m/s, if contacts have different capture speeds (contact law `range`, pairs of
+    /// materials); else empty. Sweeps with the shifted friction cone do not need it, because the sum of normal impulse
+    /// and cohesion impulse is stored and bounds friction.
     pub captures: Vec<f64>,
     /// Friction coefficient μ of each contact, if pairs of materials have their own coefficients; else empty.
     pub frictions: Vec<f64>,
@@ -224,15 +226,16 @@ impl<M: Model> ContactRows<M> {
         self.fixed.get(number).map_or(0.0, |row| row.surface_speed)
     }
 
-    /// Returns the capture speed of the contact in row `number`, m/s: its own, or the capture speed of `law` if the
-    /// contacts have no own capture speeds.
+    /// Returns the capture speed (the opening speed that cohesion cancels in one step) of the contact in row `number`,
+    /// m/s: its own, or the capture speed of `law` if the contacts have no own capture speeds.
     #[inline(always)]
     pub(super) fn capture(&self, number: usize, law: &ContactLaw) -> f64 {
         if self.captures.is_empty() { law.capture_speed() } else { self.captures[number] }
     }
 
     /// Returns the contact law of the contact in row `number`: `law`, or if pairs of materials have their own
-    /// coefficients, `law` with the contact's own friction coefficient and capture speed.
+    /// coefficients, `law` with the contact's own friction coefficient and capture speed (the opening speed that
+    /// cohesion cancels in one step, m/s).
     #[inline(always)]
     pub(crate) fn law(&self, number: usize, law: &ContactLaw) -> ContactLaw {
         law_of_row([&self.frictions, &self.captures], number, law)
@@ -272,7 +275,8 @@ impl<M: Model> ContactRows<M> {
 }
 
 /// Returns the contact law of the contact in row `number`: `law` with the contact's own friction coefficient and
-/// capture speed (m/s), or `law` itself if the list of friction coefficients is empty.
+/// capture speed (the opening speed that cohesion cancels in one step, m/s), or `law` itself if the list of friction
+/// coefficients is empty.
 #[inline(always)]
 pub(crate) fn law_of_row(
     [frictions, captures]: [&[f64]; 2],

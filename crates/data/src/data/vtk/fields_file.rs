@@ -18,8 +18,9 @@ use crate::output::{counted, note_line};
 use crate::sim::Moment;
 
 /// Possible margins between the box around the first frame's grains and the edges of the region that the fields cover,
-/// in lengths of the box's longer side. The largest margin that does not give too many cells is used. With less margin,
-/// grains that flow out of the box are soon left out. With more, a grain that flies off makes images larger for longer.
+/// in lengths of the box's longer side. The largest margin that does not give too many grid cells is used. With less
+/// margin, grains that flow out of the box are soon left out. With more, a grain that flies off makes images larger for
+/// longer.
 const ROOM_IN_SIDES: [f64; 4] = [3.0, 1.0, 0.25, 0.0];
 /// Smallest side length, in mean diameters, for which the margin is computed. A smaller box around the grains gets the
 /// margin of a box with this side length.
@@ -55,7 +56,7 @@ pub(super) struct FieldsBox {
 
 impl FieldsBox {
     /// Chooses the smoothing width of a recording's fields and the region that they cover. `moment` is the snapshot of
-    /// its first frame. If smoothing over a mean diameter needs too many cells, the width is doubled as often as
+    /// its first frame. If smoothing over a mean diameter needs too many grid cells, the width is doubled as often as
     /// necessary.
     fn of(moment: &Moment) -> Self {
         let grains = moment.grains.iter().filter(|grain| !grain.lost);

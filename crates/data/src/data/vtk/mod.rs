@@ -355,7 +355,7 @@ fn add(file: &mut VtkFile, Column { name, values, .. }: &Column) {
 struct PvdSeries {
     path: PathBuf,
     file: File,
-    /// Number of entries: filled slots.
+    /// Number of entries in the list: filled slots (spaces of fixed length for one entry each).
     count: usize,
     slots: usize,
 }

@@ -50,7 +50,7 @@ pub(super) struct VtkFile {
     points: usize,
     /// XML text of the arrays that belong to the whole file.
     of_file: String,
-    /// XML text of the arrays with a value for each point, line or cell.
+    /// XML text of the arrays with a value for each point, line or grid cell.
     of_rows: String,
     /// XML text of the array with the positions of the points.
     of_points: String,
@@ -120,13 +120,14 @@ impl VtkFile {
         );
     }
 
-    /// Adds an array with one number per point, line or cell.
+    /// Adds an array with one number per point, line or grid cell.
     pub(super) fn add_column<N: Scalar>(&mut self, name: &str, column: impl Iterator<Item = N>) {
         let said = self.append(name, [], column.map(|number| [number]));
         self.of_rows += &said;
     }
 
-    /// Adds an array with one vector per point, line or cell. `x` and `y` are the names of the first two components.
+    /// Adds an array with one vector per point, line or grid cell. `x` and `y` are the names of the first two
+    /// components.
     pub(super) fn add_vectors(
         &mut self,
         name: &str,

@@ -32,7 +32,8 @@ use crate::world::ParameterChanges;
 /// Largest number of sweeps per step in the compared simulations. Without this limit, the solver would never stop in a
 /// step that has no solution.
 const MOST_SWEEPS: u32 = 5_000;
-/// Approach speed below which contacts do not bounce, in units of g·Δt, the speed that gravity adds in one step.
+/// Approach speed below which contacts do not bounce, in units of g·Δt, the speed that gravity adds in one step. With
+/// this value nearly every step has a solution.
 const THRESHOLD: f64 = 2.0;
 /// Smallest time step of the reference simulations, s. References with this time step have the smallest error due to
 /// the time step.
@@ -43,7 +44,8 @@ const REFERENCE: Method = Method::Newton;
 /// Residuals to which the steps of the reference simulations are solved. References with the second residual only serve
 /// to measure how much two accurate simulations of a chaotic pile differ; errors below this difference have no meaning.
 const TOLERANCES: [f64; 2] = [1e-8, 1e-9];
-/// Slump below which a pile counts as stable.
+/// Slump (drop of the mean height divided by the first mean height) below which a pile counts as stable. The value only
+/// serves to count how many piles have the same outcome (stable or not) in a simulation and in its reference.
 const HOLDS: f64 = 0.1;
 /// Stepper, which defines the contact law, of those reference simulations from which the floor is measured. The floor
 /// is the difference between two accurate simulations of a chaotic pile; errors below the floor have no meaning.
@@ -96,8 +98,8 @@ struct SimulationPlan {
 }
 
 impl SimulationPlan {
-    /// Returns the simulations of a quick or full pass. The stepper `range` is only run with Newton's method, and only
-    /// in a full pass.
+    /// Returns the plan of a quick pass (a pass with fewer simulations) or of the full pass. The stepper `range` is
+    /// only run with Newton's method, and only in the full pass.
     fn new(effort: Effort) -> Self {
         let laws: &[Stepper] = effort.pick(&[Stepper::Moreau], &[Stepper::Moreau, Stepper::Range]);
         Self {
@@ -173,8 +175,9 @@ fn budgeted(laws: &[Stepper], effort: Effort) -> Vec<BudgetedVariant> {
     budgeted
 }
 
-/// Returns the Bond number and the seed of each simulated pile. In the full pass, every Bond number occurs with several
-/// seeds, and every seed with several Bond numbers.
+/// Returns the Bond number and the seed of each simulated pile. In a quick pass (a pass with fewer simulations) there
+/// are four piles. In the full pass, every Bond number occurs with several seeds, and every seed with several Bond
+/// numbers.
 fn piles(effort: Effort) -> Vec<(f64, u64)> {
     let shared = NewPile::default().seed;
     if effort == Effort::Quick {
@@ -262,8 +265,9 @@ struct ReferenceCase {
 struct References(Vec<(ReferenceCase, TimedRun)>);
 
 impl References {
-    /// Returns all reference simulations to compute. Pairs of references that only differ in the tolerance, whose
-    /// difference is measured (the floor), are only computed at the time steps on the chart.
+    /// Returns all reference simulations to compute. They are solved to the first residual of [`TOLERANCES`]. At the
+    /// time steps on the chart, the references with the contact law [`FLOOR_LAW`] are also solved to the second
+    /// residual, to measure how much two accurate simulations differ (the floor).
     fn cases(plan: &SimulationPlan) -> Vec<ReferenceCase> {
         let mut cases = Vec::new();
         for &law in &plan.laws {

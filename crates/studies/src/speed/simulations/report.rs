@@ -3,12 +3,13 @@
 use super::*;
 use crate::harness::ReportTable;
 
-/// Least number of piles with which the chart shows confidence intervals of the mean errors.
+/// Least number of piles with which the chart shows confidence intervals of the mean errors. With fewer piles, as in a
+/// quick pass, an interval would be as wide as the chart.
 const TELLING: usize = 8;
 
-/// Draws two charts of the smallest error of the slump that each family of methods reaches for its computing time. In
-/// the first chart, the error is the difference to the reference simulation at the same time step, in the second chart
-/// the difference to the reference simulation at the smallest time step.
+/// Draws two charts of the smallest error of the slump that each family of methods (group of similar solver methods)
+/// reaches for its computing time. In the first chart, the error is the difference to the reference simulation at the
+/// same time step, in the second chart the difference to the reference simulation at the smallest time step.
 pub(super) fn sheet(
     bench: &Bench,
     plan: &SimulationPlan,

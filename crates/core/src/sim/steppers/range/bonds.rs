@@ -57,8 +57,8 @@ pub(in crate::sim) struct RangeMemory {
     lowered: Vec<(usize, f64)>,
     /// True if bonds were about to break in the last step.
     pub restless: bool,
-    /// Longest time step, s, for which the largest number of substeps (sixteen) is enough to follow the bonds that were
-    /// about to break; `None` if the last step was not longer than this time.
+    /// Longest time step, s, for which the largest number of substeps (sixteen parts of a step) is enough to follow the
+    /// bonds that were about to break; `None` if the last step was not longer than this time.
     #[serde(skip)]
     pub longest_step_secs: Option<f64>,
 }

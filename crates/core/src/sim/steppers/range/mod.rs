@@ -36,13 +36,14 @@ use crate::solver::{Approach, Model, SolveReport};
 /// first distance within the step and is now below the second distance.
 const AHEAD_IN_DIAMETERS: [f64; 2] = [0.25, 2.0];
 
-/// Longest substep while bonds are restless (about to break), in units of the time in which the pull of a bond alone
-/// would open or close it by the debonding distance. With a larger value, weakly bonded piles do not fall at a large
-/// time step, because a load reaches only the next bond in each substep; a smaller value costs more.
+/// Longest substep (part of a step) while bonds are restless (about to break), in units of the time in which the pull
+/// of a bond alone would open or close it by the debonding distance. With a larger value, weakly bonded piles do not
+/// fall at a large time step, because a load reaches only the next bond in each substep; a smaller value costs more.
 const SUBSTEP_IN_BOND_TIMES: f64 = 0.4;
 
-/// Longest distance that a grain moves in a substep, in mean diameters, unless this needs more than [`MOST_SUBSTEPS`]
-/// substeps. With a larger value a pile slumps too little at a large time step; a smaller value costs more.
+/// Longest distance that a grain moves in a substep (part of a step), in mean diameters, unless this needs more than
+/// [`MOST_SUBSTEPS`] substeps. With a larger value a pile slumps too little at a large time step; a smaller value costs
+/// more.
 const MOST_TRAVEL: f64 = 0.1;
 
 /// Largest number of substeps into which a step is divided. With more substeps, a step would be solved so much more

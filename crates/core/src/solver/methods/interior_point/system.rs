@@ -90,7 +90,7 @@ impl<const D: usize> StepMatrix<D> {
 type Gradients<const D: usize> = [[f64; D]; 2];
 
 /// Returns the gradients of a contact's normal and tangential velocity with respect to the velocity of grain i. If the
-/// other body of the contact can move (grain or driven wall), also returns that body's number and gradients.
+/// other body of the contact can move (grain or wall driven by a force), also returns that body's number and gradients.
 #[inline(always)]
 fn bodies_of<M: Model, const D: usize>(
     problem: &StepProblem<M>,
@@ -129,9 +129,9 @@ pub(super) fn push_all<M: Model, const D: usize>(
     }
 }
 
-/// Calls `visit` for each contact with its row number and the change of its normal and tangential velocity, m/s, that
-/// follows from `changes`, the changes of the bodies' velocities in elimination order (the order of the bodies in the
-/// factorised matrix).
+/// Calls `visit` for each contact with the number of its row (the data of the contact) and the change of its normal and
+/// tangential velocity, m/s, that follows from `changes`, the changes of the bodies' velocities in elimination order
+/// (the order of the bodies in the factorised matrix).
 #[inline(always)]
 pub(super) fn for_each_change<M: Model, const D: usize>(
     problem: &StepProblem<M>,
@@ -162,8 +162,8 @@ fn relative<const D: usize>(velocity: &[f64; D], on: &Gradients<D>) -> [f64; 2] 
     on.map(|gradient| (0..D).map(|axis| gradient[axis] * velocity[axis]).sum())
 }
 
-/// Iterates over the inertias of grains and driven walls in elimination order (the order of the bodies in the
-/// factorised matrix), kg, one per degree of freedom. The coordinate of a rotation is radius times angle, so its
+/// Iterates over the inertias of grains and of walls driven by a force, in elimination order (the order of the bodies
+/// in the factorised matrix), kg, one per degree of freedom. The coordinate of a rotation is radius times angle, so its
 /// inertia is a mass, too.
 pub(super) fn all_inertias<M: Model, const D: usize>(
     problem: &StepProblem<M>,

@@ -138,9 +138,9 @@ fn gather<S: Simd, M: Model>(
     M::from_coordinates([x, y, spin])
 }
 
-/// Transposes four vectors of four numbers: turns the velocity slots of four bodies into one vector for each velocity
-/// component, and back. Slots are read and written whole, in one access each: a read of a single number would have to
-/// wait until the previous block has written the whole slot.
+/// Transposes four vectors of four numbers: turns the memory slots with the velocities of four bodies into one vector
+/// for each velocity component, and back. Slots are read and written whole, in one access each: a read of a single
+/// number would have to wait until the previous block has written the whole slot.
 #[inline(always)]
 fn transposed<S: Simd>([a, b, c, d]: [f64x4<S>; LANES]) -> [f64x4<S>; LANES] {
     let (ac, bd) = (a.zip_low(c), b.zip_low(d));
@@ -148,7 +148,7 @@ fn transposed<S: Simd>([a, b, c, d]: [f64x4<S>; LANES]) -> [f64x4<S>; LANES] {
     [ac.zip_low(bd), ac.zip_high(bd), other_ac.zip_low(other_bd), other_ac.zip_high(other_bd)]
 }
 
-/// Stores the velocities of four bodies, one per SIMD lane, in their slots.
+/// Stores the velocities of four bodies, one per SIMD lane, in their memory slots.
 #[inline(always)]
 fn scatter<S: Simd, M: Model>(
     slots: &mut [BodySlot],

@@ -86,8 +86,8 @@ fn solve_at<M: Model>(
 /// contacts that share no grain). When it is created, the arrangement is checked: all grains exist, and no two tiles
 /// and no two contacts of a colour share a grain.
 ///
-/// The present impulses and velocities are stored in blocks of four contacts and in slots for bodies. Until
-/// [`Tiled::store`] copies them back, `problem` has old impulses and velocities.
+/// The present impulses and velocities are stored in blocks of four contacts and in memory slots, one for the velocity
+/// of each body. Until [`Tiled::store`] copies them back, `problem` has old impulses and velocities.
 struct Tiled<'a, M: Model> {
     level: Level,
     /// True if several threads sweep over the contacts at the same time: there are several threads, several tiles
@@ -242,11 +242,13 @@ const NOBODY: u32 = u32::MAX;
 /// A tile: contacts whose grains are in no other tile, so that one thread can solve them.
 #[derive(Clone, Copy, Debug, Default)]
 struct ContactTile {
-    /// Number of blocks (of four contacts each) in the tile.
+    /// Number of blocks (of four contacts each) in the tile (a group of contacts that one thread solves).
     blocks: usize,
-    /// Number of the tile's blocks whose contacts are with fixed bodies; these blocks come first.
+    /// Number of the blocks (of four contacts each) of the tile (a group of contacts that one thread solves) whose
+    /// contacts are with fixed bodies; these blocks come first.
     fixed: usize,
-    /// Number of memory slots for velocities: one per grain of the tile, and one for idle SIMD lanes.
+    /// Number of memory slots for velocities: one per grain of the tile (a group of contacts that one thread solves),
+    /// and one for idle SIMD lanes.
     slots: usize,
 }
 
@@ -266,7 +268,7 @@ struct GrainMark {
 const UNSEEN: GrainMark = GrainMark { slot: NOBODY, tile: 0, colour: 0 };
 
 /// The tile (a group of contacts that shares no grain with another tile) that is being filled with blocks of contacts:
-/// its number and its first velocity slot.
+/// its number and the first memory slot of its velocities.
 #[derive(Clone, Copy)]
 struct BlockPlace {
     /// Number of the tile (a group of contacts that shares no grain with another tile), from 1; 0 for the contacts
@@ -282,7 +284,7 @@ struct BlockPlace {
 #[derive(Clone, Debug, Default)]
 struct TileLayout {
     /// Tiles (groups of contacts that share no grain with another tile), in the order in which their blocks of contacts
-    /// and velocity slots are stored.
+    /// and memory slots of velocities are stored.
     tiles: Vec<ContactTile>,
     /// Blocks of four contacts, sorted by tile (a group of contacts that shares no grain with another tile), and within
     /// a tile by colour (a group of contacts that share no grain). The indices of velocity slots in a block are counted
@@ -293,7 +295,7 @@ struct TileLayout {
     /// one thread solves).
     fixed_between: usize,
     /// Velocities of the bodies, sorted by tile (a group of contacts that shares no grain with another tile), and
-    /// within a tile in the order in which its blocks of contacts first use them. The first slot of a tile is a
+    /// within a tile in the order in which its blocks of contacts first use them. The first memory slot of a tile is a
     /// placeholder for idle SIMD lanes.
     slots: Vec<BodySlot>,
     /// For each block of contacts, the range of the numbers of its contacts in the problem.

@@ -15,8 +15,8 @@ use crate::world::World;
 pub(in super::super) struct ClosedBond {
     /// Time from the shock (collision) that closed the bond to the end of the step, divided by the time step.
     pub part: f64,
-    /// Normal velocity that gravity had added, between the beginning of the step and the shock, to a grain that falls
-    /// on a fixed body, m/s; 0 for other pairs.
+    /// Normal velocity that gravity had added, between the beginning of the step and the shock (collision), to a grain
+    /// that falls on a fixed body, m/s; 0 for other pairs.
     pub gained: f64,
 }
 
@@ -147,7 +147,8 @@ impl Shocks {
 
     /// Records the results of a solved step. If a pair met at the time t, the impulse λ of the step on it moves its
     /// grains only for the rest of the step: by (Δt − t)·λ, and not by Δt·λ, with the time step Δt (λ is divided by the
-    /// effective mass, m/s). Also adds the impulses of shocks and step to the contacts' impulse sums of the step.
+    /// effective mass, m/s). Also adds the impulses of shocks (collisions) and step to the contacts' impulse sums of
+    /// the step.
     pub(in super::super) fn finish<M: Model>(
         &mut self,
         problem: &StepProblem<M>,
@@ -183,7 +184,7 @@ impl Shocks {
     }
 
     /// Corrects the positions of the grains, which have moved by Δt times their velocities at the end of the step. Adds
-    /// the difference to the true displacement, which is due to shocks within the step and to free fall.
+    /// the difference to the true displacement, which is due to shocks (collisions) within the step and to free fall.
     pub(in super::super) fn shift(&self, world: &mut World) {
         let grains = &mut world.grains;
         for (index, body) in self.bodies.iter().enumerate() {

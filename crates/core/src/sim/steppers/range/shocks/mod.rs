@@ -162,8 +162,8 @@ struct ShockPair {
     impulse: f64,
     /// Time of the pair's last shock (collision), counted from the beginning of the step, s; 0 before its first shock.
     struck_at: f64,
-    /// Normal velocity that gravity had added, between the beginning of the step and the pair's last shock, to a grain
-    /// that falls on a fixed body, m/s; 0 for other pairs.
+    /// Normal velocity that gravity had added, between the beginning of the step and the pair's last shock (collision),
+    /// to a grain that falls on a fixed body, m/s; 0 for other pairs.
     gained: f64,
 }
 
@@ -209,7 +209,8 @@ struct ShockBody {
     /// Change of the grain's path by its shocks (collisions), extrapolated back to the beginning of the step, one entry
     /// per degree of freedom, m: −Σ t Δv, where Δv (m/s) is the change of velocity by a shock at the time t (s).
     offset: [f64; 3],
-    /// Change of the grain's `offset` along x and y by the last pass (group of shocks) that struck the grain, m.
+    /// Change of the grain's `offset` along x and y by the last pass (group of shocks, which are collisions) that
+    /// struck the grain, m.
     shift: DVec2,
     /// Time of the grain's last shock (collision), counted from the beginning of the step, s; 0 before its first shock.
     since: f64,
@@ -223,15 +224,15 @@ struct ShockBody {
     /// True if the grain does not fall freely, because it rests on a body or is bonded.
     is_supported: bool,
     /// Displacement of the grain in the step minus the time step Δt times its velocity at the end of the step, m,
-    /// without the part `offset` that is due to shocks. For a grain that falls freely with the acceleration a it is
-    /// −½aΔt². A grain of pairs that met within the step has in addition −Σ tλ, where λ (m/s) is the change of its
-    /// velocity by the solution of the step at a pair that met at the time t (s).
+    /// without the part `offset` that is due to shocks (collisions). For a grain that falls freely with the
+    /// acceleration a it is −½aΔt². A grain of pairs that met within the step has in addition −Σ tλ, where λ (m/s) is
+    /// the change of its velocity by the solution of the step at a pair that met at the time t (s).
     rest_of_way: DVec2,
     /// Parent of this grain in a union–find structure: following `root` from grain to grain leads to the representative
     /// grain of the cluster. A cluster is a set of grains that are struck together.
     root: u32,
     /// Only for the representative grain of a cluster (a set of grains that are struck together): the time of the
-    /// cluster's shock, s, and the number of the cluster's contacts.
+    /// cluster's shock (collision), s, and the number of the cluster's contacts.
     cluster: (f64, u32),
 }
 

@@ -1,5 +1,5 @@
-//! Solution of one pass (a group of shocks that are computed together): the struck pairs form a separate contact
-//! problem.
+//! Solution of one pass (a group of shocks, which are collisions, that are computed together): the struck pairs form a
+//! separate contact problem.
 
 use glam::DVec2;
 
@@ -56,9 +56,9 @@ fn solve_together<M: Model>(
 }
 
 impl Shocks {
-    /// Fills the contact problem `part` with pairs that are struck in this pass (a group of shocks that are computed
-    /// together). If `alone` is true, takes the pairs that share no grain with another struck pair, otherwise all other
-    /// struck pairs. Returns true if there are such pairs.
+    /// Fills the contact problem `part` with pairs that are struck in this pass (a group of shocks, which are
+    /// collisions, that are computed together). If `alone` is true, takes the pairs that share no grain with another
+    /// struck pair, otherwise all other struck pairs. Returns true if there are such pairs.
     pub(super) fn set_up<M: Model>(
         &mut self,
         problem: &mut StepProblem<M>,
@@ -130,8 +130,8 @@ impl Shocks {
         bounce + gained - wall_speed
     }
 
-    /// Solves the contact problem in `part`, and stores its impulses and velocities as results of the shocks. If
-    /// `alone` is true, the pairs share no grain, so a single sweep over the contacts is exact.
+    /// Solves the contact problem in `part`, and stores its impulses and velocities as results of the shocks
+    /// (collisions). If `alone` is true, the pairs share no grain, so a single sweep over the contacts is exact.
     pub(super) fn solve<M: Model>(
         &mut self,
         problem: &mut StepProblem<M>,
@@ -197,7 +197,7 @@ impl Shocks {
     }
 
     /// Updates the gaps and normal velocities of all pairs with a grain that was struck in this pass (the group of
-    /// shocks computed last), and marks their next impacts as unknown.
+    /// shocks, which are collisions, computed last), and marks their next impacts as unknown.
     pub(super) fn move_on<M: Model>(&mut self, problem: &StepProblem<M>) {
         let bodies = &self.bodies;
         let shift = |grain: usize| {
