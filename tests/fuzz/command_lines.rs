@@ -42,6 +42,7 @@ const OPTIONS: [&str; 23] = [
     "--max-travel 0 0.25 1e-3",
     "--sequential-impacts true false",
     "--speculative true false",
+    "--turning-bonds true false",
     "--preset robust",
     "--colour grey speed coordination overlap force",
     "--show forces angles forces,angles",

@@ -114,6 +114,7 @@ fn scene(u: &mut Unstructured<'_>, size: f64) -> Result<Scene> {
         max_travel: *u.choose(&[0.0, 0.0, 0.25])?,
         sequential_impacts: u.ratio(1, 4)?,
         speculative: u.ratio(1, 4)?,
+        turning_bonds: u.ratio(1, 4)?,
     };
     if u.ratio(3, 4)? {
         scene.set_settings(scene.settings().with_only_what_is_taken());

@@ -339,8 +339,13 @@ fn what_a_table_of_a_scene_file_leaves_out_has_its_default() {
         friction_model: FrictionModel::Coulomb,
         model_solves: 2,
     };
-    let remedies =
-        Remedies { push_out: true, max_travel: 0.25, sequential_impacts: true, speculative: true };
+    let remedies = Remedies {
+        push_out: true,
+        max_travel: 0.25,
+        sequential_impacts: true,
+        speculative: true,
+        turning_bonds: true,
+    };
     let parameters = Parameters {
         cone: FrictionCone::Compressive,
         restitution_threshold: 2.0,

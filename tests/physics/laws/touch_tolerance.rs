@@ -171,7 +171,10 @@ fn without_a_tolerance_turning_uses_up_the_overlap_of_a_bond() {
             steps += 1.0;
         }
         let differs = (steps - expected).abs();
-        assert!(differs <= 1.0 + 0.01 * expected, "{dt} s, {overlap} d, {part}: {steps}, {expected}");
+        assert!(
+            differs <= 1.0 + 0.01 * expected,
+            "{dt} s, {overlap} d, {part}: {steps}, {expected}"
+        );
         let later = (2.0 * expected + 100.0) as usize;
         assert!(gap(&after(&turning(0.0), later)) > 2.0 * opens, "{dt} s, {overlap} d, {part}");
         let whole = gap(&after(&turning(2.0 * opens), later));
