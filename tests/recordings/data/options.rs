@@ -111,7 +111,7 @@ fn scene_files_ask_for_recordings() {
         command
     };
     let said = sentence(&mut again(&[]));
-    assert!(said.contains("unless --overwrite is given"), "{said}");
+    assert!(said.contains("unless the option overwrite is given"), "{said}");
     succeed(&mut again(&["--overwrite"]));
     // An option on the command line overrides the value in the scene file.
     let other = folder.path().join("other");

@@ -36,6 +36,7 @@ words! {
             "it no longer counts in slump; if it was to stay, put a wall or a floor in its way";
         BondAcceleration = "bond-acceleration",
             "the cohesion force is Bond·m·g, and g is 0; try a bond-acceleration above 0 m/s²";
+        TurningBonds = "turning-bonds", "try the remedy turning-bonds, which keeps the bonds of grains that turn";
         BondsOfRange = "bonds-of-range", "try the stepper range without remedies: its bonds do not depend on turning";
         BondsOfDem = "bonds-of-dem", "try the stepper dem without remedies: its bonds do not depend on turning";
         Cohesion = "cohesion", "set cohesion = true in the section physics of the scene file";
@@ -68,11 +69,15 @@ pub(super) fn on_no_cohesion(
     }
 }
 
-/// Returns the advice for bonds that ended because the line between their two grains turned: a stepper whose bonds do
-/// not depend on turning. If the friction cone is shifted, the advice is the stepper `range`. If the cone is
-/// compressive, which `range` does not support, the advice is the stepper `dem`.
+/// Returns the advice for bonds that ended because the line between their two grains turned. Under the stepper `moreau`
+/// it is the remedy `turning-bonds` (the opening by turning becomes part of the law). Other steppers do not support this
+/// remedy, and it may already be on; then the advice is a stepper whose bonds do not depend on turning: `range`, or
+/// `dem` if the friction cone is compressive, which `range` does not support.
 pub(super) fn on_turned_bonds(settings: &Settings) -> Advice {
     match settings.parameters.cone {
+        _ if settings.stepper == Stepper::Moreau && !settings.remedies.turning_bonds => {
+            Advice::TurningBonds
+        }
         FrictionCone::Compressive => Advice::BondsOfDem,
         FrictionCone::Shifted => Advice::BondsOfRange,
     }

@@ -40,7 +40,7 @@ impl RecordingFolder {
         } else if let Some(first) = files.first() {
             let name = first.strip_prefix(path).unwrap_or(first).display();
             let allowed = format!(
-                "a folder without an earlier recording ({name} is there), unless --overwrite is given to \
+                "a folder without an earlier recording ({name} is there), unless the option overwrite is given to \
                  remove it"
             );
             return Err(Error::value("data", path.display(), allowed));
