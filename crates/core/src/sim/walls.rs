@@ -30,8 +30,9 @@
 //! > V_n = n·V(q) − w tan ½β = n·V(c) − u tan ½β − (tan ½β − tan ½α) L sin α/Δt.
 //!
 //! The speed u is taken at the beginning of the step. A grain at rest relative to the wall has had the mean velocity V⁻
-//! of the wall in the previous step, with (1 − R⁻¹)/Δt instead of (R − 1)/Δt, so u is relative to V⁻. Along n the grain
-//! has had the velocity n·V⁻(c) and the other terms of V_n with + instead of −. Restitution and collisions use
+//! of the wall in the previous step, with (1 − R⁻¹)/Δt instead of (R − 1)/Δt, so u is relative to V⁻. Its normal
+//! velocity just before the step is given by the formula for V_n with two changes: V⁻ replaces V, and the terms that
+//! contain tan have the opposite sign (on a flat wall it is n·V⁻(c) + u tan α). Restitution and collisions use
 //! velocities relative to this velocity.
 
 use std::f64::consts::FRAC_PI_4;
@@ -198,8 +199,8 @@ impl Walls {
         of_discs.chain(of_features).fold(fastest, f64::max)
     }
 
-    /// Returns the motion of the surface that a contact's grain touches; `None` if the grain does not touch a moving
-    /// wall.
+    /// Returns the velocities of the surface that a contact's grain touches, and the data on the force that drives it,
+    /// if any; `None` if the grain does not touch a moving wall.
     #[inline]
     pub(crate) fn surface(&self, world: &World, contact: &Contact) -> Option<Surface> {
         self.surface_at(world, contact, world.grains.positions[contact.grain as usize])
@@ -332,7 +333,8 @@ impl Walls {
     }
 }
 
-/// Grain that touches a wall: position, size and velocity.
+/// A contact of a grain with a moving wall: position, size and velocity of the grain, and the wall's shape at the
+/// contact.
 struct TouchedPlace<'a> {
     centre: DVec2,
     radius: f64,
