@@ -22,7 +22,7 @@ const HEAD: &str = "slump://run?";
 /// First part of links that open in a browser: the address of the page.
 static PAGE: OnceLock<String> = OnceLock::new();
 
-/// Sets the address of the page in the browser, with which its links begin.
+/// Sets the address of the page in the browser. Links that the browser version makes begin with this address.
 #[cfg(target_arch = "wasm32")]
 pub(super) fn set_link_start(start: String) {
     let _ = PAGE.set(start);

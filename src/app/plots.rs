@@ -244,7 +244,7 @@ pub(crate) struct WorldCurve {
     pub others: Option<Arc<Band>>,
 }
 
-/// Largest number of points of a curve in the plot of one quantity against another.
+/// Largest number of points of a curve in a plot of one quantity against another. With more points, drawing is slower.
 const MOST_POINTS: usize = 2_000;
 
 /// Plot of one quantity against another, which the user chooses.

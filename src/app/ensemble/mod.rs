@@ -137,7 +137,8 @@ impl Ensemble {
     }
 
     /// Discards the settings and results of started runs if they belong to another scene, another duration, another
-    /// base or other initial states than the open scene. Keeps them if the open scene has no other initial states.
+    /// width of the base under the grains, or other initial states than the open scene. Keeps them if the open scene
+    /// has no other initial states.
     fn note_kind(&mut self) {
         let Some(opened) = self.opened.as_ref().filter(|_| !self.piles.is_empty()) else { return };
         let kind = Some(PileKind {
