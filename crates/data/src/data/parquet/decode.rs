@@ -17,7 +17,8 @@ use crate::input::open;
 
 /// Description of a valid Parquet file, for error messages.
 const FORM: &str = "a Parquet file whose columns are flat, not compressed or by snappy";
-/// Largest number of rows that a file may have. A file with more rows is damaged or does not contain discs.
+/// Largest number of rows that a file may have: about 268 million, for which the eight numbers of each disc need 16 GiB
+/// of memory. A file with more rows is damaged or does not contain discs.
 const MOST_ROWS: i64 = 1 << 28;
 /// Length of the last section of a Parquet file, bytes: the length of the footer (four bytes) and the mark `PAR1`.
 const MARK: u64 = 8;
