@@ -83,8 +83,8 @@ fn asked_for(variable: &str) -> Option<u64> {
     std::env::var(variable).ok().map(number)
 }
 
-/// Returns the seed of input `number` of a run of the tests: random bits in the upper half, and the number of random
-/// bytes in the lower half.
+/// Returns the seed from which input number `number` is made. `run` is the value of `SLUMP_FUZZ_SEED` for this run of
+/// the tests. The seed has random bits in the upper half, and the number of random bytes in the lower half.
 fn seed(run: u64, number: u64) -> u64 {
     let hash = blake3::hash(&[run.to_le_bytes(), number.to_le_bytes()].concat());
     let random = hash.as_bytes().iter().take(4).fold(0, |seed, &byte| seed << 8 | u64::from(byte));

@@ -12,7 +12,7 @@ const EXACT: f64 = 1e-12;
 
 /// Returns the index of the disc to whose cell (the region that belongs to the disc) a point belongs: the disc for
 /// which the power (squared distance from the centre minus r²) is smallest, if this power is below `largest_power` =
-/// 3r̄² (r̄: mean radius).
+/// 3r̄² (r̄: mean radius). Otherwise the point is outside the packing, and the result is `None`.
 fn owner(point: DVec2, discs: &[(DVec2, f64)], largest_power: f64) -> Option<usize> {
     let power =
         |&(centre, radius): &(DVec2, f64)| (point - centre).length_squared() - radius * radius;
