@@ -241,7 +241,7 @@ impl Scene {
         }
         let mean = 2.0 * self.grains.iter().map(|grain| grain.radius).sum::<f64>()
             / self.grains.len() as f64;
-        // `reach_in` checks the other limit, which depends on the largest grain.
+        // Lower limit of `mean_diameter`. The upper limit depends on the largest grain; `reach_in` checks it.
         let least = mean / MOST_DIAMETERS_OF_MEAN;
         if self.mean_diameter < least {
             let allowed =

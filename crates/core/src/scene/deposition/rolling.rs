@@ -15,8 +15,8 @@
 //! * It meets the floor.
 //! * φ = 90°, and the disc falls off.
 //!
-//! An obstacle supports the disc if the centre of the disc is between disc i and the obstacle. Otherwise the disc
-//! rolls on over the obstacle.
+//! An obstacle supports the disc if the centre of the disc is horizontally between the centre of disc i and the
+//! obstacle. Otherwise the disc continues to roll, now on the obstacle.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 

@@ -50,7 +50,7 @@ pub fn collapse() -> Scene {
 pub fn collapse_of(mut scene: Scene, half: f64, release_secs: f64) -> Scene {
     let top = |grain: &Grain| grain.position.y + grain.radius;
     let aspect = scene.grains.iter().map(top).fold(0.0, f64::max) / (half * DIAMETER);
-    // The longest known run-out of columns, times a margin.
+    // Half-width of the rough floor: the largest half-width that collapsed columns are known to reach, times a margin.
     let reach = REACH * half * (1.0 + (2.5 * aspect).max(3.25 * libm::pow(aspect, 0.7)));
     scene.fixed_discs = rough_base(2.0 * reach, DIAMETER);
     let gate = |side: f64| half_space(DVec2::new(side * half, 0.0), DVec2::new(-side, 0.0));
