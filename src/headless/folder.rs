@@ -215,7 +215,8 @@ fn told_of(folder: &Path) -> Vec<String> {
     pictures.chain(tables).filter(is_name).collect()
 }
 
-/// True for a regular file. Links and pipes are never removed; the run writes to their targets.
+/// True for a regular file. False for links, pipes and devices, which are never removed: the run writes into them, or
+/// into the file to which a link leads.
 fn is_plain(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|there| there.is_file())
 }
@@ -250,14 +251,17 @@ pub(super) struct Marks {
     pub went_on_at: Vec<Instant>,
     /// Extent of the recording of grains and contacts: its numbers of frames and rows.
     pub recording: RecordingMark,
-    /// Sums of contact forces, per pair of bodies, over the steps since the last frame of the recording.
+    /// Sums of contact forces, per pair of bodies, over the steps since the last frame of the recording (the last state
+    /// that was written to its files of grains and contacts).
     pub sums: ForceSums,
 }
 
 /// State of the simulation and of the outputs with which a run starts or resumes.
 pub(super) struct Beginning {
     pub state: SavedState,
-    /// Lengths of the outputs that the folder already contains, at which they are cut off.
+    /// Lengths of the outputs at the last checkpoint, for a resumed run. When the run opens an output, it cuts the
+    /// output off at this length, because it writes everything after the checkpoint again. All lengths are 0 in a new
+    /// run.
     pub marks: Marks,
 }
 

@@ -292,8 +292,8 @@ pub(super) struct RecordingPlan {
 }
 
 impl RecordingPlan {
-    /// Locks the folder of the recording. If `goes_on` is true, a resumed run continues its own recording and needs no
-    /// lock.
+    /// Locks the folder of the recording (files of grains and contacts), so that no other run writes into it. If
+    /// `goes_on` is true, a resumed run continues its own recording and needs no lock.
     ///
     /// # Errors
     /// States why the folder cannot be used.
@@ -306,8 +306,9 @@ impl RecordingPlan {
         Ok(Self { claim, folder, settings })
     }
 
-    /// Checks that the files of the recording that a resumed run continues still have all their data up to step number
-    /// `step`: the numbers of frames and rows in `mark`.
+    /// Checks that the files of the recording (of grains and contacts) that a resumed run continues still have all
+    /// their data up to step number `step`, the step of the checkpoint. `mark` has the numbers of frames and rows at
+    /// this step.
     ///
     /// # Errors
     /// Names the file that is missing or has lost data.
@@ -315,7 +316,8 @@ impl RecordingPlan {
         Recording::check(&self.folder, &formats_of(&self.settings)?, step, mark)
     }
 
-    /// Starts the recording at the present state of a run, or continues an existing recording from the extent `mark`.
+    /// Starts the recording (files of grains and contacts) at the present state of a run, or continues an existing
+    /// recording after the numbers of frames and rows in `mark`.
     ///
     /// # Errors
     /// If the folder cannot be written to, or a file of the recording is missing.

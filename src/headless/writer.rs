@@ -299,7 +299,8 @@ impl Recorder for RunWriter<'_> {
     }
 }
 
-/// Returns a sentence for the user with the folder of a finished recording and its number of frames.
+/// Returns a sentence for the user with the folder of a finished recording (files of grains and contacts) and the
+/// number of its frames (recorded states).
 pub(crate) fn recording_sentence(folder: &Path, frames: u64) -> String {
     format!("{} of data in {}", counted(frames, "frame"), folder.display())
 }
@@ -309,7 +310,8 @@ pub(super) fn go_on() -> ControlFlow<()> {
     caught_signal().map_or(ControlFlow::Continue(()), |_| ControlFlow::Break(()))
 }
 
-/// Returns the error for a run that a signal ended. `last` contains the observables of its last step.
+/// Returns the error for a run that a signal ended. `last` contains the observables (measured quantities) of the run's
+/// last step.
 pub(super) fn interrupted(signal: Signal, last: &Observables) -> Error {
     let (signal, exit_code) = (signal.name(), signal.exit_code());
     Error::Interrupted { signal, exit_code, step: last.step, time_secs: last.time_secs }

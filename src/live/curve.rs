@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::sim::Observables;
 
-/// Number of rows (observables after one step) in a chunk. A full chunk is shared between clones and never changes.
+/// Number of rows (observables after one step) in a chunk. A full chunk is shared between clones and never changes. A
+/// clone copies the rows that do not fill a chunk, so with larger chunks a clone takes more time.
 const CHUNK: usize = 256;
 /// Largest number of rows (observables after one step). A longer curve drops rows, so that the remaining rows have a
 /// least spacing in simulated time. 32,768 rows take 6 MB.
@@ -36,7 +37,7 @@ impl Curve {
         self.chunks.len() * CHUNK + self.tail.len()
     }
 
-    /// True if the curve has no row.
+    /// True if the curve has no row (observables after one step).
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -70,7 +71,8 @@ impl Curve {
         self.thin_to(MOST_ROWS);
     }
 
-    /// Doubles the least spacing of the rows until at most `most_rows` rows remain.
+    /// Drops rows (observables after one step) until at most `most_rows` rows remain, but keeps at least two. To this
+    /// end it increases the least spacing of the rows in simulated time, each time at least to twice its value.
     pub(crate) fn thin_to(&mut self, most_rows: usize) {
         while self.len() > most_rows.max(2) {
             let rows: Vec<_> = self.rows().copied().collect();
@@ -91,7 +93,7 @@ impl Curve {
         }
     }
 
-    /// Removes the rows of all steps after step number `step`.
+    /// Removes the rows (observables after one step) of all steps after step number `step`.
     pub(crate) fn truncate(&mut self, step: u64) {
         if self.last().is_some_and(|row| row.step > step) {
             self.set(self.rows().filter(|row| row.step <= step).copied().collect());

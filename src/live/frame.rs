@@ -36,8 +36,8 @@ pub struct LiveFrame {
     pub playing: bool,
     /// True if the next step repeats a step that is already recorded.
     pub replaying: bool,
-    /// True if the next step branches off from the record, because the present settings differ from the recorded
-    /// settings.
+    /// True if later steps are recorded, but the next step does not repeat them, because the present settings differ
+    /// from the recorded settings. The next step then begins a new run.
     pub branching: bool,
     /// True if a stored snapshot is shown and nothing is computed.
     pub stored: bool,
@@ -63,7 +63,7 @@ pub struct WorldFrame {
     pub controls: Controls,
     /// Acceleration of gravity, m/s²; `None` if gravity is not uniform.
     pub gravity: Option<DVec2>,
-    /// Observables after each recorded step, for plots.
+    /// Observables (measured quantities) after each recorded step, for plots.
     pub curve: Curve,
     /// True if all recorded steps have the settings of the next step, and the user neither edited the simulation nor
     /// pulled a grain.

@@ -4,12 +4,13 @@ use std::time::Duration;
 
 /// Options of the solver's thread.
 pub struct LiveOptions {
-    /// Callback on the solver's thread after each new frame, for example to make the window redraw.
+    /// Callback on the solver's thread after each new frame (the data that the window draws), for example to make the
+    /// window redraw.
     pub wake: Box<dyn Fn() + Send>,
     /// Callback during the loading of an initial state. If it returns true, the loading is cancelled. A thread that
     /// receives no commands during the loading can only be interrupted by this callback.
     pub gives_up: Box<dyn Fn() -> bool + Send>,
-    /// Shortest wall-clock time between two frames of a running simulation.
+    /// Shortest wall-clock time between two frames (the data that the window draws) of a running simulation.
     pub frame_interval: Duration,
     /// Memory for keyframes (copies of the whole state) of all simulations together, bytes.
     pub recording_bytes: usize,

@@ -24,7 +24,7 @@ pub struct Controls {
 }
 
 impl Controls {
-    /// Returns the controls of a simulation's next step.
+    /// Returns the controls (settings and pull of a grain) of a simulation's next step.
     pub(super) fn of(simulation: &Simulation) -> Self {
         Self { settings: *simulation.settings(), pull: simulation.pull() }
     }
@@ -38,7 +38,7 @@ pub struct ControlsChange {
     pub after_step: u64,
     /// Simulated time at the end of that last step, s.
     pub time_secs: f64,
-    /// The new controls, which apply until the next change.
+    /// The new controls (settings and pull of a grain), which apply until the next change.
     pub controls: Controls,
 }
 
@@ -86,8 +86,9 @@ impl Keyframe {
 }
 
 impl WorldRecord {
-    /// Returns a record that begins at the state `start`. `tally` contains the sums over the steps before `start`, and
-    /// `budget_bytes` is the approximate memory for keyframes (copies of the state), bytes.
+    /// Returns a record that begins at the state `start`. `tally` contains the sums over the steps before `start`, such
+    /// as the number of unsolved steps. `budget_bytes` is the approximate memory for keyframes (copies of the state),
+    /// bytes.
     pub(super) fn new(start: &Simulation, tally: Tally, budget_bytes: usize) -> Self {
         Self {
             keyframes: vec![Keyframe { simulation: Arc::new(start.clone()), tally }],
@@ -199,13 +200,13 @@ impl WorldRecord {
         self.keyframes.len() < 3 || self.bytes() <= self.budget_bytes
     }
 
-    /// Approximate memory of the keyframes, bytes.
+    /// Approximate memory of the keyframes (copies of the state), bytes.
     pub(super) fn bytes(&self) -> usize {
         let newest = self.keyframes.last().map(|keyframe| &keyframe.simulation);
         newest.map_or(0, |newest| self.keyframes.len() * memory_bytes(newest))
     }
 
-    /// Limits the memory of the keyframes to about `budget_bytes` bytes.
+    /// Limits the memory of the keyframes (copies of the state) to about `budget_bytes` bytes.
     pub(super) fn keep_within(&mut self, budget_bytes: usize) {
         self.budget_bytes = budget_bytes;
         while !self.is_within_budget() {
@@ -213,8 +214,9 @@ impl WorldRecord {
         }
     }
 
-    /// True if a record that was read from a file is consistent: it has a keyframe; keyframes, changes and edits are in
-    /// the order of their step numbers; and no keyframe is later than the last step.
+    /// True if a record that was read from a file is consistent: it has a keyframe (a copy of the state); keyframes,
+    /// changes of settings and edits are in the order of their step numbers; and no keyframe is later than the last
+    /// step.
     pub(super) fn is_sound(&self) -> bool {
         let rise = |pair: &[Keyframe]| pair[0].step() < pair[1].step();
         let last = self.keyframes.last().map(Keyframe::step);
@@ -255,7 +257,7 @@ impl WorldRecord {
     }
 
     /// Returns the last keyframe (copy of the state) at or before a simulated time, s, and the sums over the steps up
-    /// to that keyframe.
+    /// to that keyframe, such as the number of unsolved steps.
     pub(super) fn keyframe_before(&self, time_secs: f64) -> (&Simulation, Tally) {
         let after = |keyframe: &Keyframe| keyframe.simulation.time_secs() <= time_secs;
         let index = self.keyframes.partition_point(after).saturating_sub(1);

@@ -50,7 +50,7 @@ enum Reply {
     TakenAll(u64, Box<LiveStart>),
 }
 
-/// A frame as its difference from the previous frame.
+/// A frame (the data that the window draws) as its difference from the previous frame.
 #[derive(Serialize, Deserialize)]
 struct FrameChange {
     /// The frame without those of its data that are sent only when they change: the initial state, the summaries of
@@ -169,10 +169,11 @@ impl RemoteRun {
 /// computed.
 pub type Post = Box<dyn FnMut(Vec<u8>) + Send>;
 
-/// Sends a frame to the window when the window has confirmed the previous frame, or after [`UNSEEN_INTERVAL`].
+/// Sends a frame (the data to draw) to the window when the window has confirmed the previous frame, or after
+/// [`UNSEEN_INTERVAL`].
 struct FramePoster {
     frames: Output<LiveFrame>,
-    /// The last frame that was sent to the window.
+    /// The last frame (the data to draw) that was sent to the window.
     posted: LiveFrame,
     posted_at: Instant,
     is_seen: bool,

@@ -98,7 +98,7 @@ pub fn bounds(snapshot: &Snapshot) -> Option<[DVec2; 2]> {
         .reduce(|all, next| [all[0].min(next[0]), all[1].max(next[1])])
 }
 
-/// Returns the two ends of an edge; an infinite edge has no ends.
+/// Returns the two ends of an edge (a line or line segment of the outline of a wall); an infinite edge has no ends.
 fn ends(edge: Edge) -> impl Iterator<Item = DVec2> {
     let ends = match edge {
         Edge::Endless { .. } => None,

@@ -11,7 +11,8 @@ use image::RgbaImage;
 
 use super::Colour;
 
-/// A list of shapes of one kind (discs or links) that are drawn together, from first to last.
+/// A list of shapes of one kind (discs, or links: straight lines with round ends) that are drawn together, from first
+/// to last.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Batch {
     Discs(Vec<DiscInstance>),
@@ -160,13 +161,14 @@ impl Shade for LinkInstance {
     }
 }
 
-/// A shape defined by a distance field in the plane of the picture, pixels, y up.
+/// A shape in the plane of the picture, pixels, y up, whose coverage of a pixel follows from the distance of the
+/// pixel's centre from the shape's edge.
 trait Shade {
     /// Returns two opposite corners of a box around the shape, pixels. Pixels whose centre is outside the box are not
     /// affected by the shape.
     fn bounds(&self) -> [Vec2; 2];
-    /// Returns the premultiplied colour of the shape, times the fraction of the pixel with the centre `point` that the
-    /// shape covers.
+    /// Returns red, green, blue and opacity of the shape at the pixel with the centre `point`. Red, green and blue are
+    /// multiplied by the opacity, and all four by the fraction of the pixel that the shape covers.
     fn shade(&self, point: Vec2) -> [f32; 4];
 }
 
