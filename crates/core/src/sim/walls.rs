@@ -8,9 +8,9 @@
 //! **Walls that turn.** A wall turns about the pivot p with the angular velocity ω, by the angle α = ωΔt in a step. Let
 //! R be this rotation. A point of the wall at the place c has the mean velocity V(c) = (R − 1)(c − p)/Δt, of which the
 //! part −½ω²Δt(c − p) points inward. A step takes the normal n and the tangent t from its beginning, but the normal
-//! turns with the wall. Let a disc of radius r, with the relative normal velocity v_n and tangential velocity v_t,
-//! slide along a flat wall with the speed u, and take for c the centre of the disc, as if the wall extended to it. The
-//! gap grows by Δt cos α (v_n − V_n) with
+//! turns with the wall. Let a disc of radius r slide along a flat wall with the speed u relative to the wall. The disc
+//! has the normal velocity v_n and, at its touching point, the tangential velocity v_t. Take for c the centre of the
+//! disc, as if the wall extended to it. In a step the gap grows by Δt cos α (v_n − V_n) with
 //!
 //! > V_n = n·V(c) − u tan α,  V_t = t·V(c) − rω.
 //!

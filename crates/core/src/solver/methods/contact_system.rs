@@ -288,9 +288,10 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
     }
 }
 
-/// Number of iterations between two computations of the residual that look for the best impulses so far and for a
-/// stalled solve, independently of the stopping test. A shorter interval costs more. A solve that fails returns the
-/// best impulses that were found in this way; with a longer interval it may miss better impulses.
+/// Number of iterations between two computations of the residual that are made independently of the stopping test. They
+/// find the impulses with the smallest residual so far, and whether the solve has stalled. A shorter interval costs
+/// more. A solve that fails returns the best impulses found in this way; with a longer interval it may miss better
+/// impulses.
 const LOOK_INTERVAL: u32 = 16;
 
 /// Returns trial impulses, which are impulses that may violate the contact law, projected on the law: the nearest
