@@ -63,7 +63,8 @@ pub(crate) trait FrictionProjection: Sized {
     fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2];
 }
 
-/// Evaluates an expression in which a type name stands for the projection (`FrictionProjection`) of a friction model.
+/// Evaluates an expression in which a type name stands for the projection of the problem's friction model: the rule
+/// that limits impulses to the impulses that the model allows (`FrictionProjection`).
 macro_rules! with_projection {
     ($problem:expr, $M:ident, $P:ident => $work:expr) => {
         match $problem.friction.model {

@@ -75,8 +75,8 @@ impl Measures {
 }
 
 /// Returns the residual of a problem under its own friction model, dimensionless; `None` if this model is Coulomb's
-/// law. `common_residual` is the residual under Coulomb's law. It is the result for a convex model if contacts have no
-/// friction, because all friction models are then the same.
+/// law. `common_residual` is the residual under Coulomb's law. If contacts have no friction, all friction models are
+/// the same, so `common_residual` is then also the result for a convex model.
 fn model_residual<M: Model>(problem: &StepProblem<M>, common_residual: f64) -> Option<f64> {
     match problem.friction.model {
         FrictionModel::Coulomb => None,

@@ -90,8 +90,8 @@ impl Rolling {
     }
 
     /// Returns the derivatives, dimensionless, of the rolling velocity (reduced radius times relative angular velocity
-    /// of the two bodies, m/s) by the velocity of body j if `on_j` is true, else of body i. The velocity has three
-    /// components, all in m/s: x, y and spin (radius times angular velocity).
+    /// of the two bodies, m/s) with respect to the velocity of body j if `on_j` is true, else of body i. The velocity
+    /// of a body has three components, all in m/s: x, y and spin (radius times angular velocity).
     #[inline(always)]
     pub(crate) fn gradient(&self, on_j: bool) -> [f64; 3] {
         [0.0, 0.0, if on_j { self.lever - 1.0 } else { self.lever }]
