@@ -20,10 +20,10 @@ const FEW: usize = 16;
 /// `nsgs`, residual 1e-13, at most 500 sweeps.
 const TIGHTLY: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-13, 500);
 
-/// Largest residual to which shocks (collisions) are solved, unless the tolerance of the step is larger. Shocks are
-/// solved such that the error of a contact's impulse is at most that of the step. If the impulses of the shocks are
-/// small compared with those of the step, the residual for this error would be too large; then this bound is used
-/// instead.
+/// Upper limit for the residual (relative error) to which shocks (collisions) are solved, unless the tolerance of the
+/// step is larger. The residual is chosen such that a contact's impulse has at most the same absolute error in the
+/// shocks as in the step. If the impulses of the shocks are much smaller than those of the step, this residual would
+/// allow errors as large as the impulses themselves; this limit prevents that.
 const LOOSEST: f64 = 1e-3;
 
 /// Solves the contact problem `part` of shocks (collisions) that share grains, to the tolerance of the step. `least` is
