@@ -68,8 +68,8 @@ pub fn open_file(state: &mut AppState, path: PathBuf, bytes: Vec<u8>) {
     state.open(Opening::With { path, bytes, opening: Box::new(opening) });
 }
 
-/// Computes the first of the simulations that a link describes, up to its last step. Returns the hash of its final
-/// state, for tests.
+/// Computes the first of the simulations that a link (text that reproduces runs) describes, up to its last step.
+/// Returns the hash of its final state, for tests.
 ///
 /// # Errors
 /// Names the invalid part of the link.

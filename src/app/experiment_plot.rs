@@ -97,8 +97,8 @@ fn stress(now: &Snapshot) -> [f64; 3] {
     sum
 }
 
-/// True if the scene of this frame is an experiment with a main quantity (such as the angle of the surface in a drum)
-/// that can be plotted.
+/// True if the scene in `frame` (the data to draw) is an experiment with a main quantity (such as the angle of the
+/// surface in a drum) that can be plotted.
 pub(super) fn has_quantity(frame: &LiveFrame) -> bool {
     frame.start.as_ref().is_some_and(|start| quantity_of(start).is_some())
 }
@@ -141,8 +141,9 @@ pub(crate) struct ExperimentSeries {
 }
 
 impl ExperimentSeries {
-    /// Adds the main quantity of an experiment (such as the angle of the surface in a drum) for each simulation in a
-    /// frame. If the recorded run now ends at an earlier step, removes the later values.
+    /// Adds the main quantity of an experiment (such as the angle of the surface in a drum) for each simulation in
+    /// `frame`, the newest data from the solver's thread. If the recorded run now ends at an earlier step, removes the
+    /// later values.
     pub(super) fn follow(&mut self, frame: &LiveFrame) {
         let quantity = frame.start.as_ref().and_then(|start| Some((start, quantity_of(start)?)));
         let Some((start, quantity)) = quantity else { return *self = Self::default() };

@@ -75,8 +75,8 @@ impl Exports {
         self.link = Some(Work::start(context, runs, |runs, _| link_of(&runs)));
     }
 
-    /// Returns a notice for the status bar if an export has ended since the last call. Copies a finished link to the
-    /// clipboard.
+    /// Returns a notice for the status bar if an export has ended since the last call. Copies a finished link (text
+    /// that reproduces runs) to the clipboard.
     pub(super) fn follow(&mut self, context: &egui::Context) -> Option<Notice> {
         let mut notice = None;
         if let Some(outcome) = self.files.front().and_then(Work::outcome) {

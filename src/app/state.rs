@@ -221,8 +221,8 @@ impl AppState {
         }
     }
 
-    /// Sends a request to open a scene, a lesson, a link or a file to the solver's thread. Ends the lessons, unless the
-    /// request opens a lesson.
+    /// Sends a request to open a scene, a lesson, a link (text that reproduces runs) or a file to the solver's thread.
+    /// Ends the lessons, unless the request opens a lesson.
     pub(crate) fn open(&mut self, opening: Opening) {
         if !matches!(opening, Opening::Lesson(_)) {
             self.leave_lessons();

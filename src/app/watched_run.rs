@@ -1,5 +1,5 @@
-//! The run that the window shows: the handle of the solver's thread, its newest frame, the settings that the controls
-//! show, and the selected simulation.
+//! The run that the window shows: the handle of the solver's thread, its newest frame (the data to draw), the settings
+//! that the controls show, and the selected simulation.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
@@ -31,7 +31,7 @@ pub struct WatchedRun {
     /// Newest frame (the data that the window draws) from the solver's thread.
     pub frame: LiveFrame,
     /// Settings that the controls show, one entry per simulation. While the solver's thread has not yet handled a
-    /// change, these settings are newer than the settings in the frame.
+    /// change, these settings are newer than those in the newest frame (the data to draw).
     pub(crate) wanted: Vec<Controls>,
     /// While the user drags a main slider (Bond, Δt, ρ or μ) that restarts the run: index of the simulation and its new
     /// settings, with which the run starts again. `None` at other times.

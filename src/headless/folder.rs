@@ -1,11 +1,11 @@
 //! The output folder of one run, and its checkpoint file, with which the same command can resume a run that was
 //! stopped.
 //!
-//! Several writers fill the folder: the table of observables, the pictures, and the file of snapshots that are drawn at
-//! the end of the run. At a checkpoint each writer first flushes its data to the disk and then reports the length of
-//! its output, its *mark*. When the run resumes, each output is cut off at its mark, and the rest is written again with
-//! the same contents. A new kind of output needs a mark in [`Marks`], which `RunWriter::marks` collects and
-//! `RunWriter::open` passes to the writers.
+//! Several writers fill the folder: the table of observables (measured quantities of each step), the pictures, and the
+//! file of snapshots that are drawn at the end of the run. At a checkpoint each writer first flushes its data to the
+//! disk and then reports the length of its output, its *mark*. When the run resumes, each output is cut off at its
+//! mark, and the rest is written again with the same contents. A new kind of output needs a mark in [`Marks`], which
+//! `RunWriter::marks` collects and `RunWriter::open` passes to the writers.
 
 use std::path::{Path, PathBuf};
 
@@ -221,7 +221,7 @@ fn is_plain(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|there| there.is_file())
 }
 
-/// Name of the table of observables in the output folder.
+/// Name of the file in the output folder with the table of observables (measured quantities of each step).
 pub(super) const TABLE: &str = "observables.csv";
 /// Name of the checkpoint file in the output folder.
 pub(super) const CHECKPOINT: &str = "checkpoint.slump";
@@ -249,7 +249,8 @@ pub(super) struct Marks {
     pub restarted_from: Option<Instant>,
     /// Step numbers and simulated times at which the same command resumed the run; empty in a run without interruption.
     pub went_on_at: Vec<Instant>,
-    /// Extent of the recording of grains and contacts: its numbers of frames and rows.
+    /// Extent of the recording of grains and contacts: its numbers of frames (recorded states) and of rows in its
+    /// tables.
     pub recording: RecordingMark,
     /// Sums of contact forces, per pair of bodies, over the steps since the last frame of the recording (the last state
     /// that was written to its files of grains and contacts).

@@ -135,7 +135,7 @@ const DEFAULT_FPS: f64 = 25.0;
 const MOST_PICTURES: f64 = 1e5;
 
 impl HeadlessOptions {
-    /// True if the command draws the frames of a scene. It does so if it has any option except `--headless`,
+    /// True if the command draws pictures of the scene. It does so if it has any option except `--headless`,
     /// `--frames`, `--overwrite` and `--renderer`. With these four alone it draws the figures of Abramian & Staron
     /// (2020).
     pub(super) fn asks_for_frames(&self) -> bool {

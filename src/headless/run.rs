@@ -285,7 +285,8 @@ pub(crate) fn settled(config: &Config) -> Result<Scene> {
 
 /// A recording (table of grains and contacts for other programs) that has not started yet.
 pub(super) struct RecordingPlan {
-    /// The locked folder of the recording; `None` if a resumed run continues its own recording.
+    /// The locked folder of the recording (files of grains and contacts); `None` if a resumed run continues its own
+    /// recording.
     claim: Option<RecordingFolder>,
     folder: PathBuf,
     settings: DataSettings,
@@ -307,8 +308,8 @@ impl RecordingPlan {
     }
 
     /// Checks that the files of the recording (of grains and contacts) that a resumed run continues still have all
-    /// their data up to step number `step`, the step of the checkpoint. `mark` has the numbers of frames and rows at
-    /// this step.
+    /// their data up to step number `step`, the step of the checkpoint. `mark` has the numbers of recorded states
+    /// (frames) and table rows at this step.
     ///
     /// # Errors
     /// Names the file that is missing or has lost data.
@@ -317,7 +318,7 @@ impl RecordingPlan {
     }
 
     /// Starts the recording (files of grains and contacts) at the present state of a run, or continues an existing
-    /// recording after the numbers of frames and rows in `mark`.
+    /// recording after the numbers of recorded states (frames) and table rows in `mark`.
     ///
     /// # Errors
     /// If the folder cannot be written to, or a file of the recording is missing.

@@ -1,5 +1,5 @@
-//! The outputs of a run: table, pictures, animations, recording and manifest, and the checkpoints with which an
-//! interrupted run and its outputs are resumed.
+//! The outputs of a run: table, pictures, animations, recording (files of grains and contacts) and manifest, and the
+//! checkpoints with which an interrupted run and its outputs are resumed.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -39,7 +39,7 @@ pub(super) struct RunWriter<'a> {
     gif: Option<Animation>,
     video: Option<Video>,
     /// Snapshots that are drawn at the end of the run, because their colours and line widths need one common scale;
-    /// `None` if the scales are given, so that frames are drawn during the run.
+    /// `None` if the scales are given, so that pictures are drawn during the run.
     waiting: Option<WaitingStates>,
     pub recording: Option<Recording>,
     manifest: Manifest,

@@ -1,4 +1,5 @@
-//! The clock of a live run, which relates simulated time to wall-clock time.
+//! The clock of a live run (a simulation that the user watches while it is computed). It relates simulated time to
+//! wall-clock time.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
 use std::time::Duration;

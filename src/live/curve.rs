@@ -1,5 +1,5 @@
-//! The observables of a run after each of its steps, as a list whose clones share memory. However long the run is, a
-//! copy for the window is cheap.
+//! The observables (measured quantities) of a run after each of its steps, as a list whose clones share memory. However
+//! long the run is, a copy for the window is cheap.
 
 use std::sync::Arc;
 
@@ -27,8 +27,8 @@ pub struct Curve {
     least_spacing_secs: f64,
 }
 
-/// Relative tolerance of the least spacing of rows: two rows may be closer by this fraction, because times have
-/// rounding errors.
+/// Relative tolerance of the least spacing of rows (observables after one step) in simulated time: two rows may be
+/// closer by this fraction, because times have rounding errors.
 const ROUNDING: f64 = 1e-6;
 
 impl Curve {
@@ -42,7 +42,7 @@ impl Curve {
         self.len() == 0
     }
 
-    /// Least spacing of rows in simulated time, s; 0 if every step has a row.
+    /// Least spacing of rows (observables after one step) in simulated time, s; 0 if every step has a row.
     pub fn least_spacing_secs(&self) -> f64 {
         self.least_spacing_secs
     }
@@ -107,10 +107,10 @@ impl Curve {
     }
 }
 
-/// The difference between two versions of a curve, to be sent to another process.
+/// The difference between two versions of a curve (observables after each step), to be sent to another process.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct CurveChange {
-    /// Number of rows at the beginning of the curve that both versions have in common.
+    /// Number of rows (observables after one step) at the beginning of the curve that both versions have in common.
     kept: usize,
     rows: Vec<Observables>,
     least_spacing_secs: f64,

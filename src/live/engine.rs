@@ -18,9 +18,9 @@ use crate::Instant;
 use crate::error::Error;
 use crate::sim::{Settings, Surroundings};
 
-/// Number of frame intervals (the shortest time between two frames) after which a frame that the window has not fetched
-/// is replaced by a newer frame. With a smaller number, time is spent on frames that the window never fetches; with a
-/// larger number, the window shows changes late.
+/// Number of frame intervals (the shortest time between two frames, the data that the window draws) after which a frame
+/// that the window has not fetched is replaced by a newer frame. With a smaller number, time is spent on frames that
+/// the window never fetches; with a larger number, the window shows changes late.
 const UNFETCHED_INTERVALS: u32 = 3;
 /// Shortest wall-clock time between two frames (the data that the window draws) while an initial state is being
 /// computed.
@@ -289,8 +289,8 @@ impl Engine {
         };
     }
 
-    /// Pauses the run. If a stored snapshot is shown, the whole state at its time is computed, so that the run can
-    /// continue from there.
+    /// Pauses the run. If a stored snapshot (a past state kept for display) is shown, the whole state at its time is
+    /// computed, so that the run can continue from there.
     fn pause(&mut self) {
         match self.mode {
             Mode::Showing { until_secs } => self.seek(until_secs, false),
@@ -300,8 +300,8 @@ impl Engine {
         }
     }
 
-    /// Shows the stored snapshot that is due. After the last stored snapshot, the simulations seek (jump to) the end of
-    /// the record, where a keyframe (a copy of the whole state) is kept.
+    /// Shows the stored snapshot (a past state kept for display) that is due. After the last stored snapshot, the
+    /// simulations seek (jump to) the last recorded step, at which a keyframe (a copy of the whole state) is kept.
     fn advance_show(&mut self) {
         if !self.outbox.wait().is_zero() {
             return;

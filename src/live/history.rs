@@ -18,7 +18,7 @@ const MOST_PAST: usize = 50;
 /// Number of newest earlier runs that keep many keyframes (copies of the state). Older runs keep at most two keyframes
 /// per simulation. They are dropped if all earlier runs have more memory of keyframes than the present run may have.
 const NEWEST: usize = 4;
-/// Divisor of the memory limit: each of the newest earlier runs gets 1/8 of the present run's memory for keyframes.
+/// Divisor: each newest earlier run gets 1/8 of the present run's memory for keyframes (copies of the state).
 const PART_OF_PAST: usize = 8;
 /// Largest memory for keyframes (copies of the state) of the present run in a history that is sent or saved, bytes.
 const KEYFRAME_BYTES: usize = 8 << 20;
@@ -373,7 +373,7 @@ impl RunHistory {
         Some(run)
     }
 
-    /// Limits the memory of all runs except the present run. Only the newest earlier run keeps its stored snapshots.
+    /// Limits the memory of all runs but the present one. Only the newest earlier run keeps its stored snapshots.
     fn limit(&mut self) {
         let older = self.past.len().saturating_sub(1);
         let older = self.past[..older].iter_mut().chain(&mut self.undone);

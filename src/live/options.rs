@@ -1,4 +1,4 @@
-//! Options of the solver's thread of a live run.
+//! Options of the solver's thread of a live run (a simulation that the user watches while it is computed).
 
 use std::time::Duration;
 
@@ -17,7 +17,8 @@ pub struct LiveOptions {
 }
 
 impl Default for LiveOptions {
-    /// Returns options with callbacks that do nothing, 60 frames per second, and 96 MiB of keyframes.
+    /// Returns options with callbacks that do nothing, 60 frames per second, and 96 MiB of keyframes (copies of
+    /// states).
     fn default() -> Self {
         Self {
             wake: Box::new(|| {}),

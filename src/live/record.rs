@@ -152,8 +152,8 @@ impl WorldRecord {
         self.edits.truncate(edits);
     }
 
-    /// Records a user's edit (for example, a moved grain) that led to the state of `simulation`. Later steps are
-    /// removed from the record.
+    /// Records a user's edit (for example, a moved grain) that led to the state of `simulation`. Later steps are no
+    /// longer valid, so they are removed from the record.
     pub(super) fn edited(&mut self, simulation: &Simulation, edit: Edit) {
         let after_step = simulation.observables().step;
         self.cut(after_step, self.edits_of(simulation).saturating_sub(1));
@@ -266,7 +266,7 @@ impl WorldRecord {
     }
 
     /// True if `simulation` need not take another recorded step to reach the simulated time `goal_secs`, s: its time is
-    /// at most half a time step before `goal_secs`, or it is at the end of the record.
+    /// at most half a time step before `goal_secs`, or there is no later recorded step.
     pub(super) fn has_come_to(&self, simulation: &Simulation, goal_secs: f64) -> bool {
         let step = simulation.observables().step;
         let controls = self.controls_after(step).copied();
@@ -322,9 +322,9 @@ impl WorldRecord {
     }
 
     /// Computes the states between two simulated times, s, again with the same bits. The callback `each` receives all
-    /// states in order of time, starting at the keyframe before the first time. Its second argument is true if the
-    /// state lies between the two times. Each state has the settings of the step that led to it. The callback can end
-    /// the replay.
+    /// states in order of time, starting at the last keyframe (stored copy of the state) before the first time. Its
+    /// second argument is true if the state lies between the two times. Each state has the settings of the step that
+    /// led to it. The callback can end the replay.
     ///
     /// # Errors
     /// Returns an error of the callback or of a step. If a state is no longer finite, the replay ends without an error.

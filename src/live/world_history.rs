@@ -182,7 +182,8 @@ impl WorldHistory {
         false
     }
 
-    /// Applies a user's edit (for example, a moved grain). Later steps are removed from the record.
+    /// Applies a user's edit (for example, a moved grain). Later recorded steps are no longer valid, so they are
+    /// removed.
     pub(super) fn edit(&mut self, edit: Edit) -> Result<()> {
         if let Some(failure) = &self.failure {
             return Err(Error::value("state", failure, "one from which the run can continue"));
@@ -194,7 +195,8 @@ impl WorldHistory {
         Ok(())
     }
 
-    /// Copy of the history without stored snapshots, to be sent to the window or to a file.
+    /// Copy of the history without stored snapshots (past states kept for display), to be sent to the window or to a
+    /// file.
     pub(super) fn handed_out(&self) -> Self {
         let mut world = Self { stored: StoredMoments::default(), ..self.clone() };
         // The user's pull of a grain ends here.

@@ -81,8 +81,8 @@ impl Ensemble {
         self.folder.clone()
     }
 
-    /// Ends all threads that compute runs from other initial states. Keeps the results of started runs
-    /// (`released`) as they were in the last frame.
+    /// Ends all threads that compute runs from other initial states. Keeps the results of started runs (`released`) as
+    /// they were when the window drew its last frame.
     pub fn stop(&mut self) {
         self.pool = None;
         self.worlds.clear();
@@ -100,7 +100,7 @@ impl Ensemble {
     }
 
     /// Starts or continues the threads that compute runs from other initial states, with the settings of the
-    /// simulations in `frame` (the newest frame). If `is_wanted` is false, stops all threads.
+    /// simulations in `frame`, the newest data from the solver's thread. If `is_wanted` is false, stops all threads.
     pub(super) fn follow(&mut self, context: &egui::Context, frame: &LiveFrame, is_wanted: bool) {
         let address = |opened: &Option<Arc<LiveStart>>| opened.as_ref().map(Arc::as_ptr);
         if address(&self.opened) != address(&frame.start) {
@@ -153,9 +153,9 @@ impl Ensemble {
         }
     }
 
-    /// Stores the settings of the simulations in `frame` that the user has started (that have taken a step). Returns
-    /// true if some of these settings are new. `all` contains the settings of each simulation, or `None` if it has no
-    /// ensemble (runs from other initial states).
+    /// Stores the settings of the simulations in `frame` (data from the solver's thread) that the user has started
+    /// (that have taken a step). Returns true if some of these settings are new. `all` contains the settings of each
+    /// simulation, or `None` if it has no ensemble (runs from other initial states).
     fn note_released(&mut self, frame: &LiveFrame, all: &[Option<Settings>]) -> bool {
         let before = self.released.len();
         for (world, settings) in frame.worlds.iter().zip(all) {
@@ -170,8 +170,9 @@ impl Ensemble {
         self.released.len() > before
     }
 
-    /// Discards the settings and results of all started runs, and so clears the plot of slump against Δt. When the next
-    /// frame arrives, the settings of the visible runs are stored again, so only earlier runs are lost.
+    /// Discards the settings and results of all started runs, and so clears the plot of slump against Δt. When the
+    /// window draws its next frame, the settings of the visible runs are stored again, so only the results of earlier
+    /// runs are lost.
     pub(super) fn forget_released(&mut self) {
         self.released.clear();
     }
