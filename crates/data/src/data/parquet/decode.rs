@@ -154,8 +154,8 @@ fn check_whole(file: &File) -> std::result::Result<(), String> {
     check_footer(&footer, bytes)
 }
 
-/// Returns the message of an error of the crate `parquet`. The name of the kind of error is omitted if the kind is
-/// general, not implemented or end of file, because the message then says enough.
+/// Returns the message of an error of the crate `parquet`. Messages of the kinds `General`, `NYI` (not implemented) and
+/// `EOF` (end of file) are returned without the name of the kind, because they say enough.
 fn said(error: &ParquetError) -> String {
     match error {
         ParquetError::General(said) | ParquetError::NYI(said) | ParquetError::EOF(said) => {
