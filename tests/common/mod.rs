@@ -359,7 +359,7 @@ pub fn farthest(one: &[DVec2], other: &[DVec2]) -> f64 {
     one.iter().zip(other).map(|(one, other)| one.distance(*other)).fold(0.0, f64::max)
 }
 
-/// Steppers that do not solve one contact problem for the whole step, but move the grains by impulses only.
+/// Steppers that move grains by impulses only, but do not solve one contact problem for the whole step.
 pub const SCHEMES: [Stepper; 2] = [Stepper::TgsSoft, Stepper::Dem];
 
 /// The steppers [`SCHEMES`] and `avbd`, which moves grains slightly further than the impulses would.

@@ -36,8 +36,8 @@ struct Target {
 }
 
 impl Target {
-    /// Tries the inputs in `kept` and then random inputs, which `draw` makes of random bytes, and prints the number of
-    /// inputs. `check` gets each input as a text and as the path of a file with this text, and returns true if the
+    /// Tries the inputs in `kept` and then random inputs, which `draw` makes from random bytes, and prints the number
+    /// of inputs. `check` gets each input as a text and as the path of a file with this text, and returns true if the
     /// program accepted the input.
     fn fuzz(
         self,

@@ -145,8 +145,8 @@ fn a_pair_turns_for_good_up_to_the_spin_that_its_bond_bears() {
 }
 
 /// Checks how many steps a bond survives turning at touch tolerance 0, however strong it is. Each step opens the gap by
-/// ½ω²Δt²d (angular velocity ω, time step Δt, diameter d), so the bond ends when this has used up the initial overlap.
-/// With a touch tolerance that is larger than the opening of one step, the bond survives.
+/// ½ω²Δt²d (angular velocity ω, time step Δt, diameter d), so the bond ends when the openings of all steps together
+/// exceed the initial overlap. With a touch tolerance that is larger than the opening of one step, the bond survives.
 #[test]
 fn without_a_tolerance_turning_uses_up_the_overlap_of_a_bond() {
     let break_up = (BOND * G / DIAMETER).sqrt();
