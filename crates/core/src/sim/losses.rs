@@ -16,7 +16,7 @@ use crate::contact::Feature;
 use crate::world::{Disc, Physics, World};
 
 /// Distance of the world's edges from the smallest rectangle around all grains and fixed bodies at the start, divided
-/// by the longest side of this rectangle. A grain beyond the edges has left the world.
+/// by the sum of the longest side of this rectangle and one mean diameter. A grain beyond the edges has left the world.
 const ROOM_IN_SIDES: f64 = 3.0;
 /// Depth at which a grain counts as lost, in diameters of the grain: the depth of its centre inside a half-space or
 /// polygon, or below the lowest body of the initial state. A half-space may push the grain out again, but the grain

@@ -11,8 +11,9 @@ const FARTHEST_IN_DIAMETERS: f64 = 8.0;
 /// Returns the distances (m) by which a step selects the pairs that may meet within it. Pairs with a gap above `reach`
 /// are not examined: `reach` is the distance by which two bodies that both move at the highest speed of any body
 /// approach each other in the step, including the effect of gravity and body forces, and at most
-/// [`FARTHEST_IN_DIAMETERS`]. A pair is selected if its gap would shrink below `distance`, the part of this approach
-/// that is due to these forces.
+/// [`FARTHEST_IN_DIAMETERS`]. A pair is selected if its gap, after a step at the present velocities, would be below
+/// `distance`: the part of this approach that is due to gravity and body forces, which the present velocities do not
+/// include.
 ///
 /// Contacts are found at the beginning of a step, so a pair that meets later in the step is missed. A fast disc may
 /// then end up inside a wall or behind it. So this remedy (the optional correction `speculative`) adds the pairs whose
