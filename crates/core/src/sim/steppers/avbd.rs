@@ -120,7 +120,7 @@ const KEPT: f64 = 0.99;
 /// Cohesive contacts need some overlap to pull.
 const MARGIN: f64 = 5e-4;
 
-/// One side of a contact: its effect on one of its two bodies.
+/// One side of a contact: the effect of the contact on one of its two bodies.
 #[derive(Clone, Copy)]
 struct Side {
     row: u32,

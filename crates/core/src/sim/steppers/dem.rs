@@ -170,8 +170,8 @@ impl Elements {
 /// beginning of the substep. `pushes` contains for each contact the effective mass (kg), the impulses divided by this
 /// mass (m/s), and the velocity of the contact's wall (m/s).
 ///
-/// The motion of a wall of mass M with n contacts of stiffness k is stable if the substep h is below 2 √(M/nk). This is
-/// guaranteed if M is at least the mass of n of the lightest grains, because substeps are short enough for these
+/// The motion of a wall of mass M with n contacts of stiffness k is stable if the substep h is below 2 √(M/(nk)). This
+/// is guaranteed if M is at least the mass of n of the lightest grains, because substeps are short enough for these
 /// grains.
 fn drive_walls<M: Model>(
     stage: &mut Stage<'_, M>,

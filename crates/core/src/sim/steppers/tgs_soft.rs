@@ -8,8 +8,9 @@
 //!
 //! 1. Gravity accelerates the grains.
 //! 2. The impulses of the previous substep are applied (warm start).
-//! 3. One sweep visits all contacts as **soft** contacts, v_n + b = −c σ with the softness c and the speed b of pushing
-//!    overlap out: each is an overdamped spring that acts on the gap.
+//! 3. One sweep visits all contacts as **soft** contacts, v_n = b − σ c/(1 − c), with the normal velocity v_n, the
+//!    speed b at which overlap is pushed out, and the softness c (0 if rigid, near 1 if soft): each is an overdamped
+//!    spring that acts on the gap.
 //! 4. The grains move for the time h, and each gap changes by h v_n.
 //! 5. One sweep visits all contacts as **rigid** contacts, v_n = 0. It removes the speed with which overlaps were
 //!    pushed out, so that pushing out changes only positions and adds no energy.
@@ -170,8 +171,9 @@ const PUSH_OUT_SPEED: f64 = 1.0;
 /// break.
 struct Softness {
     substep_secs: f64,
-    /// Rate at which a contact spring closes an overlap, 1/s: closing speed divided by overlap. It is ω/(2ζ + hω), with
-    /// the spring's angular frequency ω, its damping ratio ζ and the length h of a substep (part of a step).
+    /// Rate at which a contact spring removes an overlap, 1/s: the speed with which the overlap decreases, divided by
+    /// the overlap. It is ω/(2ζ + hω), with the spring's angular frequency ω, its damping ratio ζ and the length h of a
+    /// substep (part of a step).
     rate: f64,
     /// Softness c of a contact, dimensionless: 0 for a rigid contact, near 1 for a soft contact ([`Softness`]).
     compliance: f64,

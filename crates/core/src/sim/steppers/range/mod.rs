@@ -198,9 +198,10 @@ pub(super) fn separate<M: Model>(state: &mut State) {
     }
 }
 
-/// Largest opening speed that the rotation of a bonded pair may cause in a step, divided by the escape speed of the
-/// bond (the smallest opening speed after a collision at which the bond breaks). With a larger value, grains that
-/// circle each other separate too early; with a smaller value, steps are divided without need.
+/// Opening speed that the rotation of a bonded pair causes in a step, divided by the escape speed of the bond (the
+/// smallest opening speed after a collision at which the bond breaks), above which the step is divided into substeps.
+/// With a larger value, grains that circle each other separate too early; with a smaller value, steps are divided
+/// without need.
 const MOST_OF_ESCAPE_SPEED: f64 = 0.5;
 
 /// True if the two grains of a bond circle each other so fast that a step of this length would treat the rotation of

@@ -147,10 +147,10 @@ impl Shocks {
         pair.touch == Touch::Met && pair.impulse > 0.0 && self.since(i, j) <= pair.struck_at
     }
 
-    /// Records the results of a solved step. If a pair met at the time t, the impulse λ of the step on it moves its
-    /// grains only for the rest of the step: by (Δt − t)·λ, and not by Δt·λ, with the time step Δt (λ is divided by the
-    /// effective mass, m/s). Also adds the impulses of shocks (collisions) and step to the contacts' impulse sums of
-    /// the step.
+    /// Records the results of a solved step. If a pair met at the time t and its grains were not struck afterwards, the
+    /// impulse λ (divided by the effective mass, m/s) that the solution of the step gives the pair moves its bodies
+    /// apart only for the rest of the step Δt: by (Δt − t)·λ, and not by Δt·λ. Also adds the impulses of shocks
+    /// (collisions) and step to the contacts' impulse sums of the step.
     pub(in super::super) fn finish<M: Model>(
         &mut self,
         problem: &StepProblem<M>,
@@ -185,8 +185,9 @@ impl Shocks {
         }
     }
 
-    /// Corrects the positions of the grains, which have moved by Δt times their velocities at the end of the step. Adds
-    /// the difference to the true displacement, which is due to shocks (collisions) within the step and to free fall.
+    /// Corrects the positions of the grains, which have moved by Δt times their velocities at the end of the step. The
+    /// true displacements are different, because of shocks (collisions) within the step and of free fall; adds the
+    /// differences.
     pub(in super::super) fn shift(&self, world: &mut World) {
         let grains = &mut world.grains;
         for (index, body) in self.bodies.iter().enumerate() {

@@ -210,8 +210,8 @@ struct ShockBody {
     /// Δv, where Δv (m/s) is the change of velocity by a shock at the time t (s). The entries are for x, y and rotation
     /// (arc length: angle times radius).
     offset: [f64; 3],
-    /// Change of the grain's `offset` along x and y by the last pass (group of shocks, which are collisions) that
-    /// struck the grain, m.
+    /// Change of the grain's `offset` along x and y by the last pass (group of collisions that are computed together)
+    /// that struck the grain, m.
     shift: DVec2,
     /// Time of the grain's last shock (collision), counted from the beginning of the step, s; 0 before its first shock.
     since: f64,

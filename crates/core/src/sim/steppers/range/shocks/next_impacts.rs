@@ -96,8 +96,9 @@ impl Shocks {
         end.flatten().is_none_or(|(_, gap)| gap <= touch)
     }
 
-    /// Returns the normal and the gap (m) of the pair of contact `number` at the time `secs` (s). `None` if the nearest
-    /// point of the boundary is a corner at which another part of the boundary reports the contact.
+    /// Returns the normal and the gap (m) of the pair of contact `number` at the time `secs` (s). `None` if the second
+    /// body is a part of a boundary, the point of it that is nearest to the grain is a corner which it shares with
+    /// another part, and a contact at this corner counts for the other part.
     pub(super) fn approach<M: Model>(
         &self,
         at: &ShockInputs<'_, M>,
