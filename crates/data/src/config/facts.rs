@@ -10,8 +10,8 @@ use crate::scene::Scene;
 use crate::sim::Settings;
 
 /// Names of the fields of a scene that are not written as metadata of a recording. The grains (`grains`) and fixed
-/// discs (`fixed_discs`) are in the tables of the recording. `source` says from which file the grains are read or how a
-/// new pile is made, and the grains already exist. `data` has the options of the recording.
+/// discs (`fixed_discs`) are in the tables of the recording. `source` says from which file the grains were read, or how
+/// their pile was made. `data` has the options of the recording.
 const LEFT_OUT: [&str; 4] = ["grains", "fixed_discs", "source", "data"];
 
 /// Name of the metadata entry that lists the changes of settings during the run.

@@ -44,8 +44,8 @@ pub struct SavedState {
     pub simulation: Simulation,
     /// Statistics over the steps of the run so far, such as the numbers of steps and sweeps.
     pub tally: Tally,
-    /// Serialised data about the files in the output folder of a run. The run needs them to resume in this folder.
-    /// Empty if the run has no output folder.
+    /// Serialised data about the files in the output folder of a run. A checkpoint contains them, because the run needs
+    /// them to resume in this folder. Empty in all other saved runs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub of_run: Vec<u8>,
 }
