@@ -311,9 +311,9 @@ pub fn in_each_way(
     ways.into_iter().map(of)
 }
 
-/// Takes one step. Returns the observables of the step, the change of kinetic energy that the work of gravity, contacts
-/// and borders does not explain (J), and the sum of the magnitudes of the work of gravity and contacts and of the
-/// kinetic energies before and after the step (J).
+/// Takes one step. Returns the measured quantities of the step, the change of kinetic energy that the work of gravity,
+/// contacts and borders does not explain (J), and the sum of the magnitudes of the work of gravity and contacts and of
+/// the kinetic energies before and after the step (J).
 pub fn balance(run: &mut Simulation) -> (Observables, f64, f64) {
     let before = run.observables().kinetic_energy;
     let after = *run.step().expect("a finite state");

@@ -109,10 +109,11 @@ fn a_bond_takes_its_force_times_the_tolerance_to_break() {
     }
 }
 
-/// Checks up to which angular velocity ω a circling pair of diameter d stays together. In a time step Δt it opens by
-/// ½ω²Δt²d. If the bond is only a little stronger than the circular motion requires, the pull needs some steps to
-/// reverse this opening. Meanwhile the gap grows by at most ω⁴Δt²d/(8(ω_b² − ω²)), where ω_b is the largest angular
-/// velocity at which the bond can hold the pair. The touch tolerance must be larger than this gap.
+/// Checks up to which angular velocity ω two bonded discs of diameter d that circle about their common centre stay
+/// together. In a time step Δt their gap opens by ½ω²Δt²d. If the bond is only a little stronger than the circular
+/// motion requires, the pull needs some steps to reverse this opening. Meanwhile the gap grows by at most
+/// ω⁴Δt²d/(8(ω_b² − ω²)), where ω_b is the largest angular velocity at which the bond can hold the pair. The touch
+/// tolerance must be larger than this gap.
 #[test]
 fn a_pair_turns_for_good_up_to_the_spin_that_its_bond_bears() {
     let break_up = (BOND * G / DIAMETER).sqrt();

@@ -233,9 +233,9 @@ fn overlap_grows_by_no_more_than_one_steps_travel() {
     assert!(old.get() > 1000 && new.get() > 100, "{} old, {} new contacts", old.get(), new.get());
 }
 
-/// Returns a scene for each friction cone with every kind of motion in the plane (with and without friction and
-/// rotation), and a scene on a line, each with the smallest number of contacts that its first contact problem must
-/// have.
+/// Returns scenes in the plane with both friction cones (without friction and rotation, with friction only, and with
+/// friction and rotation), and a scene in one dimension. Each has the smallest number of contacts that its first
+/// contact problem must have.
 fn scenes() -> Vec<(Scene, usize)> {
     let mut scenes = Vec::new();
     for (physics, cone) in pairs(
