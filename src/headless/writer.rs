@@ -101,7 +101,8 @@ impl<'a> RunWriter<'a> {
         Ok(writer)
     }
 
-    /// Adds the pictures that a resumed run had already drawn to the GIF and the video.
+    /// Adds the pictures that a resumed run drew before it was interrupted to the GIF and the video, which are written
+    /// again from their beginning.
     fn animate_earlier_pictures(&mut self) -> Result<()> {
         if self.gif.is_none() && self.video.is_none() {
             return Ok(());

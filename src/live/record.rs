@@ -36,7 +36,7 @@ impl Controls {
 pub struct ControlsChange {
     /// Number of the last step before the user changed the settings or the pull of the mouse.
     pub after_step: u64,
-    /// Simulated time at the end of that last step, s.
+    /// Simulated time of the change (the end of the last step before it), s.
     pub time_secs: f64,
     /// The new controls (settings and pull of a grain), which apply until the next change.
     pub controls: Controls,

@@ -81,7 +81,7 @@ pub(super) fn half_size(size: [u32; 2]) -> DVec2 {
 }
 
 /// Returns the smallest box (m) around all finite items of a snapshot: grains, discs that are not grains, walls, and
-/// the centre of attraction. `None` if there are no such items.
+/// the centre of an attracting gravity field. `None` if there are no such items.
 pub fn bounds(snapshot: &Snapshot) -> Option<[DVec2; 2]> {
     let surroundings = &snapshot.surroundings;
     let grains = snapshot.grains.iter().map(|grain| (grain.position, grain.radius));

@@ -3,8 +3,9 @@
 //!
 //! [`super::Camera::project`] converts positions in the scene to pixels in f64, relative to the middle of the picture,
 //! so f32 is sufficient here at any distance from the origin. `shaders/disc.wgsl` and `shaders/link.wgsl` draw the
-//! shapes on a GPU, and [`draw`] evaluates the same distance fields on the processor. [`draw`] rounds to 8 bits after
-//! each shape, as a GPU does, so its colour channels differ from every GPU's by at most 3/255.
+//! shapes on a GPU, and [`draw`] draws them on the processor by the same formulas for the distance of a pixel from the
+//! edge of a shape. [`draw`] rounds to 8 bits after each shape, as a GPU does, so its colour channels differ from every
+//! GPU's by at most 3/255.
 
 use glam::{DVec2, Vec2};
 use image::RgbaImage;

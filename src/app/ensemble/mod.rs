@@ -3,9 +3,9 @@
 //! interval.
 //!
 //! Piles are chaotic, so the window shows a mean over several runs. The seed of the built-in pile is never in the
-//! ensemble, because it was chosen: with this seed a single run shows the dependence of slump on Bond number and time
-//! step of Abramian & Staron (2020). Idle cores run the other piles from their initial state to the end of the scene,
-//! with constant settings. A run has no ensemble if its settings changed during the run or if the user pulled a grain,
+//! ensemble, because it was chosen: with this seed, single runs show how slump depends on Bond number and time step in
+//! Abramian & Staron (2020). Idle cores run the other piles from their initial state to the end of the scene, with
+//! constant settings. A run has no ensemble if its settings changed during the run or if the user pulled a grain,
 //! because such a run cannot be compared with runs under constant settings.
 
 mod pool;
@@ -40,8 +40,8 @@ const RULE: &str = "Idle cores run other piles with the present settings from th
 pub struct Ensemble {
     /// Folder in which the computed initial states are stored; `None` if the user has no folder for such files.
     folder: Option<PathBuf>,
-    /// The open scene as the window loaded it. `piles` describes the other initial states: the same pile made from
-    /// other seeds.
+    /// The open scene as the window loaded it. The field `piles` describes the other initial states: the same pile made
+    /// from other seeds.
     opened: Option<Arc<LiveStart>>,
     piles: Vec<NewPile>,
     pool: Option<WorkerPool>,

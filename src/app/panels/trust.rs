@@ -142,7 +142,8 @@ impl TrustPanel {
         (trust == Trust::No).then_some(reason)
     }
 
-    /// Shows the panel: the reason of the verdict, the bars of the error budget, and the other reasons below.
+    /// Shows the panel: the reason of the verdict, the bars of the error budget, and below them the solved steps,
+    /// warnings and the mean slump of runs from other initial states.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &PanelContext<'_>) {
         let (trust, reason) = self.verdict(context.run);
         ui.horizontal(|ui| {
