@@ -157,7 +157,7 @@ impl LiveRun {
         each(&mut self.worlds, WorldHistory::advance_seek)
     }
 
-    /// Copy for the window or a file: at most `bytes` bytes of keyframes (stored states), and `rows` plotted steps.
+    /// Copy of the run for the window or a file, with at most `bytes` bytes of stored states and `rows` plotted steps.
     fn thinned(&self, bytes: usize, rows: usize) -> Self {
         let mut run = Self { worlds: Vec::new(), ..self.clone() };
         run.worlds = self.worlds.iter().map(WorldHistory::handed_out).collect();
@@ -417,7 +417,8 @@ impl RunHistory {
         self.told = past.chain(undone).collect();
     }
 
-    /// Copy for the window or a file: with fewer stored states and plotted steps, without earlier runs that failed.
+    /// Copy of the history for the window or a file: fewer stored states and plotted steps, no earlier runs that
+    /// failed.
     pub(super) fn thinned(&self) -> Self {
         let thinned = |runs: &[LiveRun]| {
             let kept = runs.iter().filter(|run| !run.has_failed());

@@ -18,8 +18,8 @@ const FORCE_WIDTH: f64 = 0.4;
 /// Smallest contact force that is drawn, as a fraction of the force whose line has the full width
 /// ([`force_reference`]). Lines of smaller forces would be too thin to be visible.
 const LEAST_FORCE: f64 = 0.004;
-/// Fraction of the acting contacts (whose force is not 0) whose force is at most the reference force, if the style does
-/// not state the reference force. The reference force is the force whose line has the full width.
+/// Quantile that gives the reference force (the force whose line has the full width) if the style states none: this
+/// fraction of the contacts whose force is not 0 have a smaller force, so their lines are narrower.
 const REFERENCE_QUANTILE: f64 = 0.95;
 
 /// Returns the reference force, newtons: the magnitude of the normal contact force whose line has the full width. It is
