@@ -417,8 +417,7 @@ impl RunHistory {
         self.told = past.chain(undone).collect();
     }
 
-    /// Copy of the history for the window or a file: fewer stored states and plotted steps, no earlier runs that
-    /// failed.
+    /// Copy of the history for the window or a file: fewer stored states and plotted steps, no failed earlier runs.
     pub(super) fn thinned(&self) -> Self {
         let thinned = |runs: &[LiveRun]| {
             let kept = runs.iter().filter(|run| !run.has_failed());
