@@ -8,7 +8,8 @@ use crate::render::numbers::{decimal, ticks};
 /// Smallest length of a linear axis, as a fraction of the largest absolute value on it. A shorter axis would show
 /// rounding errors.
 const LEAST_SPAN: f64 = 1e-3;
-/// Smallest length of a logarithmic axis, in decades. An axis of two decades always contains two powers of ten.
+/// Smallest length of a logarithmic axis, in decades. An axis of two decades always contains at least two powers of
+/// ten, at which it has labels.
 const LEAST_DECADES: f64 = 2.0;
 /// Returns an empty plot in the common style of all plots in the window. The mouse wheel does not zoom the plot.
 pub(super) fn bare_plot<'a>(

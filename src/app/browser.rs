@@ -23,7 +23,8 @@ pub fn engine(post: Post, gives_up: fn() -> bool) -> RemoteEngine<Opening> {
     RemoteEngine::new(post, LiveOptions { gives_up: Box::new(gives_up), ..LiveOptions::default() })
 }
 
-/// Stores the texture format of the render target, which the paint callbacks need.
+/// Stores `format`, the texture format of the picture into which egui draws, in `resources`. Slump's paint callbacks,
+/// which egui calls to draw shapes with Slump's own GPU commands, read it there.
 pub fn prepare(resources: &mut CallbackResources, format: wgpu::TextureFormat) {
     resources.insert(TargetFormat(format));
 }
@@ -67,8 +68,8 @@ pub fn open_file(state: &mut AppState, path: PathBuf, bytes: Vec<u8>) {
     state.open(Opening::With { path, bytes, opening: Box::new(opening) });
 }
 
-/// Computes the first of the simulations that a link describes, up to its last step. Returns the hash of its final
-/// state, for tests.
+/// Computes the first of the simulations that a link (text that reproduces runs) describes, up to its last step.
+/// Returns the hash of its final state, for tests.
 ///
 /// # Errors
 /// Names the invalid part of the link.

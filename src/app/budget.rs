@@ -67,9 +67,10 @@ pub(super) const SOLVED: Budget = Budget {
 /// All presets, in the order of their buttons.
 pub(super) const BUDGETS: [Budget; 3] = [FAST, SOLVED, PAPER];
 
-/// Largest Bond number at which a longer time step makes a pile more stable if the bound on friction is the shifted
-/// cone, to which cohesion adds (`docs/paper.md`, Fig. 5a). At larger Bond numbers a longer time step has this effect
-/// in the compressive cone, but not always in the shifted cone.
+/// Largest Bond number at which the window says that a longer time step makes a pile more stable, whichever bound on
+/// friction is chosen (`docs/paper.md`, Fig. 5a). At larger Bond numbers it says so only for the compressive cone
+/// (bound without cohesion). In the shifted cone, whose bound also contains cohesion, such piles hardly gain from a
+/// longer step.
 const WEAK: f64 = 50.0;
 
 /// Longest fall of a grain from rest in one step that causes no warning, in mean diameters. With a smaller value, the

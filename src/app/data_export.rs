@@ -30,7 +30,7 @@ pub struct DataChoices {
     pub folder: PathBuf,
     /// Simulated time between two exported states (frames) of the run, s.
     pub every_secs: f64,
-    /// True if the state after each step is exported as a frame; `every_secs` then has no effect.
+    /// True if the state after each step is exported; the interval `every_secs` then has no effect.
     pub each_step: bool,
     /// Formats of the exported files of grains and contacts.
     pub formats: Vec<FormatName>,

@@ -97,7 +97,8 @@ fn stress(now: &Snapshot) -> [f64; 3] {
     sum
 }
 
-/// True if the scene of this frame is an experiment whose main quantity can be plotted.
+/// True if the scene in `frame` (the data to draw) is an experiment with a main quantity (such as the angle of the
+/// surface in a drum) that can be plotted.
 pub(super) fn has_quantity(frame: &LiveFrame) -> bool {
     frame.start.as_ref().is_some_and(|start| quantity_of(start).is_some())
 }
@@ -125,10 +126,12 @@ pub(super) fn events(scene: &Scene) -> Vec<f64> {
 /// Least simulated time between the two values from which the plot computes a change per second, s. A shorter time
 /// would show the fluctuations between single frames.
 const RATE_SECS: f64 = 0.1;
-/// Largest number of points of a drawn curve. If the window has shown more frames, the curve omits some of them.
+/// Largest number of points of a drawn curve. If the window has shown more frames, the curve omits some of them. With a
+/// larger number, drawing takes longer.
 const MOST_POINTS: usize = 2_000;
 
-/// Values of an experiment's main quantity in the frames that the window has shown, by simulation and number of step.
+/// Values of an experiment's main quantity (such as the angle of the surface in a drum) in the frames that the window
+/// has shown, by simulation and number of step.
 #[derive(Debug, Default)]
 pub(crate) struct ExperimentSeries {
     /// Number of initial states loaded so far, number of the newest earlier run, and number of simulations. If one of
@@ -138,8 +141,9 @@ pub(crate) struct ExperimentSeries {
 }
 
 impl ExperimentSeries {
-    /// Adds the main quantity of each simulation in a frame. If the recorded run now ends at an earlier step, removes
-    /// the later values.
+    /// Adds the main quantity of an experiment (such as the angle of the surface in a drum) for each simulation in
+    /// `frame`, the newest data from the solver's thread. If the recorded run now ends at an earlier step, removes the
+    /// later values.
     pub(super) fn follow(&mut self, frame: &LiveFrame) {
         let quantity = frame.start.as_ref().and_then(|start| Some((start, quantity_of(start)?)));
         let Some((start, quantity)) = quantity else { return *self = Self::default() };
@@ -178,7 +182,8 @@ impl ExperimentSeries {
         values.iter().step_by(stride).map(point).filter(|[_, value]| value.is_finite()).collect()
     }
 
-    /// Draws the plot into the remaining space. Draws nothing if the scene has no main quantity.
+    /// Draws the plot of the experiment's main quantity (such as the angle of the surface in a drum) into the remaining
+    /// space. Draws nothing if the scene has no such quantity.
     pub(crate) fn draw(&self, ui: &mut Ui, frame: &LiveFrame) {
         let start = frame.start.as_ref();
         let Some((start, quantity)) = start.and_then(|start| Some((start, quantity_of(start)?)))

@@ -19,7 +19,8 @@ use crate::output::{Texts, check_writable, write_file};
 use crate::render::{Renderer, RendererChoice};
 use crate::sim::Observables;
 
-/// All files and links that are being made in the background.
+/// All files that are being written in the background, and the link (a line of text that reproduces a run) that is
+/// being made.
 #[derive(Default)]
 pub(crate) struct Exports {
     /// Files to be written, one after another.
@@ -27,7 +28,8 @@ pub(crate) struct Exports {
     printers: Arc<Mutex<Printers>>,
     pub data: DataPanel,
     pub film: Option<(FilmFormat, Work<String>)>,
-    /// A link to be copied. The flag is true if the user edited the run with the mouse, which the link cannot express.
+    /// The link (a line of text that reproduces a run) that is being made, to be copied to the clipboard. The flag is
+    /// true if the user moved, added or removed grains or moved walls with the mouse, which the link cannot express.
     link: Option<Work<(String, bool)>>,
 }
 
@@ -46,7 +48,7 @@ const PULLED: &str = "The link is copied. It lacks changes by hand (grains that 
                       removed, walls that were moved), so it makes another run. A session keeps these changes.";
 
 impl Exports {
-    /// True while a file, a recording or a film is being written.
+    /// True while a picture or another file, a recording (files of grains and contacts) or a film is being written.
     pub(super) fn is_writing(&self) -> bool {
         !self.files.is_empty() || self.data.export.is_some() || self.film.is_some()
     }
@@ -73,8 +75,8 @@ impl Exports {
         self.link = Some(Work::start(context, runs, |runs, _| link_of(&runs)));
     }
 
-    /// Returns a notice for the status bar if an export has ended since the last call. Copies a finished link to the
-    /// clipboard.
+    /// Returns a notice for the status bar if an export has ended since the last call. Copies a finished link (text
+    /// that reproduces runs) to the clipboard.
     pub(super) fn follow(&mut self, context: &egui::Context) -> Option<Notice> {
         let mut notice = None;
         if let Some(outcome) = self.files.front().and_then(Work::outcome) {

@@ -142,9 +142,9 @@ impl FilmOrder {
         Ok((0..=count as u64).map(|number| from.max(first) + number as f64 * each).collect())
     }
 
-    /// Computes the runs again and stores the states that the film shows in `states`. Returns which of these states
-    /// each picture shows, and the speed of the fastest grain in all these states, m/s. Returns `None` if the user
-    /// cancels.
+    /// Computes the runs again and adds the states that the film shows to the store `states`. Returns which of these
+    /// states each picture shows, and the largest reference speed of these states, m/s (the speed whose velocity arrow
+    /// has the full length). Returns `None` if the user cancels.
     fn moments(
         &self,
         runs: &[TakenRun],

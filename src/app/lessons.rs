@@ -47,7 +47,8 @@ pub struct Lesson {
     pub asks_for: fn(&WatchedRun, &Preferences) -> &'static [&'static str],
 }
 
-/// Default values for lessons on the pile of Abramian & Staron (2020). The run is played slowly enough to be watched.
+/// Lesson with the default values of the fields that lessons on the pile of Abramian & Staron (2020) do not set. The
+/// run is played slowly enough to be watched.
 const PILE: Lesson = Lesson {
     title: "",
     watch: "",

@@ -19,10 +19,10 @@ use crate::sim::Settings;
 /// Scheme (beginning of the address) of links that open in Slump's window.
 pub(crate) const LINK_START: &str = "slump://";
 const HEAD: &str = "slump://run?";
-/// First part of links that open in a browser: the address of the page.
+/// First part of links (texts that reproduce runs) that open in a browser: the address of the page.
 static PAGE: OnceLock<String> = OnceLock::new();
 
-/// Sets the address of the page in the browser, with which its links begin.
+/// Sets the address of the page in the browser. Links that the browser version makes begin with this address.
 #[cfg(target_arch = "wasm32")]
 pub(super) fn set_link_start(start: String) {
     let _ = PAGE.set(start);
@@ -34,12 +34,13 @@ pub(super) fn is_link(text: &str) -> bool {
     text.starts_with(LINK_START) || (text.starts_with("http") && text.contains("?scene="))
 }
 
-/// Expected form of a link, for messages.
+/// Expected form of a link (text that reproduces runs), for error messages.
 const FORM: &str = "a line that Copy link gave: slump://run?…&to=STEP";
 /// Largest number of characters of a link that an error message shows.
 const MOST_SHOWN: usize = 60;
 
-/// The contents of a link: the origin of a scene, and the simulations with the settings that the user chose.
+/// The contents of a link (text that reproduces runs): the origin of a scene, and the simulations with the settings
+/// that the user chose.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RunLink {
     pub source: SceneSource,
@@ -101,7 +102,7 @@ pub(super) fn link_of(runs: &[TakenRun]) -> Result<(String, bool)> {
 }
 
 impl RunLink {
-    /// Reads the text of a link.
+    /// Reads a link, a text that reproduces runs.
     pub(crate) fn read(text: &str) -> Result<Self> {
         let text = text.trim();
         let refuse = || Error::value("link", shortened(text), FORM);
@@ -180,8 +181,8 @@ impl RunLink {
     }
 }
 
-/// Refuses a scene or an initial state from a file, because the sender of a link must not choose which file is opened
-/// on the receiver's machine.
+/// Refuses a scene or an initial state from a file. The sender of a link (text that reproduces runs) must not choose
+/// which file is opened on the receiver's machine.
 fn check_names_no_file(source: &SceneSource) -> Result<()> {
     let SceneSource { scene, initial, .. } = source;
     match (scene, initial) {

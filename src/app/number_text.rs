@@ -3,8 +3,8 @@
 
 use egui::DragValue;
 
-/// Units of time that a text field accepts, each with an exponent: the unit is ten to this power, in seconds. A number
-/// without a unit is in milliseconds.
+/// Units of time that a text field accepts, each with the power of ten by which a number in this unit is multiplied to
+/// convert it to seconds. A number without a unit is in milliseconds.
 const UNITS: [(&str, i32); 5] = [("ms", -3), ("us", -6), ("µs", -6), ("μs", -6), ("s", 0)];
 
 /// Converts a text such as "2 ms", "200 us", "1e-3 s" or "2" to a time in seconds; `None` if the text is not a time.

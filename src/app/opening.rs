@@ -33,14 +33,15 @@ pub enum Opening {
     Session(Box<LiveStart>),
     /// Opens the file of a saved run or of a session.
     File(PathBuf),
-    /// Another request together with the content of the file that it names, because a web worker cannot read files.
+    /// Does what the request `opening` asks, with the content `bytes` of the file that `opening` names, because a web
+    /// worker cannot read files.
     #[cfg(target_arch = "wasm32")]
     With {
         /// Name of the file that the user dropped on the page.
         path: PathBuf,
-        /// Content of this file.
+        /// Content of the file that the user dropped on the page.
         bytes: Vec<u8>,
-        /// The request to open this file.
+        /// The request to open the file that the user dropped on the page.
         opening: Box<Opening>,
     },
 }

@@ -9,13 +9,14 @@ use egui_wgpu::{Callback, CallbackResources, CallbackTrait, ScreenDescriptor};
 
 use crate::render::{Legend, Painter, Picture, PictureArea};
 
-/// Texture format of the render target, for which the paint callbacks create their GPU pipelines. The owner of an egui
-/// renderer must store it among the resources of the paint callbacks; otherwise they assume `Rgba8Unorm`.
+/// Texture format of the picture into which egui draws. Slump's paint callbacks, which egui calls to draw shapes with
+/// Slump's own GPU commands, make their GPU pipelines for this format. The owner of an egui renderer must store the
+/// format among the resources of the paint callbacks; otherwise they assume `Rgba8Unorm`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TargetFormat(pub wgpu::TextureFormat);
 
-/// Painters of the scenes that the window shows, each stored under the number of its scene. The instance buffers of a
-/// painter must exist until the render pass has drawn them.
+/// Painters of the scenes that the window shows, each stored under the number of its scene. A painter owns GPU buffers
+/// with the shapes of its scene. They must exist until the GPU has drawn the frame.
 #[derive(Default)]
 struct Painters(HashMap<usize, Painter>);
 

@@ -176,7 +176,7 @@ fn others(world: &WorldCurve, now_secs: f64) -> Vec<Line<'static>> {
     band.runs.iter().map(run).chain([mean.style(style).width(1.2)]).collect()
 }
 
-/// Returns the lowest and highest value on the vertical axis. On a linear axis the values are divided by `factor`.
+/// Returns the ends of the vertical axis. On a linear axis they are divided by `factor`, such as 1e3 for the prefix k.
 fn least_span(data: &PlotData, quantity: &Quantity<Observables>, factor: f64) -> [f64; 2] {
     let value = |row: &Observables| (quantity.value)(row);
     let scaled = |value: f64| if quantity.logarithmic { value.log10() } else { value / factor };
@@ -236,7 +236,7 @@ fn scaled(value: f64, log: bool) -> f64 {
 /// Curves of one simulation.
 #[derive(Clone, Debug)]
 pub(crate) struct WorldCurve {
-    /// Title that distinguishes the simulation from the others.
+    /// Title that distinguishes the simulation from the other simulations.
     pub name: String,
     pub colour: Color32,
     pub curve: Curve,
@@ -244,7 +244,7 @@ pub(crate) struct WorldCurve {
     pub others: Option<Arc<Band>>,
 }
 
-/// Largest number of points of a curve in the plot of one quantity against another.
+/// Largest number of points of a curve in a plot of one quantity against another. With more points, drawing is slower.
 const MOST_POINTS: usize = 2_000;
 
 /// Plot of one quantity against another, which the user chooses.

@@ -39,8 +39,8 @@ const SQUEEZED: f64 = 0.01;
 /// Simulated time after a change of Δt for which the pile is watched, s.
 const WATCHED_SECS: f64 = 0.3;
 
-/// Returns the observables of the last step of each simulation; `None` until all simulations have reached the end of
-/// the scene.
+/// Returns the observables (measured quantities) of the last step of each simulation; `None` until all simulations have
+/// reached the end of the scene.
 pub(super) fn last_rows(frame: &LiveFrame) -> Option<Vec<Observables>> {
     let duration_secs = frame.start.as_ref()?.scene.duration_secs;
     let last = frame.worlds.iter().map(|world| world.curve.last().copied());
@@ -121,7 +121,7 @@ pub(super) fn two_cones(rows: &[Observables]) -> Option<(usize, String)> {
     Some((usize::from(right > left), text))
 }
 
-/// Evaluates the question of lesson 6: do ten sweeps per step carry a heavy disc?
+/// Evaluates the question of lesson 6: do ten sweeps per step suffice for a light disc to support a heavy disc?
 pub(super) fn ten_sweeps(rows: &[Observables]) -> Option<(usize, String)> {
     let [few, solved] = rows else { return None };
     let text = format!(

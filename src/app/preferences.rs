@@ -32,7 +32,7 @@ pub struct Preferences {
     pub page: Option<Page>,
     /// True if the bars above and below the scene are hidden.
     pub folded: bool,
-    /// True if moving one of the main sliders restarts the run from its initial state.
+    /// True if moving one of the main sliders (Bond, Δt, ρ or μ) restarts the run from its initial state.
     pub starts_again: bool,
     /// True if outlines of the earlier run are drawn behind the present run.
     pub ghost: bool,
@@ -128,8 +128,8 @@ impl Preferences {
         Ok(())
     }
 
-    /// Returns the speed of playing in the form in which commands to the solver's thread contain it. It is the maximum
-    /// if the user wants the run to be computed as fast as the machine can.
+    /// Returns the speed of playing, to be sent to the solver's thread: the chosen simulated time per wall-clock time,
+    /// or [`Pace::Max`] if the user wants the run to be computed as fast as the machine can.
     pub(crate) fn pace(&self) -> Pace {
         if self.full_speed { Pace::Max } else { Pace::RealTime(self.speed) }
     }

@@ -15,7 +15,8 @@ use crate::setting::{About, Control, Kind, Value};
 use crate::sim::Settings;
 
 /// Shows the control of a setting, if the setting has a control, and stores the user's choice in `settings`. A double
-/// click on the field restores the value in `start`. Returns the rectangle of the slider or box.
+/// click on the field restores the value that the setting has in `start`, the settings of the initial state. Returns
+/// the rectangle of the slider or box.
 pub(super) fn show(
     ui: &mut Ui,
     about: &About,
@@ -72,7 +73,8 @@ fn as_number(value: Value) -> Option<f64> {
     }
 }
 
-/// Converts the number of a slider or field to a setting's value of this kind. Counts are rounded.
+/// Converts the number of a slider or field to the value of a setting whose kind (such as number or count) is `kind`.
+/// Counts are rounded.
 fn of_number(kind: Kind, number: f64) -> Option<Value> {
     match kind {
         Kind::Number => Some(Value::Number(number)),
@@ -87,7 +89,7 @@ pub(super) fn called(about: &About) -> &'static str {
     if symbol.is_empty() { about.name } else { symbol }
 }
 
-/// Returns the reason why the user must not set this number; `None` if the number is allowed.
+/// Returns the reason why the user must not set a setting to `number`; `None` if the number is allowed.
 fn refusal(about: &About, control: &Control, settings: &Settings, number: f64) -> Option<String> {
     let is_time = is_time(control);
     let refused = |allowed| {

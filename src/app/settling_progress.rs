@@ -10,8 +10,9 @@ use crate::live::{LoadingProgress, Preview};
 use crate::scene::Settling;
 use crate::sim::{GrainView, Snapshot};
 
-/// Orders of magnitude by which the speed of the fastest grain is assumed to decrease until a pile is at rest. With a
-/// larger value, the estimated finished fraction of the deposition would be larger.
+/// Number of powers of ten by which the speed of the grains is assumed to decrease while a pile comes to rest. The
+/// progress is estimated from the powers of ten that still remain. With a larger value these are a smaller part of the
+/// whole, so the estimated finished fraction of the deposition is larger.
 const ORDERS_OF_SETTLING: f64 = 3.5;
 /// Least time between two displayed pictures of the pile. Users would not notice more frequent pictures.
 const INTERVAL: Duration = Duration::from_millis(30);
@@ -69,8 +70,9 @@ impl SettlingProgress {
     }
 }
 
-/// Estimates the finished fraction of a deposition, 0 to 1. The estimate assumes that grains fall for a quarter of the
-/// time limit, and that the speed of the fastest grain then decreases by [`ORDERS_OF_SETTLING`] orders of magnitude.
+/// Estimates the finished fraction of a deposition, 0 to 1. If the grains fall together like rain, the estimate assumes
+/// that they fall for a quarter of the largest simulated time that the deposition may take, and then come to rest.
+/// While they come to rest, their speed is assumed to decrease by [`ORDERS_OF_SETTLING`] powers of ten.
 pub(super) fn settled_part(settling: &Settling) -> f64 {
     let rained = match settling.rains {
         true => (4.0 * settling.time_secs / settling.limit_secs).min(1.0),

@@ -38,7 +38,8 @@ pub struct AppState {
     pub touring: bool,
     /// Runs with the present settings from other initial states (other seeds).
     pub ensemble: Ensemble,
-    /// Values of an experiment's main quantity at the displayed times, for its plot.
+    /// Values of an experiment's main quantity (such as the angle of the surface in a drum) at the displayed times, for
+    /// its plot.
     pub(crate) experiment: ExperimentSeries,
     /// Positions of controls, points, for tests that control the window from outside.
     pub controls: BTreeMap<String, Rect>,
@@ -122,13 +123,13 @@ impl AppState {
         }
     }
 
-    /// True while a file, a recording or a film is being written.
+    /// True while a picture or another file, a recording (files of grains and contacts) or a film is being written.
     pub fn is_writing(&self) -> bool {
         self.exports.is_writing()
     }
 
-    /// Fetches the newest frame from the solver's thread. The controls show the settings in this frame, unless the user
-    /// is changing a setting.
+    /// Fetches the newest frame (the data to draw) from the solver's thread. The controls show the settings in this
+    /// frame, unless the user is changing a setting.
     pub(super) fn refresh(&mut self, context: &Context) {
         self.run.frame = self.run.live.latest().clone();
         self.follow_loads();
@@ -220,8 +221,8 @@ impl AppState {
         }
     }
 
-    /// Sends a request to open a scene, a lesson, a link or a file to the solver's thread. Ends the lessons, unless the
-    /// request opens a lesson.
+    /// Sends a request to open a scene, a lesson, a link (text that reproduces runs) or a file to the solver's thread.
+    /// Ends the lessons, unless the request opens a lesson.
     pub(crate) fn open(&mut self, opening: Opening) {
         if !matches!(opening, Opening::Lesson(_)) {
             self.leave_lessons();

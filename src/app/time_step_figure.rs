@@ -147,7 +147,7 @@ impl TimeStepFigure {
         });
     }
 
-    /// Returns the points as CSV text.
+    /// Returns the points of the plot of mean slump against Δt as CSV text.
     pub(super) fn table(&self) -> String {
         let mut text = "series,bond,time_step,slump,half_interval,piles\n".to_owned();
         for FigureSeries { name, bond, points, .. } in &self.0 {

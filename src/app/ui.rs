@@ -100,7 +100,7 @@ fn act_on_keys(context: &Context, state: &mut AppState) {
     }
 }
 
-/// Opens a link that the user pastes outside a text field.
+/// Opens the run that a link (text that reproduces runs) describes, if the user pastes the link outside a text field.
 fn take_link(context: &Context, state: &mut AppState) {
     let pasted = context.input(|input| {
         input.events.iter().rev().find_map(|event| match event {

@@ -1,5 +1,5 @@
-//! The run that the window shows: the handle of the solver's thread, its newest frame, the settings that the controls
-//! show, and the selected simulation.
+//! The run that the window shows: the handle of the solver's thread, its newest frame (the data to draw), the settings
+//! that the controls show, and the selected simulation.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
@@ -28,12 +28,13 @@ pub struct GrainRef {
 pub struct WatchedRun {
     /// Handle of the solver's thread.
     pub live: Live,
-    /// Newest frame of the solver's thread.
+    /// Newest frame (the data that the window draws) from the solver's thread.
     pub frame: LiveFrame,
     /// Settings that the controls show, one entry per simulation. While the solver's thread has not yet handled a
-    /// change, these settings are newer than the settings in the frame.
+    /// change, these settings are newer than those in the newest frame (the data to draw).
     pub(crate) wanted: Vec<Controls>,
-    /// Index of a simulation and its new settings while the user drags a main slider.
+    /// While the user drags a main slider (Bond, Δt, ρ or μ) that restarts the run: index of the simulation and its new
+    /// settings, with which the run starts again. `None` at other times.
     pub(crate) draft: Option<(usize, Settings)>,
     /// Index of the simulation that the controls change.
     pub(crate) selected: usize,
@@ -61,8 +62,8 @@ impl WatchedRun {
         }
     }
 
-    /// Copies the settings in the newest frame to the controls, unless the solver's thread has not yet handled a
-    /// change.
+    /// Copies the settings in the newest frame (the data that the window draws) to the controls, unless the solver's
+    /// thread has not yet handled a change.
     pub(super) fn follow_frame(&mut self) {
         let in_step = self.frame.acknowledged == self.live.sent() && !self.frame.seeking;
         if in_step || self.wanted.len() != self.frame.worlds.len() {

@@ -15,7 +15,9 @@ use crate::Instant;
 use crate::error::{Error, Result};
 use crate::live::receive_within;
 
-/// Time between two checks for a cancellation, and least time between two updates of the progress bar.
+/// Longest time for which a task waits for the copy of a run before it checks for a cancellation, and least time
+/// between two updates of the progress bar. With a longer time, a cancelled task ends later; with a shorter time, the
+/// window is drawn more often.
 const INTERVAL: Duration = Duration::from_millis(50);
 
 /// Trait of closures that can run on another thread.

@@ -105,7 +105,8 @@ fn simulate(folder: &Path, runs: Vec<PaperRun>) -> Result<Vec<FigureRun>> {
     runs
 }
 
-/// Recorder of a run: keeps the snapshots that the figures need, and writes the table of observables.
+/// Recorder of a run: keeps the snapshots that the figures need, and writes the table of observables (quantities that
+/// are measured in each step).
 struct FigureRecorder<'a> {
     table: Option<ObservablesTable>,
     snapshots: Vec<Snapshot>,

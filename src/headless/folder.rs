@@ -1,11 +1,11 @@
 //! The output folder of one run, and its checkpoint file, with which the same command can resume a run that was
 //! stopped.
 //!
-//! Several writers fill the folder: the table of observables, the pictures, and the file of snapshots that are drawn at
-//! the end of the run. At a checkpoint each writer first flushes its data to the disk and then reports the length of
-//! its output, its *mark*. When the run resumes, each output is cut off at its mark, and the rest is written again with
-//! the same contents. A new kind of output needs a mark in [`Marks`], which `RunWriter::marks` collects and
-//! `RunWriter::open` passes to the writers.
+//! Several writers fill the folder: the table of observables (measured quantities of each step), the pictures, and the
+//! file of snapshots that are drawn at the end of the run. At a checkpoint each writer first flushes its data to the
+//! disk and then reports the length of its output, its *mark*. When the run resumes, each output is cut off at its
+//! mark, and the rest is written again with the same contents. A new kind of output needs a mark in [`Marks`], which
+//! `RunWriter::marks` collects and `RunWriter::open` passes to the writers.
 
 use std::path::{Path, PathBuf};
 
@@ -215,12 +215,13 @@ fn told_of(folder: &Path) -> Vec<String> {
     pictures.chain(tables).filter(is_name).collect()
 }
 
-/// True for a regular file. Links and pipes are never removed; the run writes to their targets.
+/// True for a regular file. False for links, pipes and devices, which are never removed: the run writes into them, or
+/// into the file to which a link leads.
 fn is_plain(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|there| there.is_file())
 }
 
-/// Name of the table of observables in the output folder.
+/// Name of the file in the output folder with the table of observables (measured quantities of each step).
 pub(super) const TABLE: &str = "observables.csv";
 /// Name of the checkpoint file in the output folder.
 pub(super) const CHECKPOINT: &str = "checkpoint.slump";
@@ -248,16 +249,20 @@ pub(super) struct Marks {
     pub restarted_from: Option<Instant>,
     /// Step numbers and simulated times at which the same command resumed the run; empty in a run without interruption.
     pub went_on_at: Vec<Instant>,
-    /// Extent of the recording of grains and contacts: its numbers of frames and rows.
+    /// Extent of the recording of grains and contacts: its numbers of frames (recorded states) and of rows in its
+    /// tables.
     pub recording: RecordingMark,
-    /// Sums of contact forces, per pair of bodies, over the steps since the last frame of the recording.
+    /// Sums of contact forces, per pair of bodies, over the steps since the last frame of the recording (the last state
+    /// that was written to its files of grains and contacts).
     pub sums: ForceSums,
 }
 
 /// State of the simulation and of the outputs with which a run starts or resumes.
 pub(super) struct Beginning {
     pub state: SavedState,
-    /// Lengths of the outputs that the folder already contains, at which they are cut off.
+    /// Lengths of the outputs at the last checkpoint, for a resumed run. When the run opens an output, it cuts the
+    /// output off at this length, because it writes everything after the checkpoint again. All lengths are 0 in a new
+    /// run.
     pub marks: Marks,
 }
 

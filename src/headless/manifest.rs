@@ -138,7 +138,7 @@ pub(super) struct PictureEntry {
     pub shows: Vec<ShownMoment>,
 }
 
-/// A state of a run that a picture shows: the name of the run, and the observables of the state.
+/// A state of a run that a picture shows: the name of the run, and the observables (measured quantities) of the state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct ShownMoment {
     pub run: String,

@@ -1,4 +1,4 @@
-//! Runs without a window, which draw the figures of Abramian & Staron (2020) or the frames of one scene.
+//! Runs without a window, which draw the figures of Abramian & Staron (2020) or pictures of one scene.
 
 mod figures;
 mod folder;
@@ -29,7 +29,7 @@ pub(crate) fn draw_snapshots(folder: &Path) -> Result<()> {
     figures::draw(folder, EarlierFiles::Kept, HeadlessOptions::default().renderer)
 }
 
-/// Runs the scene of `config` and writes the outputs that `options` name. If `options` name only a folder for frames,
+/// Runs the scene of `config` and writes the outputs that `options` name. If `options` name only a folder for pictures,
 /// draws Figs. 3, 4 and 7 of Abramian & Staron (2020) instead.
 pub(crate) fn run(config: &Config, options: &HeadlessOptions) -> Result<()> {
     heed_signals();

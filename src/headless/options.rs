@@ -1,5 +1,5 @@
-//! Options of pictures, recordings and saved runs, and the command lines that reproduce output files. These command
-//! lines are written into the files.
+//! Options of pictures, recordings (files of grains and contacts) and saved runs, and the command lines that reproduce
+//! output files. These command lines are written into the files.
 
 use std::path::{Path, PathBuf};
 
@@ -135,8 +135,9 @@ const DEFAULT_FPS: f64 = 25.0;
 const MOST_PICTURES: f64 = 1e5;
 
 impl HeadlessOptions {
-    /// True if the command draws the frames of a scene, because it has an option that has no effect on the figures of
-    /// Abramian & Staron (2020).
+    /// True if the command draws pictures of the scene. It does so if it has any option except `--headless`,
+    /// `--frames`, `--overwrite` and `--renderer`. With these four alone it draws the figures of Abramian & Staron
+    /// (2020).
     pub(super) fn asks_for_frames(&self) -> bool {
         let Self { headless, overwrite, renderer, .. } = *self;
         let frames = self.frames.clone();
@@ -154,7 +155,7 @@ impl HeadlessOptions {
     }
 
     /// Checks that the options ask for at least one output, and that options of pictures are given only with pictures.
-    /// `data` describes the recording, if there is one.
+    /// `data` are the settings of the recording (files of grains and contacts), if there is one.
     pub(super) fn check_places(&self, data: Option<&DataSettings>) -> Result<()> {
         if self.draws() {
             return Ok(());
@@ -389,7 +390,8 @@ impl HeadlessOptions {
         run.texts(None, &words)
     }
 
-    /// Returns the command-line options that reproduce the style of the pictures, including their scales.
+    /// Returns the command-line options that reproduce the style of the pictures, including the range of the colours
+    /// and the force of the widest line.
     fn words_of_style(&self, style: &Style) -> Vec<String> {
         let named = |value: Option<clap::builder::PossibleValue>| {
             value.map_or_else(String::new, |value| value.get_name().to_owned())

@@ -285,15 +285,16 @@ pub(crate) fn settled(config: &Config) -> Result<Scene> {
 
 /// A recording (table of grains and contacts for other programs) that has not started yet.
 pub(super) struct RecordingPlan {
-    /// The locked folder of the recording; `None` if a resumed run continues its own recording.
+    /// The locked folder of the recording (files of grains and contacts); `None` if a resumed run continues its own
+    /// recording.
     claim: Option<RecordingFolder>,
     folder: PathBuf,
     settings: DataSettings,
 }
 
 impl RecordingPlan {
-    /// Locks the folder of the recording. If `goes_on` is true, a resumed run continues its own recording and needs no
-    /// lock.
+    /// Locks the folder of the recording (files of grains and contacts), so that no other run writes into it. If
+    /// `goes_on` is true, a resumed run continues its own recording and needs no lock.
     ///
     /// # Errors
     /// States why the folder cannot be used.
@@ -306,8 +307,9 @@ impl RecordingPlan {
         Ok(Self { claim, folder, settings })
     }
 
-    /// Checks that the files of the recording that a resumed run continues still have all their data up to step number
-    /// `step`: the numbers of frames and rows in `mark`.
+    /// Checks that the files of the recording (of grains and contacts) that a resumed run continues still have all
+    /// their data up to step number `step`, the step of the checkpoint. `mark` has the numbers of recorded states
+    /// (frames) and table rows at this step.
     ///
     /// # Errors
     /// Names the file that is missing or has lost data.
@@ -315,7 +317,8 @@ impl RecordingPlan {
         Recording::check(&self.folder, &formats_of(&self.settings)?, step, mark)
     }
 
-    /// Starts the recording at the present state of a run, or continues an existing recording from the extent `mark`.
+    /// Starts the recording (files of grains and contacts) at the present state of a run, or continues an existing
+    /// recording after the numbers of recorded states (frames) and table rows in `mark`.
     ///
     /// # Errors
     /// If the folder cannot be written to, or a file of the recording is missing.

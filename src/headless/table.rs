@@ -1,4 +1,5 @@
-//! The table `observables.csv` with one row per step, written during the run.
+//! The table `observables.csv`, which is written during the run. Each row has the observables (measured quantities)
+//! after one step.
 
 use std::io::{Error as IoError, Result as IoResult, Write};
 use std::path::{Path, PathBuf};
@@ -17,8 +18,8 @@ const LONGEST_WAIT: Duration = Duration::from_millis(100);
 /// quickly that their rows reach this number before the time [`LONGEST_WAIT`] has passed.
 const MOST_WAITING: usize = 1 << 16;
 
-/// The table of observables, one row per step. Only whole rows are written, so that the table is readable after the
-/// process was killed or the disk was full.
+/// The table of observables (measured quantities), one row per step. Only whole rows are written, so that the table is
+/// readable after the process was killed or the disk was full.
 pub(super) struct ObservablesTable {
     path: PathBuf,
     rows: csv::Writer<WholeRows>,
@@ -36,7 +37,7 @@ impl ObservablesTable {
         Ok(Self::of(GrowingFile::go_on(folder.join(TABLE), length)?))
     }
 
-    /// Starts a new table of observables with this path.
+    /// Starts a new table of observables (measured quantities of each step) with this path.
     pub(super) fn start_as(path: PathBuf) -> Result<Self> {
         Ok(Self::of(GrowingFile::start(path)?))
     }

@@ -34,10 +34,10 @@ struct WaitingState {
 }
 
 impl WaitingStates {
-    /// Returns a store of snapshots to be drawn at the end of the run. Returns `None` if pictures can be drawn during
-    /// the run, because the style states the range of the colours and the force of the widest line or does not show
-    /// them, or if there are no pictures. If `outlive` is true, the snapshots are in a named file, which remains when
-    /// the process ends.
+    /// Returns a store of snapshots to be drawn at the end of the run. Returns `None` if there are no pictures, or if
+    /// they can be drawn during the run. They can if the style states the range of the colours and the force of the
+    /// widest line, as far as the pictures need these scales. If `outlive` is true, the snapshots are in a named file,
+    /// which remains when the process ends.
     ///
     /// # Errors
     /// Names the file and gives the system's message.

@@ -1,5 +1,5 @@
-//! The outputs of a run: table, pictures, animations, recording and manifest, and the checkpoints with which an
-//! interrupted run and its outputs are resumed.
+//! The outputs of a run: table, pictures, animations, recording (files of grains and contacts) and manifest, and the
+//! checkpoints with which an interrupted run and its outputs are resumed.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -39,7 +39,7 @@ pub(super) struct RunWriter<'a> {
     gif: Option<Animation>,
     video: Option<Video>,
     /// Snapshots that are drawn at the end of the run, because their colours and line widths need one common scale;
-    /// `None` if the scales are given, so that frames are drawn during the run.
+    /// `None` if the scales are given, so that pictures are drawn during the run.
     waiting: Option<WaitingStates>,
     pub recording: Option<Recording>,
     manifest: Manifest,
@@ -101,7 +101,8 @@ impl<'a> RunWriter<'a> {
         Ok(writer)
     }
 
-    /// Adds the pictures that a resumed run had already drawn to the GIF and the video.
+    /// Adds the pictures that a resumed run drew before it was interrupted to the GIF and the video, which are written
+    /// again from their beginning.
     fn animate_earlier_pictures(&mut self) -> Result<()> {
         if self.gif.is_none() && self.video.is_none() {
             return Ok(());
@@ -299,7 +300,8 @@ impl Recorder for RunWriter<'_> {
     }
 }
 
-/// Returns a sentence for the user with the folder of a finished recording and its number of frames.
+/// Returns a sentence for the user with the folder of a finished recording (files of grains and contacts) and the
+/// number of its frames (recorded states).
 pub(crate) fn recording_sentence(folder: &Path, frames: u64) -> String {
     format!("{} of data in {}", counted(frames, "frame"), folder.display())
 }
@@ -309,7 +311,8 @@ pub(super) fn go_on() -> ControlFlow<()> {
     caught_signal().map_or(ControlFlow::Continue(()), |_| ControlFlow::Break(()))
 }
 
-/// Returns the error for a run that a signal ended. `last` contains the observables of its last step.
+/// Returns the error for a run that a signal ended. `last` contains the observables (measured quantities) of the run's
+/// last step.
 pub(super) fn interrupted(signal: Signal, last: &Observables) -> Error {
     let (signal, exit_code) = (signal.name(), signal.exit_code());
     Error::Interrupted { signal, exit_code, step: last.step, time_secs: last.time_secs }

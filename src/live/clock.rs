@@ -1,4 +1,5 @@
-//! The clock of a live run, which relates simulated time to wall-clock time.
+//! The clock of a live run (a simulation that the user watches while it is computed). It relates simulated time to
+//! wall-clock time.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
 use std::time::Duration;
@@ -10,7 +11,8 @@ use crate::Instant;
 /// wall-clock time since the next step was due. A run with a larger delay does not catch up; it continues at the chosen
 /// speed from its present state.
 const MOST_LAG: Duration = Duration::from_millis(100);
-/// Period of wall-clock time over which the displayed rates (such as steps per second) are averaged.
+/// Period of wall-clock time over which the displayed rates (such as steps per second) are averaged. With a shorter
+/// period the displayed numbers fluctuate more; with a longer period they follow a change later.
 const RATE_WINDOW: Duration = Duration::from_millis(300);
 
 /// Receives a message, or returns a timeout error after the time `wait`. If `wait` is zero, no clock is read, because

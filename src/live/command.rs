@@ -25,8 +25,8 @@ pub enum Pace {
     Max,
 }
 
-/// A command to a live run. A *world* is one of the simulations that run side by side. Commands with the index of a
-/// world that does not exist are ignored.
+/// A command to a live run (a simulation that the user watches while it is computed). A *world* is one of the
+/// simulations that run side by side. Commands with the index of a world that does not exist are ignored.
 #[derive(Serialize, Deserialize)]
 pub enum Command {
     /// Replace all simulations and their history by a new initial state from this source.
@@ -45,9 +45,8 @@ pub enum Command {
     /// Edit the simulation with this index (for example, move a grain) before its next step. If steps after the edit
     /// were already recorded, they are kept as a separate run.
     Edit(usize, Edit),
-    /// Let simulated time advance: show the recorded steps, and compute more steps at the end of the record. If the
-    /// settings differ from the recorded settings, a new run branches off, and the recorded steps are kept as a
-    /// separate run.
+    /// Let simulated time advance: show the recorded steps, and compute more steps after the last recorded step. If the
+    /// settings differ from the recorded settings, a new run begins, and the recorded steps are kept as a separate run.
     Play,
     /// Stop time.
     Pause,
@@ -84,7 +83,8 @@ impl Command {
     }
 
     /// True if the command uses the state of the run that the window shows: it changes settings or grains, takes a
-    /// step, or reads the history. If the window shows a stored snapshot, the simulation must first reach that state.
+    /// step, or reads the history. If the window shows a stored snapshot (a past state kept for display), the
+    /// simulation must first reach that state.
     pub(super) fn is_about_the_moment(&self) -> bool {
         matches!(
             self,

@@ -1,5 +1,5 @@
-//! The observables of a run after each of its steps, as a list whose clones share memory. However long the run is, a
-//! copy for the window is cheap.
+//! The observables (measured quantities) of a run after each of its steps, as a list whose clones share memory. However
+//! long the run is, a copy for the window is cheap.
 
 use std::sync::Arc;
 
@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::sim::Observables;
 
-/// Number of rows (observables after one step) in a chunk. A full chunk is shared between clones and never changes.
+/// Number of rows (observables after one step) in a chunk. A full chunk is shared between clones and never changes. A
+/// clone copies the rows that do not fill a chunk, so with larger chunks a clone takes more time.
 const CHUNK: usize = 256;
 /// Largest number of rows (observables after one step). A longer curve drops rows, so that the remaining rows have a
 /// least spacing in simulated time. 32,768 rows take 6 MB.
@@ -26,8 +27,8 @@ pub struct Curve {
     least_spacing_secs: f64,
 }
 
-/// Relative tolerance of the least spacing of rows: two rows may be closer by this fraction, because times have
-/// rounding errors.
+/// Relative tolerance of the least spacing of rows (observables after one step) in simulated time: two rows may be
+/// closer by this fraction, because times have rounding errors.
 const ROUNDING: f64 = 1e-6;
 
 impl Curve {
@@ -36,12 +37,12 @@ impl Curve {
         self.chunks.len() * CHUNK + self.tail.len()
     }
 
-    /// True if the curve has no row.
+    /// True if the curve has no row (observables after one step).
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Least spacing of rows in simulated time, s; 0 if every step has a row.
+    /// Least spacing of rows (observables after one step) in simulated time, s; 0 if every step has a row.
     pub fn least_spacing_secs(&self) -> f64 {
         self.least_spacing_secs
     }
@@ -70,7 +71,8 @@ impl Curve {
         self.thin_to(MOST_ROWS);
     }
 
-    /// Doubles the least spacing of the rows until at most `most_rows` rows remain.
+    /// Drops rows (observables after one step) until at most `most_rows` rows remain, but keeps at least two. To this
+    /// end it increases the least spacing of the rows in simulated time, each time at least to twice its value.
     pub(crate) fn thin_to(&mut self, most_rows: usize) {
         while self.len() > most_rows.max(2) {
             let rows: Vec<_> = self.rows().copied().collect();
@@ -91,7 +93,7 @@ impl Curve {
         }
     }
 
-    /// Removes the rows of all steps after step number `step`.
+    /// Removes the rows (observables after one step) of all steps after step number `step`.
     pub(crate) fn truncate(&mut self, step: u64) {
         if self.last().is_some_and(|row| row.step > step) {
             self.set(self.rows().filter(|row| row.step <= step).copied().collect());
@@ -105,10 +107,10 @@ impl Curve {
     }
 }
 
-/// The difference between two versions of a curve, to be sent to another process.
+/// The difference between two versions of a curve (observables after each step), to be sent to another process.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct CurveChange {
-    /// Number of rows at the beginning of the curve that both versions have in common.
+    /// Number of rows (observables after one step) at the beginning of the curve that both versions have in common.
     kept: usize,
     rows: Vec<Observables>,
     least_spacing_secs: f64,

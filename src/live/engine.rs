@@ -18,11 +18,12 @@ use crate::Instant;
 use crate::error::Error;
 use crate::sim::{Settings, Surroundings};
 
-/// Number of frame intervals (the shortest time between two frames) after which a frame that the window has not fetched
-/// is replaced by a newer frame. With a smaller number, time is spent on frames that the window never fetches; with a
-/// larger number, the window shows changes late.
+/// Number of frame intervals (the shortest time between two frames, the data that the window draws) after which a frame
+/// that the window has not fetched is replaced by a newer frame. With a smaller number, time is spent on frames that
+/// the window never fetches; with a larger number, the window shows changes late.
 const UNFETCHED_INTERVALS: u32 = 3;
-/// Shortest wall-clock time between two frames while an initial state is being computed.
+/// Shortest wall-clock time between two frames (the data that the window draws) while an initial state is being
+/// computed.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(50);
 
 struct Outbox {
@@ -31,10 +32,10 @@ struct Outbox {
     interval: Duration,
     count: u64,
     sent: Instant,
-    /// True if the last published frame does not show the newest state.
+    /// True if the last frame (the data that the window draws) does not show the newest state.
     is_behind: bool,
-    /// True if a frame must be published as soon as the present step is finished, without waiting until the shortest
-    /// time between two frames has passed.
+    /// True if a frame (the data that the window draws) must be sent as soon as the present step is finished, without
+    /// waiting until the shortest time between two frames has passed.
     is_urgent: bool,
 }
 
@@ -109,9 +110,9 @@ impl Engine {
         while !self.quit && self.turn(true) {}
     }
 
-    /// Handles all commands, takes the steps that are due, and sends the frames that are due. If nothing is due and
-    /// `may_sleep` is true, the thread sleeps until a command comes or something is due. Returns false if the window is
-    /// closed, so that no further command can come.
+    /// Handles all commands, takes the steps that are due, and sends the frame (the data that the window draws) if it
+    /// is due. If nothing is due and `may_sleep` is true, the thread sleeps until a command comes or something is due.
+    /// Returns false if the window is closed, so that no further command can come.
     pub(super) fn turn(&mut self, may_sleep: bool) -> bool {
         if !self.receive(may_sleep) {
             return false;
@@ -169,7 +170,8 @@ impl Engine {
         true
     }
 
-    /// Returns the wall-clock time until a step or a frame is due; `None` if nothing is due before the next command.
+    /// Returns the wall-clock time until a step or a frame (the data that the window draws) is due; `None` if nothing
+    /// is due before the next command.
     pub(super) fn wait(&mut self) -> Option<Duration> {
         if self.mode.seeks() || matches!(self.mode, Mode::Stepping { .. }) {
             return Some(Duration::ZERO);
@@ -287,8 +289,8 @@ impl Engine {
         };
     }
 
-    /// Pauses the run. If a stored snapshot is shown, the whole state at its time is computed, so that the run can
-    /// continue from there.
+    /// Pauses the run. If a stored snapshot (a past state kept for display) is shown, the whole state at its time is
+    /// computed, so that the run can continue from there.
     fn pause(&mut self) {
         match self.mode {
             Mode::Showing { until_secs } => self.seek(until_secs, false),
@@ -298,8 +300,8 @@ impl Engine {
         }
     }
 
-    /// Shows the stored snapshot that is due. After the last stored snapshot, the simulations seek (jump to) the end of
-    /// the record, where a keyframe (a copy of the whole state) is kept.
+    /// Shows the stored snapshot (a past state kept for display) that is due. After the last stored snapshot, the
+    /// simulations seek (jump to) the last recorded step, at which a keyframe (a copy of the whole state) is kept.
     fn advance_show(&mut self) {
         if !self.outbox.wait().is_zero() {
             return;
@@ -440,7 +442,7 @@ impl Engine {
         }
     }
 
-    /// Publishes a frame of the newest state, and wakes the window.
+    /// Sends a frame (the data that the window draws) of the newest state, and wakes the window.
     fn publish(&mut self) {
         let shown_secs = match self.mode {
             Mode::Showing { until_secs } => Some(until_secs),

@@ -1,4 +1,5 @@
-//! Frames: the data that a live run sends to the window, which draws them. Frames are cheap to copy.
+//! Frames: the data that a live run (a simulation that the user watches while it is computed) sends to the window,
+//! which draws them. Frames are cheap to copy.
 
 use std::sync::Arc;
 
@@ -11,12 +12,13 @@ use crate::sim::{AlarmKind, FractureWork, Snapshot, Surroundings};
 use crate::solver::Method;
 use crate::world::Gravity;
 
-/// The newest state of a live run, in the form that the window draws.
+/// A frame: the newest state of a live run (a simulation that the user watches while it is computed), in the form that
+/// the window draws.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LiveFrame {
-    /// Number of this frame, counted from 1.
+    /// Number of this frame (one set of data for the window to draw), counted from 1.
     pub number: u64,
-    /// Number of the last command whose effect this frame shows.
+    /// Number of the last command whose effect this frame (the data that the window draws) shows.
     pub acknowledged: u64,
     /// Number of initial states that have been loaded so far.
     pub loads: u64,
@@ -29,17 +31,17 @@ pub struct LiveFrame {
     /// Summaries of the earlier runs, the newest last, followed by the undone runs (from which the user went back),
     /// starting with the next one to redo.
     pub past: Arc<[PastRun]>,
-    /// Snapshots of the newest earlier run at the displayed simulated time, or its last stored snapshots before that
-    /// time. The window draws them as outlines for comparison. The list is empty if no snapshot is stored.
+    /// Snapshots of the newest earlier run at the displayed simulated time, or the last snapshots before that time that
+    /// were stored. The window draws them as outlines for comparison. The list is empty if no snapshot is stored.
     pub ghosts: Vec<Arc<Snapshot>>,
     /// True if the run is playing, so that simulated time advances.
     pub playing: bool,
     /// True if the next step repeats a step that is already recorded.
     pub replaying: bool,
-    /// True if the next step branches off from the record, because the present settings differ from the recorded
-    /// settings.
+    /// True if later steps are recorded, but the next step does not repeat them, because the present settings differ
+    /// from the recorded settings. The next step then begins a new run.
     pub branching: bool,
-    /// True if a stored snapshot is shown and nothing is computed.
+    /// True if a stored snapshot (a past state kept for display) is shown and nothing is computed.
     pub stored: bool,
     /// True if a recorded state or a long single step is being computed.
     pub seeking: bool,
@@ -56,19 +58,19 @@ pub struct LiveFrame {
 /// One world (simulation) at one simulated time, in the form that the window draws.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct WorldFrame {
-    /// Positions, velocities, contacts and observables. Before the first step, the snapshot includes the walls that
-    /// support the grains only until the first step.
+    /// Positions, velocities, contacts and observables (measured quantities). Before the first step, the snapshot
+    /// includes the walls that support the grains only until the first step.
     pub snapshot: Arc<Snapshot>,
     /// The controls (settings and pull of a grain) of the next step.
     pub controls: Controls,
     /// Acceleration of gravity, m/s²; `None` if gravity is not uniform.
     pub gravity: Option<DVec2>,
-    /// Observables after each recorded step, for plots.
+    /// Observables (measured quantities) after each recorded step, for plots.
     pub curve: Curve,
     /// True if all recorded steps have the settings of the next step, and the user neither edited the simulation nor
     /// pulled a grain.
     pub is_even: bool,
-    /// Simulated time at the beginning of the record, s.
+    /// Simulated time before the first recorded step, s.
     pub recorded_from_secs: f64,
     /// Simulated time of the last recorded step, s.
     pub recorded_secs: f64,

@@ -1,4 +1,4 @@
-//! The handle by which a window controls a live run.
+//! The handle by which a window controls a live run (a simulation that the user watches while it is computed).
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -13,7 +13,8 @@ use crate::error::{Error, Result};
 /// nested data, in total more than the default stack of two megabytes. Unused stack takes no memory.
 const STACK_BYTES: usize = 32 << 20;
 
-/// Handle of a live run. When the handle is dropped, the run ends after the present step.
+/// Handle of a live run (a simulation that the user watches while it is computed). When the handle is dropped, the run
+/// ends after the present step.
 pub struct Live {
     place: Place,
     sent: u64,

@@ -13,12 +13,12 @@ use crate::Instant;
 use crate::error::{Error, Result};
 use crate::sim::{Edit, Settings, Simulation, Snapshot, Tally};
 
-/// Largest number of earlier runs; if there are more, the oldest run is dropped.
+/// Largest number of earlier runs. If there are more, the oldest run is dropped. A larger number takes more memory.
 const MOST_PAST: usize = 50;
-/// Number of newest earlier runs that keep many keyframes (copies of the state); simulations of older runs keep at most
-/// two. Older runs are dropped while all earlier runs use more than the present run's limit of keyframe memory.
+/// Number of newest earlier runs that keep many keyframes (copies of the state). Older runs keep at most two keyframes
+/// per simulation. They are dropped if all earlier runs have more memory of keyframes than the present run may have.
 const NEWEST: usize = 4;
-/// Divisor of the memory limit: each of the newest earlier runs gets 1/8 of the present run's memory for keyframes.
+/// Divisor: each newest earlier run gets 1/8 of the present run's memory for keyframes (copies of the state).
 const PART_OF_PAST: usize = 8;
 /// Largest memory for keyframes (copies of the state) of the present run in a history that is sent or saved, bytes.
 const KEYFRAME_BYTES: usize = 8 << 20;
@@ -28,10 +28,10 @@ const PAST_KEYFRAME_BYTES: usize = 1 << 20;
 const ROWS: usize = 4096;
 /// Largest number of rows (observables after one step) of each earlier run in a history that is sent or saved.
 const PAST_ROWS: usize = 512;
-/// Wall-clock time after which a tick is interrupted to handle commands. A tick is one step of the simulation with the
-/// longest time step; a simulation with a far shorter time step takes thousands of steps in a tick.
+/// Longest wall-clock time between two looks for commands during a tick (one step of the simulation with the longest
+/// time step). A simulation with a far shorter time step takes thousands of steps in a tick.
 const SLICE: Duration = Duration::from_millis(50);
-/// Number of steps that each simulation takes between two reports of progress to the user.
+/// Number of steps of each simulation between two reports of progress. With more steps, the user can cancel only later.
 const STEPS_AT_ONCE: u64 = 8;
 
 /// A run: worlds (simulations) side by side that are kept at the same simulated time. The world with the largest time
@@ -46,7 +46,7 @@ pub(super) struct LiveRun {
     /// Number by which the window selects an earlier run.
     #[serde(skip)]
     number: u64,
-    /// Simulated time that all simulations must reach to finish a tick ([`Self::tick`]), s.
+    /// Simulated time that every simulation reaches in a tick (a step of the one with the longest time step), s.
     #[serde(skip)]
     goal_secs: Option<f64>,
 }
@@ -67,7 +67,7 @@ impl LiveRun {
         self.worlds.iter().map(|world| *world.simulation.settings()).collect()
     }
 
-    /// True if the next step branches off from the record, because its settings differ from the recorded settings.
+    /// True if later steps are recorded, but the next step does not repeat them, because it has other settings.
     pub(super) fn branches(&self) -> bool {
         self.worlds.iter().any(WorldHistory::branches)
     }
@@ -116,7 +116,7 @@ impl LiveRun {
         self.leader().map_or(0.0, |world| world.record.end_secs())
     }
 
-    /// Approximate memory of the keyframes of all simulations, bytes.
+    /// Approximate memory of the keyframes (copies of the state) of all simulations, bytes.
     fn bytes(&self) -> usize {
         self.worlds.iter().map(|world| world.record.bytes()).sum()
     }
@@ -142,7 +142,7 @@ impl LiveRun {
         (self.steps() - steps_before, all_well)
     }
 
-    /// True while some simulations have not yet finished the tick that has begun ([`Self::tick`]).
+    /// True while a tick (a step of the simulation with the longest time step) has begun but is not finished.
     pub(super) fn is_on_its_way(&self) -> bool {
         self.goal_secs.is_some()
     }
@@ -157,7 +157,7 @@ impl LiveRun {
         each(&mut self.worlds, WorldHistory::advance_seek)
     }
 
-    /// Copy of the run with at most `bytes` bytes of keyframes and `rows` rows per curve, for the window or a file.
+    /// Copy of the run for the window or a file, with at most `bytes` bytes of stored states and `rows` plotted steps.
     fn thinned(&self, bytes: usize, rows: usize) -> Self {
         let mut run = Self { worlds: Vec::new(), ..self.clone() };
         run.worlds = self.worlds.iter().map(WorldHistory::handed_out).collect();
@@ -197,7 +197,7 @@ pub struct PastRun {
 pub struct PastWorld {
     /// The controls (settings and pull of a grain) of the world's next step.
     pub controls: Controls,
-    /// Observables after each recorded step of the run, for plots.
+    /// Observables (measured quantities) after each recorded step of the run, for plots.
     pub curve: Curve,
 }
 
@@ -310,7 +310,7 @@ impl RunHistory {
         true
     }
 
-    /// Keeps a copy of the present run if its next step branches off from the record.
+    /// Keeps a copy of the present run if later steps are recorded and the next step does not repeat them.
     pub(super) fn keep_before_tick(&mut self) {
         if self.present.branches() {
             let mut before = self.present.clone();
@@ -349,7 +349,7 @@ impl RunHistory {
         snapshots.collect::<Option<_>>().unwrap_or_default()
     }
 
-    /// Keeps a run as the newest earlier run. Undone runs also become earlier runs.
+    /// Keeps a run as the newest earlier run. Undone runs (from which the user went back) also become earlier runs.
     fn keep(&mut self, run: LiveRun) {
         self.past.extend(self.undone.drain(..).rev());
         let run = self.kept(run);
@@ -373,7 +373,7 @@ impl RunHistory {
         Some(run)
     }
 
-    /// Limits the memory of earlier and undone runs. Only the newest earlier run keeps its stored snapshots.
+    /// Limits the memory of all runs but the present one. Only the newest earlier run keeps its stored snapshots.
     fn limit(&mut self) {
         let older = self.past.len().saturating_sub(1);
         let older = self.past[..older].iter_mut().chain(&mut self.undone);
@@ -392,7 +392,7 @@ impl RunHistory {
         }
     }
 
-    /// Gives a name to the earlier or undone run of this number, or to the present run if the number is `None`.
+    /// Gives a name to the run with this number, or to the present run if the number is `None`.
     pub(super) fn name(&mut self, number: Option<u64>, name: String) {
         match number {
             None => self.present.name = name,
@@ -417,7 +417,7 @@ impl RunHistory {
         self.told = past.chain(undone).collect();
     }
 
-    /// Copy with fewer keyframes and curve rows, for the window or a file. Earlier runs that have failed are left out.
+    /// Copy of the history for the window or a file: fewer stored states and plotted steps, no failed earlier runs.
     pub(super) fn thinned(&self) -> Self {
         let thinned = |runs: &[LiveRun]| {
             let kept = runs.iter().filter(|run| !run.has_failed());
@@ -431,8 +431,8 @@ impl RunHistory {
         }
     }
 
-    /// Computes several simulations in parallel, one for each of `plans`, from the state `start`. `tally` contains the
-    /// sums over the steps before `start`. `tell` receives the progress and returns false to cancel the computation.
+    /// Computes simulations in parallel, one for each of `plans`, from the state `start`. `tally` contains sums (such
+    /// as unsolved steps) over the steps before `start`. `tell` receives the progress and returns false to cancel.
     ///
     /// # Errors
     /// If a setting is invalid, or if the computation is cancelled.

@@ -8,8 +8,9 @@ pub(super) enum Mode {
     Paused,
     /// Simulated time advances, and steps are computed when they are due.
     Computing,
-    /// The stored snapshots up to this simulated time, s, are shown at the chosen speed. Nothing is computed, so that a
-    /// run that is slow to compute is also shown smoothly. The simulations do not change in this mode.
+    /// The stored snapshots (past states kept for display) up to this simulated time, s, are shown at the chosen speed.
+    /// Nothing is computed, so that a run that is slow to compute is also shown smoothly. The simulations do not change
+    /// in this mode.
     Showing {
         until_secs: f64,
     },

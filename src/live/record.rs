@@ -24,7 +24,7 @@ pub struct Controls {
 }
 
 impl Controls {
-    /// Returns the controls of a simulation's next step.
+    /// Returns the controls (settings and pull of a grain) of a simulation's next step.
     pub(super) fn of(simulation: &Simulation) -> Self {
         Self { settings: *simulation.settings(), pull: simulation.pull() }
     }
@@ -36,9 +36,9 @@ impl Controls {
 pub struct ControlsChange {
     /// Number of the last step before the user changed the settings or the pull of the mouse.
     pub after_step: u64,
-    /// Simulated time at the end of that last step, s.
+    /// Simulated time of the change (the end of the last step before it), s.
     pub time_secs: f64,
-    /// The new controls, which apply until the next change.
+    /// The new controls (settings and pull of a grain), which apply until the next change.
     pub controls: Controls,
 }
 
@@ -86,8 +86,9 @@ impl Keyframe {
 }
 
 impl WorldRecord {
-    /// Returns a record that begins at the state `start`. `tally` contains the sums over the steps before `start`, and
-    /// `budget_bytes` is the approximate memory for keyframes (copies of the state), bytes.
+    /// Returns a record that begins at the state `start`. `tally` contains the sums over the steps before `start`, such
+    /// as the number of unsolved steps. `budget_bytes` is the approximate memory for keyframes (copies of the state),
+    /// bytes.
     pub(super) fn new(start: &Simulation, tally: Tally, budget_bytes: usize) -> Self {
         Self {
             keyframes: vec![Keyframe { simulation: Arc::new(start.clone()), tally }],
@@ -151,8 +152,8 @@ impl WorldRecord {
         self.edits.truncate(edits);
     }
 
-    /// Records a user's edit (for example, a moved grain) that led to the state of `simulation`. Later steps are
-    /// removed from the record.
+    /// Records a user's edit (for example, a moved grain) that led to the state of `simulation`. Later steps are no
+    /// longer valid, so they are removed from the record.
     pub(super) fn edited(&mut self, simulation: &Simulation, edit: Edit) {
         let after_step = simulation.observables().step;
         self.cut(after_step, self.edits_of(simulation).saturating_sub(1));
@@ -199,13 +200,13 @@ impl WorldRecord {
         self.keyframes.len() < 3 || self.bytes() <= self.budget_bytes
     }
 
-    /// Approximate memory of the keyframes, bytes.
+    /// Approximate memory of the keyframes (copies of the state), bytes.
     pub(super) fn bytes(&self) -> usize {
         let newest = self.keyframes.last().map(|keyframe| &keyframe.simulation);
         newest.map_or(0, |newest| self.keyframes.len() * memory_bytes(newest))
     }
 
-    /// Limits the memory of the keyframes to about `budget_bytes` bytes.
+    /// Limits the memory of the keyframes (copies of the state) to about `budget_bytes` bytes.
     pub(super) fn keep_within(&mut self, budget_bytes: usize) {
         self.budget_bytes = budget_bytes;
         while !self.is_within_budget() {
@@ -213,8 +214,9 @@ impl WorldRecord {
         }
     }
 
-    /// True if a record that was read from a file is consistent: it has a keyframe; keyframes, changes and edits are in
-    /// the order of their step numbers; and no keyframe is later than the last step.
+    /// True if a record that was read from a file is consistent: it has a keyframe (a copy of the state); keyframes,
+    /// changes of settings and edits are in the order of their step numbers; and no keyframe is later than the last
+    /// step.
     pub(super) fn is_sound(&self) -> bool {
         let rise = |pair: &[Keyframe]| pair[0].step() < pair[1].step();
         let last = self.keyframes.last().map(Keyframe::step);
@@ -255,7 +257,7 @@ impl WorldRecord {
     }
 
     /// Returns the last keyframe (copy of the state) at or before a simulated time, s, and the sums over the steps up
-    /// to that keyframe.
+    /// to that keyframe, such as the number of unsolved steps.
     pub(super) fn keyframe_before(&self, time_secs: f64) -> (&Simulation, Tally) {
         let after = |keyframe: &Keyframe| keyframe.simulation.time_secs() <= time_secs;
         let index = self.keyframes.partition_point(after).saturating_sub(1);
@@ -264,7 +266,7 @@ impl WorldRecord {
     }
 
     /// True if `simulation` need not take another recorded step to reach the simulated time `goal_secs`, s: its time is
-    /// at most half a time step before `goal_secs`, or it is at the end of the record.
+    /// at most half a time step before `goal_secs`, or there is no later recorded step.
     pub(super) fn has_come_to(&self, simulation: &Simulation, goal_secs: f64) -> bool {
         let step = simulation.observables().step;
         let controls = self.controls_after(step).copied();
@@ -320,9 +322,9 @@ impl WorldRecord {
     }
 
     /// Computes the states between two simulated times, s, again with the same bits. The callback `each` receives all
-    /// states in order of time, starting at the keyframe before the first time. Its second argument is true if the
-    /// state lies between the two times. Each state has the settings of the step that led to it. The callback can end
-    /// the replay.
+    /// states in order of time, starting at the last keyframe (stored copy of the state) before the first time. Its
+    /// second argument is true if the state lies between the two times. Each state has the settings of the step that
+    /// led to it. The callback can end the replay.
     ///
     /// # Errors
     /// Returns an error of the callback or of a step. If a state is no longer finite, the replay ends without an error.

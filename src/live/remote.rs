@@ -1,5 +1,5 @@
-//! A live run whose solver shares no memory with the window, for example in a browser's worker. The window and the
-//! solver exchange messages as bytes.
+//! A live run (a simulation that the user watches while it is computed) whose solver shares no memory with the window,
+//! for example in a browser's worker. The window and the solver exchange messages as bytes.
 //!
 //! Most commands are sent unchanged. A source of initial states is sent as data. A callback that receives a history
 //! stays in the window's process and is called when the reply arrives. The solver sends only its newest frame, as the
@@ -25,9 +25,9 @@ use super::{
 use crate::Instant;
 use crate::error::{Error, Result};
 
-/// Time after which the solver sends another frame, although the window has not yet confirmed the last one. While an
-/// initial state is being computed, the solver receives no messages, so it cannot learn that the window has seen a
-/// frame.
+/// Time after which the solver sends another frame (the data that the window draws), although the window has not yet
+/// confirmed the last one. While an initial state is being computed, the solver receives no messages, so it cannot
+/// learn that the window has seen a frame.
 const UNSEEN_INTERVAL: Duration = Duration::from_millis(100);
 
 /// A message from the window to the solver. The first number of a message is the number of its command.
@@ -37,7 +37,7 @@ enum Request {
     Load(u64, Vec<u8>),
     Take(u64, usize),
     TakeAll(u64),
-    /// The window has seen the last frame.
+    /// The window has received the last frame (the data that it draws).
     Seen,
 }
 
@@ -50,11 +50,11 @@ enum Reply {
     TakenAll(u64, Box<LiveStart>),
 }
 
-/// A frame as its difference from the previous frame.
+/// A frame (the data that the window draws) as its difference from the previous frame.
 #[derive(Serialize, Deserialize)]
 struct FrameChange {
-    /// The frame without those of its data that are sent only when they change: the initial state, the summaries of
-    /// earlier runs, and the curves.
+    /// The frame (the data that the window draws) without the data that are sent only when they change: the initial
+    /// state, the summaries of earlier runs, and the curves of measured quantities.
     frame: LiveFrame,
     start: Option<Arc<LiveStart>>,
     past: Option<Arc<[PastRun]>>,
@@ -97,7 +97,8 @@ enum Waiting {
 /// being loaded is to be abandoned.
 pub type Ask = Box<dyn FnMut(Vec<u8>, bool)>;
 
-/// Endpoint of a remote run in the window's process: sends commands to the solver and receives its frames.
+/// Endpoint of a remote run in the window's process: sends commands to the solver and receives its frames (the data
+/// that the window draws).
 pub(super) struct RemoteRun {
     ask: Ask,
     inbox: Receiver<Vec<u8>>,
@@ -169,10 +170,11 @@ impl RemoteRun {
 /// computed.
 pub type Post = Box<dyn FnMut(Vec<u8>) + Send>;
 
-/// Sends a frame to the window when the window has confirmed the previous frame, or after [`UNSEEN_INTERVAL`].
+/// Sends a frame (the data to draw) to the window when the window has confirmed the previous frame, or after
+/// [`UNSEEN_INTERVAL`].
 struct FramePoster {
     frames: Output<LiveFrame>,
-    /// The last frame that was sent to the window.
+    /// The last frame (the data to draw) that was sent to the window.
     posted: LiveFrame,
     posted_at: Instant,
     is_seen: bool,
@@ -263,7 +265,7 @@ impl<S: StartSource + DeserializeOwned> RemoteEngine<S> {
     }
 
     /// Handles the received commands and takes the steps that are due. Returns the wall-clock time until the next step
-    /// or frame is due; `None` if nothing is due before the next message.
+    /// or frame (the data that the window draws) is due; `None` if nothing is due before the next message.
     pub fn turn(&mut self) -> Option<Duration> {
         self.engine.turn(false);
         self.engine.wait()

@@ -1,4 +1,5 @@
-//! The initial state of a live run, and the sources that compute or read initial states.
+//! The initial state of a live run (a simulation that the user watches while it is computed), and the sources that
+//! compute or read initial states.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -27,7 +28,8 @@ pub trait StartSource: Send + 'static {
     fn to_bytes(&self) -> Result<Vec<u8>>;
 }
 
-/// Initial state of a live run, with its scene, view and history.
+/// Initial state of a live run (a simulation that the user watches while it is computed), with its scene, view and
+/// history.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LiveStart {
@@ -54,7 +56,7 @@ pub struct LiveStart {
     /// Settings of the worlds (simulations) that start side by side; empty for one world with the settings of
     /// `simulation`.
     pub worlds: Vec<Settings>,
-    /// History of a saved run that is to be continued. If a history is given, `worlds` has no effect.
+    /// History of a saved run that is to be continued. If a history is given, the settings in `worlds` have no effect.
     #[serde(rename = "record")]
     pub history: Option<RunHistory>,
 }

@@ -30,7 +30,7 @@ impl StoredMoment {
     }
 }
 
-/// The stored snapshots of one simulation, in order of time.
+/// The stored snapshots (past states kept for display) of one simulation, in order of time.
 #[derive(Clone, Debug)]
 pub(super) struct StoredMoments {
     moments: Vec<StoredMoment>,
@@ -66,7 +66,7 @@ impl StoredMoments {
         self.thin();
     }
 
-    /// Limits the memory of the stored snapshots to `most_bytes` bytes.
+    /// Limits the memory of the stored snapshots (past states kept for display) to `most_bytes` bytes.
     pub(super) fn keep_within(&mut self, most_bytes: usize) {
         self.most_bytes = most_bytes;
         self.thin();
@@ -80,7 +80,8 @@ impl StoredMoments {
         }
     }
 
-    /// Removes the stored snapshots of step number `first` and of later steps, because these states have changed.
+    /// Removes the stored snapshots (past states kept for display) of step number `first` and of later steps, because
+    /// these states have changed.
     pub(super) fn forget_from(&mut self, first: u64) {
         self.retain(|step| step < first);
     }
@@ -90,7 +91,7 @@ impl StoredMoments {
         self.bytes = self.moments.iter().map(StoredMoment::bytes).sum();
     }
 
-    /// The last stored snapshot at or before a simulated time, s.
+    /// The last stored snapshot (past state kept for display) at or before a simulated time, s.
     pub(super) fn at(&self, secs: f64) -> Option<&StoredMoment> {
         let is_there = |moment: &StoredMoment| moment.snapshot.observables.time_secs <= secs;
         self.moments.get(self.moments.partition_point(is_there).checked_sub(1)?)

@@ -1,4 +1,5 @@
-//! One world (simulation) of a live run: its present state, the record of its steps, and the curve of its observables.
+//! One world (simulation) of a live run: its present state, the record of its steps, and the observables (measured
+//! quantities) after these steps.
 
 use std::sync::Arc;
 
@@ -10,11 +11,12 @@ use crate::Instant;
 use crate::error::{Error, Result};
 use crate::sim::{Edit, Settings, Simulation, Tally};
 
-/// Weight (0 to 1) of the newest step in the running mean of the wall-clock time per step.
+/// Weight (0 to 1) of the newest step in the running mean of the wall-clock time per step. With a larger weight the
+/// mean fluctuates more; with a smaller weight it follows a change later.
 const NEWEST: f64 = 0.05;
 
 /// One world (simulation) of a live run, with the record of its steps. A clone shares memory with the original: the
-/// keyframes of the record and most of the curve.
+/// copies of states in the record (keyframes) and most of the observables in the curve.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WorldHistory {
@@ -23,7 +25,7 @@ pub struct WorldHistory {
     /// The record of the steps up to the present state and, after a jump back in time, also of the steps after it.
     #[serde(rename = "recording")]
     pub record: WorldRecord,
-    /// Observables after each recorded step, for plots.
+    /// Observables (measured quantities) after each recorded step, for plots.
     pub curve: Curve,
     /// Stored snapshots, which can be shown without computing.
     #[serde(skip)]
@@ -41,7 +43,8 @@ pub struct WorldHistory {
 
 impl WorldHistory {
     /// Returns a simulation at the state `start` with these settings. `tally` contains the sums over the steps before
-    /// `start`, and `budget_bytes` is the memory for keyframes (copies of the state), bytes.
+    /// `start`, such as the number of unsolved steps. `budget_bytes` is the memory for keyframes (copies of the state),
+    /// bytes.
     pub(super) fn new(
         start: &Simulation,
         tally: Tally,
@@ -75,8 +78,8 @@ impl WorldHistory {
         self.simulation.parameters().time_step_secs
     }
 
-    /// True if the next step branches off from the record, because the present settings differ from the recorded
-    /// settings.
+    /// True if later steps are recorded, but the next step does not repeat them, because the present settings differ
+    /// from the recorded settings.
     pub(super) fn branches(&self) -> bool {
         self.record.is_before_end(&self.simulation) && !self.record.replays(&self.simulation)
     }
@@ -179,7 +182,8 @@ impl WorldHistory {
         false
     }
 
-    /// Applies a user's edit (for example, a moved grain). Later steps are removed from the record.
+    /// Applies a user's edit (for example, a moved grain). Later recorded steps are no longer valid, so they are
+    /// removed.
     pub(super) fn edit(&mut self, edit: Edit) -> Result<()> {
         if let Some(failure) = &self.failure {
             return Err(Error::value("state", failure, "one from which the run can continue"));
@@ -191,7 +195,8 @@ impl WorldHistory {
         Ok(())
     }
 
-    /// Copy of the history without stored snapshots, to be sent to the window or to a file.
+    /// Copy of the history without stored snapshots (past states kept for display), to be sent to the window or to a
+    /// file.
     pub(super) fn handed_out(&self) -> Self {
         let mut world = Self { stored: StoredMoments::default(), ..self.clone() };
         // The user's pull of a grain ends here.

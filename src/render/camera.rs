@@ -81,7 +81,7 @@ pub(super) fn half_size(size: [u32; 2]) -> DVec2 {
 }
 
 /// Returns the smallest box (m) around all finite items of a snapshot: grains, discs that are not grains, walls, and
-/// the centre of attraction. `None` if there are no such items.
+/// the centre of an attracting gravity field. `None` if there are no such items.
 pub fn bounds(snapshot: &Snapshot) -> Option<[DVec2; 2]> {
     let surroundings = &snapshot.surroundings;
     let grains = snapshot.grains.iter().map(|grain| (grain.position, grain.radius));
@@ -98,7 +98,7 @@ pub fn bounds(snapshot: &Snapshot) -> Option<[DVec2; 2]> {
         .reduce(|all, next| [all[0].min(next[0]), all[1].max(next[1])])
 }
 
-/// Returns the two ends of an edge; an infinite edge has no ends.
+/// Returns the two ends of an edge (a line or line segment of the outline of a wall); an infinite edge has no ends.
 fn ends(edge: Edge) -> impl Iterator<Item = DVec2> {
     let ends = match edge {
         Edge::Endless { .. } => None,

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A colour: red, green, blue and opacity, each 0 to 1, not premultiplied.
+/// A colour: red, green, blue and opacity, each 0 to 1. Red, green and blue are not multiplied by the opacity.
 #[repr(C)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

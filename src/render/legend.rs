@@ -24,7 +24,8 @@ pub(crate) struct ScaleBar {
     /// Left end of the bar, pixels, relative to the middle of the picture, y up.
     pub start: [f32; 2],
     pub end: [f32; 2],
-    /// Font size of the label, pixels. The label starts half a font size to the right of `end`.
+    /// Font size of the label, pixels. The label starts half a font size to the right of `end`, the right end of the
+    /// bar.
     pub text_px: f32,
 }
 

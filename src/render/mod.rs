@@ -1,10 +1,10 @@
 //! Pictures of snapshots (states of a simulation).
 //!
-//! Modules and types, each using the earlier ones: `colour`; `primitives` (discs and links in pixels); [`Renderer`],
-//! which draws discs and links by Vulkan, by OpenGL (`gpu`, `painter`, one shader per shape) or on the processor;
-//! [`Camera`] and [`Style`], with which `scene` turns a snapshot into a picture of walls, discs and `overlays`;
-//! [`draw_scene`], which adds scale bar, legend and text; [`PanelGrid`], which arranges several pictures as in a
-//! journal.
+//! Modules and types, each using the earlier ones: `colour`; `primitives` (discs and straight lines, called links, in
+//! pixels); [`Renderer`], which draws discs and links by Vulkan, by OpenGL (`gpu`, `painter`, one shader per shape) or
+//! on the processor; [`Camera`] and [`Style`], with which `scene` turns a snapshot into a picture of walls, discs and
+//! `overlays`; [`draw_scene`], which adds scale bar, legend and text; [`PanelGrid`], which arranges several pictures as
+//! in a journal.
 
 mod camera;
 mod colour;

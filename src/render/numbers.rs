@@ -12,7 +12,7 @@ pub(crate) fn round_below(limit: f64) -> f64 {
         .unwrap_or(power)
 }
 
-/// Returns a round number, such as 1.5 or 20, that is at least `value`. A scale can end at it. `value` must be
+/// Returns a round number, such as 1.5 or 20, that is at least `value`, as the upper end of a scale. `value` must be
 /// positive.
 pub(crate) fn round_above(value: f64) -> f64 {
     let power = 10f64.powi(value.log10().floor() as i32);

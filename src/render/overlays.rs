@@ -18,8 +18,8 @@ const FORCE_WIDTH: f64 = 0.4;
 /// Smallest contact force that is drawn, as a fraction of the force whose line has the full width
 /// ([`force_reference`]). Lines of smaller forces would be too thin to be visible.
 const LEAST_FORCE: f64 = 0.004;
-/// Fraction of the contacts with a force whose lines are narrower than the full width. It determines the force of a
-/// line of full width if the style does not state this force.
+/// Quantile that gives the reference force (the force whose line has the full width) if the style states none: this
+/// fraction of the contacts whose force is not 0 have a smaller force, so their lines are narrower.
 const REFERENCE_QUANTILE: f64 = 0.95;
 
 /// Returns the reference force, newtons: the magnitude of the normal contact force whose line has the full width. It is
@@ -277,8 +277,8 @@ impl MotionArrows<'_> {
         spots
     }
 
-    /// Returns the position of the arrow on an edge: the middle of the edge or, on an infinite edge, the point nearest
-    /// to the middle of the picture.
+    /// Returns the position of the arrow on an edge (a line or line segment of the outline of a wall): the middle of
+    /// the edge or, on an infinite edge, the point nearest to the middle of the picture.
     fn spot_on(&self, edge: Edge) -> Spot {
         match edge {
             Edge::Endless { point, normal } => {

@@ -1,5 +1,5 @@
-//! Drawing of pictures on a GPU: one pipeline and one instance buffer for discs and one for links, and the drawing
-//! order.
+//! Drawing of pictures on a GPU: one pipeline and one instance buffer for discs and one for links (straight lines with
+//! round ends), and the drawing order.
 //!
 //! A window and the offscreen target both call [`Painter::prepare`] before their render pass and [`Painter::draw`] in
 //! it. Any render target with the painter's texture format can be used. The vertex index selects the four corners of
@@ -33,7 +33,7 @@ pub(crate) struct Painter {
     /// Uniform buffer with the [`PictureArea`], which all shaders read.
     area: wgpu::Buffer,
     area_group: wgpu::BindGroup,
-    /// Pipeline of discs, then pipeline of links.
+    /// Pipeline of discs, then pipeline of links (straight lines with round ends).
     primitives: [PrimitivePipeline; 2],
     /// For each batch of shapes in drawing order, the index of its pipeline and its range of bytes in the pipeline's
     /// instance buffer.
@@ -43,7 +43,7 @@ pub(crate) struct Painter {
 #[derive(Debug)]
 struct PrimitivePipeline {
     name: &'static str,
-    /// Size of one instance (disc or link) in the buffer, bytes.
+    /// Size of one instance (a disc, or a straight line with round ends) in the buffer, bytes.
     stride: u64,
     pipeline: wgpu::RenderPipeline,
     instances: wgpu::Buffer,

@@ -3,15 +3,17 @@
 //!
 //! [`super::Camera::project`] converts positions in the scene to pixels in f64, relative to the middle of the picture,
 //! so f32 is sufficient here at any distance from the origin. `shaders/disc.wgsl` and `shaders/link.wgsl` draw the
-//! shapes on a GPU, and [`draw`] evaluates the same distance fields on the processor. [`draw`] rounds to 8 bits after
-//! each shape, as a GPU does, so its colour channels differ from every GPU's by at most 3/255.
+//! shapes on a GPU, and [`draw`] draws them on the processor by the same formulas for the distance of a pixel from the
+//! edge of a shape. [`draw`] rounds to 8 bits after each shape, as a GPU does, so its colour channels differ from every
+//! GPU's by at most 3/255.
 
 use glam::{DVec2, Vec2};
 use image::RgbaImage;
 
 use super::Colour;
 
-/// A list of shapes of one kind (discs or links) that are drawn together, from first to last.
+/// A list of shapes of one kind (discs, or links: straight lines with round ends) that are drawn together, from first
+/// to last.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Batch {
     Discs(Vec<DiscInstance>),
@@ -160,13 +162,14 @@ impl Shade for LinkInstance {
     }
 }
 
-/// A shape defined by a distance field in the plane of the picture, pixels, y up.
+/// A shape in the plane of the picture, pixels, y up, whose coverage of a pixel follows from the distance of the
+/// pixel's centre from the shape's edge.
 trait Shade {
     /// Returns two opposite corners of a box around the shape, pixels. Pixels whose centre is outside the box are not
     /// affected by the shape.
     fn bounds(&self) -> [Vec2; 2];
-    /// Returns the premultiplied colour of the shape, times the fraction of the pixel with the centre `point` that the
-    /// shape covers.
+    /// Returns red, green, blue and opacity of the shape at the pixel with the centre `point`. Red, green and blue are
+    /// multiplied by the opacity, and all four by the fraction of the pixel that the shape covers.
     fn shade(&self, point: Vec2) -> [f32; 4];
 }
 

@@ -21,11 +21,11 @@ pub use slump::world::*;
 /// Gravitational acceleration g of the test scenes, m/s².
 pub const G: f64 = 9.8;
 
-/// Motion along the x axis only, without friction and rotation.
+/// Physics of a scene: motion along the x axis only, with cohesion, without friction and rotation.
 pub const LINE: Physics = Physics { axes: 1, friction: false, rotation: false, cohesion: true };
-/// Motion in the plane without friction and rotation.
+/// Physics of a scene: motion in the plane, with cohesion, without friction and rotation.
 pub const SMOOTH: Physics = Physics { axes: 2, friction: false, rotation: false, cohesion: true };
-/// Motion in the plane with friction and without rotation.
+/// Physics of a scene: motion in the plane, with cohesion and friction, without rotation.
 pub const UNTURNING: Physics = Physics { axes: 2, friction: true, rotation: false, cohesion: true };
 
 /// Returns parameters with this Bond number, time step (s), restitution and friction coefficient, and the default
@@ -70,8 +70,9 @@ pub fn tight() -> SolverSettings {
     to_residual(1e-12)
 }
 
-/// Returns the default solver settings with a tolerance of 1e-10 for the relative velocity error (dimensionless), which
-/// is close to rounding errors.
+/// Returns the default solver settings with a tolerance of 1e-10, close to rounding errors, instead of 1e-4. The
+/// tolerance (dimensionless) limits the velocity error of a step as a fraction of √(g·d), with gravity g and the mean
+/// diameter d, or of a larger speed if grains are fast.
 pub fn certain() -> SolverSettings {
     SolverSettings { tolerance: 1e-10, ..SolverSettings::default() }
 }
@@ -84,7 +85,7 @@ pub fn to_residual(tolerance: f64) -> SolverSettings {
     SolverSettings { max_sweeps: 20_000, ..solved_by(Method::Nsgs, tolerance) }
 }
 
-/// Returns a scene with these grains under uniform gravity (m/s²).
+/// Returns a scene with the grains `grains` under the uniform gravity `gravity` (m/s²), without walls and other bodies.
 pub fn scene(
     physics: Physics,
     gravity: DVec2,
@@ -310,9 +311,9 @@ pub fn in_each_way(
     ways.into_iter().map(of)
 }
 
-/// Takes one step. Returns the observables of the step, the change of kinetic energy that the work of gravity, contacts
-/// and borders does not explain (J), and the sum of the magnitudes of the work of gravity and contacts and of the
-/// kinetic energies before and after the step (J).
+/// Takes one step. Returns the measured quantities of the step, the change of kinetic energy that the work of gravity,
+/// contacts and borders does not explain (J), and the sum of the magnitudes of the work of gravity and contacts and of
+/// the kinetic energies before and after the step (J).
 pub fn balance(run: &mut Simulation) -> (Observables, f64, f64) {
     let before = run.observables().kinetic_energy;
     let after = *run.step().expect("a finite state");
@@ -358,7 +359,7 @@ pub fn farthest(one: &[DVec2], other: &[DVec2]) -> f64 {
     one.iter().zip(other).map(|(one, other)| one.distance(*other)).fold(0.0, f64::max)
 }
 
-/// Steppers that do not solve one contact problem for the whole step, but move the grains by impulses only.
+/// Steppers that move grains by impulses only, but do not solve one contact problem for the whole step.
 pub const SCHEMES: [Stepper; 2] = [Stepper::TgsSoft, Stepper::Dem];
 
 /// The steppers [`SCHEMES`] and `avbd`, which moves grains slightly further than the impulses would.
@@ -409,7 +410,8 @@ pub fn assert_said(said: &str, expected: &str) {
 /// An expected error message, and a function that changes a valid scene so that Slump must refuse it with this message.
 pub type Refusal<'a> = (&'a str, &'a dyn Fn(&mut Scene));
 
-/// Applies each of these changes to a copy of a valid scene and checks the error message for the changed scene.
+/// Checks that Slump refuses impossible scenes. Each element of `cases` has a change and an error message: the change
+/// is applied to a copy of the valid scene `good`, and Slump must refuse the changed scene with this message.
 #[track_caller]
 pub fn refuses(good: &Scene, cases: &[Refusal]) {
     for (expected, spoil) in cases {

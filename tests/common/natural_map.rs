@@ -22,8 +22,8 @@ pub struct Judged {
     pub rebound: f64,
 }
 
-/// Largest gap at which grains already push each other, in mean diameters; it allows for rounding of positions. If half
-/// the touch tolerance is smaller than this gap, half the touch tolerance is used instead.
+/// Upper limit, in mean diameters, for the gap at which grains already push each other. Grains push up to half the
+/// touch tolerance or up to this limit, whichever is smaller, because rounding makes gaps between touching grains.
 const ROUNDING: f64 = 1e-4;
 
 /// Velocities (m/s) and angular velocities (rad/s) of the grains.

@@ -36,8 +36,8 @@ struct Target {
 }
 
 impl Target {
-    /// Tries the inputs in `kept` and then random inputs, which `draw` makes of random bytes, and prints the number of
-    /// inputs. `check` gets each input as a text and as the path of a file with this text, and returns true if the
+    /// Tries the inputs in `kept` and then random inputs, which `draw` makes from random bytes, and prints the number
+    /// of inputs. `check` gets each input as a text and as the path of a file with this text, and returns true if the
     /// program accepted the input.
     fn fuzz(
         self,
@@ -83,8 +83,8 @@ fn asked_for(variable: &str) -> Option<u64> {
     std::env::var(variable).ok().map(number)
 }
 
-/// Returns the seed of input `number` of a run of the tests: random bits in the upper half, and the number of random
-/// bytes in the lower half.
+/// Returns the seed from which input number `number` is made. `run` is the value of `SLUMP_FUZZ_SEED` for this run of
+/// the tests. The seed has random bits in the upper half, and the number of random bytes in the lower half.
 fn seed(run: u64, number: u64) -> u64 {
     let hash = blake3::hash(&[run.to_le_bytes(), number.to_le_bytes()].concat());
     let random = hash.as_bytes().iter().take(4).fold(0, |seed, &byte| seed << 8 | u64::from(byte));

@@ -1,4 +1,5 @@
-//! Fuzzing of every parser of users' files, and of the first use of each file.
+//! Fuzzing of every parser of users' files: it gets nearly correct texts. A text that it accepts is also used, for
+//! example by making its scene or by solving its contact problem.
 
 use arbitrary::Unstructured;
 use slump::config::{Config, SceneSource, scene_to_toml};
@@ -11,10 +12,11 @@ use slump::study::Study;
 use super::Target;
 use crate::program::*;
 
-/// Longest allowed error message, bytes.
+/// Longest allowed error message, bytes: forty lines of 80 characters. A longer message is hard to read.
 const LONGEST: usize = 3_200;
 
-/// Longest allowed word in an error message, characters.
+/// Longest allowed word in an error message, characters: nearly two lines of a terminal. A longer word is hard to read.
+/// Paths may be longer.
 const LONGEST_WORD: usize = 150;
 
 /// Returns true if a line can be displayed on any terminal: no character moves the cursor or changes the direction of
@@ -87,7 +89,8 @@ fn studies() {
     fuzz_texts(target, texts, |text, path| Study::parse(text, path, true));
 }
 
-/// Reads a contact problem and solves it by a few sweeps. The length of the text decides the solver method.
+/// Reads a contact problem and solves it by a few sweeps. The length of the text selects the solver method, so that
+/// random texts try all methods.
 fn solve_briefly(text: &str, _: &Path) -> Result<()> {
     let problem = ProblemFile::parse(text)?;
     let settings = SolverSettings {

@@ -255,9 +255,11 @@ fn random_scenes_with_everything() {
 }
 
 const STEPS: u32 = 50;
-/// Depth beyond a wall up to which a grain need not count as lost yet, in radii of the grain.
+/// Margin for grains beyond a wall, in radii of the grain: the tests demand that Slump counts a grain as lost only if
+/// the grain has passed the wall by more than this margin.
 const UNSEEN_IN_RADII: f64 = 0.3;
-/// Distance from the initial scene beyond which a grain must count as lost, in sides of the box around that scene.
+/// Distance of a grain from the box around the initial scene beyond which Slump must count the grain as lost, in units
+/// of the longer side of the box. The unit includes one mean diameter, so that it is never 0.
 const FAR_IN_SIDES: f64 = 4.0;
 
 pub fn run(scene: &Scene, mut simulation: Simulation) {

@@ -20,18 +20,18 @@ fn allocations() -> u64 {
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.set(allocations() + 1);
-        // SAFETY: as for this function.
+        // SAFETY: the caller meets the conditions of this function, which are those of the system's function.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: as for this function.
+        // SAFETY: the caller meets the conditions of this function, which are those of the system's function.
         unsafe { System.dealloc(pointer, layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         ALLOCATIONS.set(allocations() + 1);
-        // SAFETY: as for this function.
+        // SAFETY: the caller meets the conditions of this function, which are those of the system's function.
         unsafe { System.realloc(pointer, layout, size) }
     }
 }

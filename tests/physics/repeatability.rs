@@ -213,7 +213,7 @@ fn by_default_a_step_does_not_depend_on_the_numbering_of_its_discs() {
 }
 
 /// Returns a scene of a hanging chain of 12 discs. If a solve starts from zero impulses, it needs dozens of sweeps; if
-/// it starts from the right impulses, it needs one.
+/// it starts from the impulses of the previous step, it needs one.
 fn chain() -> Scene {
     let radius = 0.05;
     let place = |k: usize| -DVec2::Y * (k as f64 * (2.0 * radius - 1e-9));

@@ -33,8 +33,8 @@ fn values(about: &About) -> Vec<Value> {
     }
 }
 
-/// Returns positions, velocities and observables after [`STEPS`] steps as text, or `None` if the settings are invalid
-/// or a step fails.
+/// Returns as text the positions, velocities and measured quantities after [`STEPS`] steps, or `None` if the settings
+/// are invalid or a step fails.
 fn course(pile: &Scene, settings: Settings) -> Option<String> {
     let mut scene = pile.clone();
     scene.set_settings(settings);

@@ -255,8 +255,8 @@ fn drawn([all, count]: [usize; 2], random: &mut Pcg64) -> Vec<usize> {
 /// Checks how often the confidence region of a calibration contains the true parameters: at least in 18 of 20
 /// calibrations. Each calibrates the friction coefficient μ and the Bond number to the slump and the angle of repose of
 /// piles made with [`TRUTH`]. All runs are computed once, and each calibration draws a random quarter of them: of the
-/// runs at each pair of μ and Bond, and of the runs with [`TRUTH`]. So two calibrations share a quarter of their runs.
-/// `SLUMP_REPORT=FILE` writes the results to a file.
+/// runs at each pair of μ and Bond, and of the runs with [`TRUTH`]. So two calibrations have on average a quarter of
+/// their runs in common. `SLUMP_REPORT=FILE` writes the results to a file.
 #[test]
 #[ignore = "takes six core minutes"]
 fn calibrations_of_piles_contain_the_parameters_that_made_their_targets() {

@@ -90,9 +90,9 @@ fn only_settings_that_change_nothing_are_told_of_as_such() {
     }
 }
 
-/// Checks that `slump problem solve --starts` reports two solutions of a contact problem that has two, which differ
-/// most at grain 82. The problem is a step of the built-in pile, which is reached if the earlier steps are solved with
-/// bounded friction.
+/// Checks that `slump problem solve --starts` finds both solutions of a contact problem that has two, and names the
+/// grain (number 82) at which they differ most. The problem is a step of the built-in pile; all earlier steps are
+/// solved with bounded friction.
 #[test]
 fn a_step_with_two_solutions_is_told_to_have_them() {
     let folder = folder();

@@ -1,5 +1,6 @@
 //! Tests that Slump refuses at once, in one sentence that names the cause, any input that needs more resources than any
-//! machine has. The time for refusing and planning grows in proportion to the size of the input.
+//! machine has. Also tests that the time for refusing a file grows only in proportion to its size, and the time for
+//! making the list of runs of a study only in proportion to the number of runs.
 
 use std::fmt::Write as _;
 

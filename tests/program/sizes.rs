@@ -42,8 +42,8 @@ fn integral(from: f64, to: f64, value: impl Fn(f64) -> f64) -> f64 {
     (0..20_000).map(|k| step * value(from + (f64::from(k) + 0.5) * step)).sum()
 }
 
-/// Returns the moments 1 to 4 of a distribution of diameters, each divided by the same power of the mean. A diameter is
-/// a function of a random number that has the given density between two bounds.
+/// Returns the moments 1 to 4 of a distribution of diameters, each divided by the same power of the mean. Each diameter
+/// is a function of a random variable, which has the given probability density between two bounds.
 fn moments(
     bounds: [f64; 2],
     density: impl Fn(f64) -> f64,

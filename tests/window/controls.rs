@@ -34,8 +34,8 @@ fn springs_are_set_in_the_panel_which_tells_what_follows() {
     robot.settle();
     assert_eq!(robot.settings().parameters.stiffness, 2000.0);
     let (mass, g, d) = (std::f64::consts::PI * 6.25e-6, 9.8, 5e-3);
-    // The expected work of fracture is C₀²/2k (C₀: cohesion force, k: stiffness) of two grains with about the mass of a
-    // disc of the mean diameter.
+    // The expected work of fracture is C₀²/(2k) (C₀: cohesion force, k: stiffness) of two grains with about the mass of
+    // a disc of the mean diameter.
     let expected = (20.0 * 0.5 * mass * g).powi(2) / 4000.0 / (mass * g * d);
     let told = robot.world().fracture_work.expect("bonds").over_mgd;
     assert!((told / expected - 1.0).abs() < 0.05, "{told} is not {expected}");

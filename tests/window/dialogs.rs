@@ -1,6 +1,7 @@
-//! Tests of the dialogs in which the user chooses a file or a folder. On a desktop without a portal the program
-//! `zenity` shows these dialogs, and a script replaces `zenity` in the tests. Each test runs in its own process,
-//! because the script is found through the environment variable `PATH`.
+//! Tests of the dialogs in which the user chooses a file or a folder. On Linux desktops a system service
+//! (xdg-desktop-portal) shows these dialogs or, without this service, the program `zenity`. The tests switch the
+//! service off and replace `zenity` by a script. Each test runs in its own process, because the script is found through
+//! the environment variable `PATH`.
 
 #![cfg(target_os = "linux")]
 

@@ -1,4 +1,5 @@
-//! Tests that the record of a run reproduces all computed states bitwise.
+//! Tests of the recording that the window keeps of its run: going back and forth in time shows all computed states
+//! again, bitwise.
 
 use crate::robot::*;
 use slump::live::LiveStart;

@@ -1,5 +1,6 @@
 //! Defines how a column of a table is declared: by name, unit, description, and a function that reads the value from a
-//! row. Each type of row has one list of such declarations, which all code that shows or writes its table uses.
+//! row. Each type of row has one list of such declarations. All code that shows or writes a table with rows of this
+//! type uses this list.
 
 /// Declaration of one column of a table with rows of the type `Row`.
 #[derive(Clone, Copy, Debug)]

@@ -3,9 +3,9 @@
 //! interval.
 //!
 //! Piles are chaotic, so the window shows a mean over several runs. The seed of the built-in pile is never in the
-//! ensemble, because it was chosen: with this seed a single run shows the dependence of slump on Bond number and time
-//! step of Abramian & Staron (2020). Idle cores run the other piles from their initial state to the end of the scene,
-//! with constant settings. A run has no ensemble if its settings changed during the run or if the user pulled a grain,
+//! ensemble, because it was chosen: with this seed, single runs show how slump depends on Bond number and time step in
+//! Abramian & Staron (2020). Idle cores run the other piles from their initial state to the end of the scene, with
+//! constant settings. A run has no ensemble if its settings changed during the run or if the user pulled a grain,
 //! because such a run cannot be compared with runs under constant settings.
 
 mod pool;
@@ -40,8 +40,8 @@ const RULE: &str = "Idle cores run other piles with the present settings from th
 pub struct Ensemble {
     /// Folder in which the computed initial states are stored; `None` if the user has no folder for such files.
     folder: Option<PathBuf>,
-    /// The open scene as the window loaded it. `piles` describes the other initial states: the same pile made from
-    /// other seeds.
+    /// The open scene as the window loaded it. The field `piles` describes the other initial states: the same pile made
+    /// from other seeds.
     opened: Option<Arc<LiveStart>>,
     piles: Vec<NewPile>,
     pool: Option<WorkerPool>,
@@ -81,8 +81,8 @@ impl Ensemble {
         self.folder.clone()
     }
 
-    /// Ends all threads that compute runs from other initial states. Keeps the results of started runs
-    /// (`released`) as they were in the last frame.
+    /// Ends all threads that compute runs from other initial states. Keeps the results of started runs (`released`) as
+    /// they were when the window drew its last frame.
     pub fn stop(&mut self) {
         self.pool = None;
         self.worlds.clear();
@@ -100,7 +100,7 @@ impl Ensemble {
     }
 
     /// Starts or continues the threads that compute runs from other initial states, with the settings of the
-    /// simulations in `frame` (the newest frame). If `is_wanted` is false, stops all threads.
+    /// simulations in `frame`, the newest data from the solver's thread. If `is_wanted` is false, stops all threads.
     pub(super) fn follow(&mut self, context: &egui::Context, frame: &LiveFrame, is_wanted: bool) {
         let address = |opened: &Option<Arc<LiveStart>>| opened.as_ref().map(Arc::as_ptr);
         if address(&self.opened) != address(&frame.start) {
@@ -137,7 +137,8 @@ impl Ensemble {
     }
 
     /// Discards the settings and results of started runs if they belong to another scene, another duration, another
-    /// base or other initial states than the open scene. Keeps them if the open scene has no other initial states.
+    /// width of the base under the grains, or other initial states than the open scene. Keeps them if the open scene
+    /// has no other initial states.
     fn note_kind(&mut self) {
         let Some(opened) = self.opened.as_ref().filter(|_| !self.piles.is_empty()) else { return };
         let kind = Some(PileKind {
@@ -152,9 +153,9 @@ impl Ensemble {
         }
     }
 
-    /// Stores the settings of the simulations in `frame` that the user has started (that have taken a step). Returns
-    /// true if some of these settings are new. `all` contains the settings of each simulation, or `None` if it has no
-    /// ensemble (runs from other initial states).
+    /// Stores the settings of the simulations in `frame` (data from the solver's thread) that the user has started
+    /// (that have taken a step). Returns true if some of these settings are new. `all` contains the settings of each
+    /// simulation, or `None` if it has no ensemble (runs from other initial states).
     fn note_released(&mut self, frame: &LiveFrame, all: &[Option<Settings>]) -> bool {
         let before = self.released.len();
         for (world, settings) in frame.worlds.iter().zip(all) {
@@ -169,8 +170,9 @@ impl Ensemble {
         self.released.len() > before
     }
 
-    /// Discards the settings and results of all started runs, and so clears the plot of slump against Δt. When the next
-    /// frame arrives, the settings of the visible runs are stored again, so only earlier runs are lost.
+    /// Discards the settings and results of all started runs, and so clears the plot of slump against Δt. When the
+    /// window draws its next frame, the settings of the visible runs are stored again, so only the results of earlier
+    /// runs are lost.
     pub(super) fn forget_released(&mut self) {
         self.released.clear();
     }

@@ -16,7 +16,8 @@ use crate::sim::Settings;
 use crate::study::settled_pile;
 use crate::world::Grain;
 
-/// Least time between two reports of the progress while a pile is being deposited.
+/// Least time between two reports of the progress while a pile is being deposited. Each report makes the window draw
+/// again, so a shorter time costs computing time; with a longer time the displayed progress is late.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
 /// Number of cores that the threads of the ensemble (runs from other initial states) do not use. One core is for the
 /// visible run. On systems where this program cannot lower the priority of a thread, one more core is for the window,
@@ -29,8 +30,8 @@ pub(super) fn idle_cores() -> usize {
     cores.saturating_sub(LEFT)
 }
 
-/// Gives the calling thread the lowest priority. On Linux each thread has its own priority, and the process `None`
-/// means the calling thread (setpriority(2), "C library/kernel differences").
+/// Gives the calling thread the lowest priority, so that other threads come first. On Linux each thread has its own
+/// priority, and the process `None` (id 0) means the calling thread (setpriority(2), "C library/kernel differences").
 fn give_way() {
     #[cfg(target_os = "linux")]
     {
@@ -56,12 +57,13 @@ pub(in crate::app) fn on_idle_cores<T: Send>(work: impl FnOnce() -> Result<T> + 
     pool.map_err(refuse)?.install(work)
 }
 
-/// A job for one of the other initial states (piles) from which runs are computed. Its number is the index of the pile.
+/// A job of a thread that computes runs from other initial states than that of the visible run: piles made from other
+/// seeds. The number in a job is the index of its pile in the list of these piles.
 #[derive(Clone, Copy, PartialEq)]
 enum PileJob {
-    /// Deposit the pile: let its grains fall into the box and come to rest.
+    /// Deposit the pile with this index: let its grains fall into the box and come to rest.
     Settle(usize),
-    /// Run the pile with these settings.
+    /// Simulate the pile with this index from its initial state to the end of the scene, with these settings.
     Run(usize, Settings),
 }
 

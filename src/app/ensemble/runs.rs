@@ -44,8 +44,9 @@ impl Band {
         band
     }
 
-    /// Returns the mean slump and the half-width of its confidence interval at the last computed time up to
-    /// `time_secs`, s. `None` before the first computed time, and from one spacing of these times after the last on.
+    /// Returns the mean slump and the half-width of its confidence interval at the simulated time `time_secs`, s: the
+    /// values of the last computed time at or before it. `None` if `time_secs` is before the first computed time, or
+    /// after the last one by at least the interval between two computed times.
     pub(crate) fn at(&self, time_secs: f64) -> Option<(f64, f64)> {
         let index = self.index_at(time_secs)?;
         Some((self.means[index], self.highs[index] - self.means[index]))
@@ -73,8 +74,8 @@ impl Band {
     }
 }
 
-/// Largest number of points in the slump curve of a run, not counting the last point. If the run has more steps,
-/// the points are several steps apart.
+/// Largest number of points in the slump curve of a run, not counting the last point. If the run has more steps, the
+/// points are several steps apart. A larger number shows faster changes of the slump, but takes more memory.
 const MOST_POINTS: u64 = 400;
 /// Computes the slump curve of a scene from its initial state to its end. `goes_on` is called after each step; if it
 /// returns false, the run stops and the result is `None`.

@@ -14,7 +14,7 @@ use crate::world::{FrictionCone, Parameters};
 
 /// Time steps Δt that Abramian & Staron (2020) compare, s.
 const PAPER_TIME_STEPS: [f64; 6] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3];
-/// Largest number of worlds (simulations) side by side.
+/// Largest number of worlds (simulations) side by side. With more, each of them would have little space in the window.
 const MOST_WORLDS: usize = 6;
 
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {

@@ -9,7 +9,8 @@ use crate::app::number_text::{clock_text, time_field};
 use crate::app::work::{Reporter, Work};
 use crate::data::{DataSettings, FormatName, check_format};
 
-/// Shortest and longest simulated time between two exported states (frames) of the run, s.
+/// Shortest and longest time that the user can enter as the simulated time between two exported states (frames) of the
+/// run, s. The limits are far outside useful values.
 const EVERY: [f64; 2] = [1e-9, 1e9];
 
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {

@@ -14,7 +14,8 @@ use crate::app::watched_run::{TakenRun, WatchedRun};
 use crate::app::work::{Work, outcome_of_ended};
 use crate::granular::{Histogram, histograms};
 
-/// Least time between two computations of the histograms.
+/// Least time between two computations of the histograms. With a shorter time, the histograms of a running simulation
+/// change more smoothly, but take more computing time.
 const INTERVAL: Duration = Duration::from_millis(200);
 
 /// Histograms of one simulation at the displayed simulated time, or slightly before.

@@ -14,7 +14,7 @@ use crate::live::Command;
 /// Speeds of playing that the user can choose: simulated time per wall-clock time.
 const PACES: [f64; 7] = [0.01, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0];
 
-/// Smallest width of a main slider with its number, points.
+/// Smallest width of a main slider (for Bond, Δt, ρ or μ) with its number, points.
 const LEAST_WIDTH: f32 = 150.0;
 
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -164,7 +164,8 @@ fn mark_events(ui: &Ui, context: &PanelContext<'_>, rect: Rect, end_secs: f64) {
     }
 }
 
-/// Shows the main sliders that have an effect in the scene, side by side; in a lesson, only the sliders of the lesson.
+/// Shows those of the main sliders (for Bond, Δt, ρ and μ) that have an effect in the scene, side by side; in a lesson,
+/// only the sliders of the lesson.
 fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let Some((before, start)) = context.run.wanted_and_start() else { return };
     let (index, mut settings) = (context.run.selected, before);
@@ -203,7 +204,8 @@ fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// Shows a warning if the time step is too long, otherwise a hint on the main sliders.
+/// Shows a warning if the time step is so long that a grain at rest falls too far in one step. Otherwise shows a hint
+/// on the main sliders (Bond, Δt, ρ and μ), such as the effect of a longer Δt.
 fn what_to_try(ui: &mut Ui, context: &PanelContext<'_>) {
     let Some(world) = context.run.world() else { return };
     let settings = world.controls.settings;

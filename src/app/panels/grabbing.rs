@@ -1,5 +1,5 @@
-//! Actions of the mouse in a world (simulation): the mouse moves the view, pins grains and pulls grains. With Shift it
-//! adds grains, removes grains and moves walls.
+//! Actions of the mouse in a world (simulation): the mouse moves the view, selects ("pins") the grain whose state is
+//! shown, and pulls grains. With Shift it adds grains, removes grains and moves walls.
 
 use egui::{
     Color32, DragValue, Event, InputState, PointerButton, Pos2, Rect, Response, RichText, Stroke,
@@ -87,8 +87,8 @@ impl WorldCell<'_> {
         Some(GrainRef { world: self.index, grain })
     }
 
-    /// Draws rings around the pinned grain and the grains in contact with it, the grabbed grain, and the grain under
-    /// the mouse.
+    /// Draws rings around the pinned grain (which the user selected with a click) and the grains in contact with it,
+    /// the grain that the mouse pulls, and the grain under the mouse.
     pub(super) fn marks(&self, ui: &Ui, mouse: &Grabbing, context: &PanelContext<'_>) {
         let painter = ui.painter().with_clip_rect(self.cell);
         let accent = theme::accent(ui.visuals().dark_mode);

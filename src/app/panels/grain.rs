@@ -10,7 +10,7 @@ use crate::live::WorldFrame;
 use crate::render::numbers::si_prefix;
 use crate::sim::Snapshot;
 
-/// Shows the pinned grain with its contacts, if a grain is pinned.
+/// Shows the state and contacts of the pinned grain (which the user selected with a click), if a grain is pinned.
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     let Some(pinned) = run.pinned else { return };
     let Some(world) = run.frame.worlds.get(pinned.world) else { return };
@@ -23,7 +23,8 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     ui.separator();
 }
 
-/// Shows the pinned grain in a corner of the scene, unless the sidebar shows this grain.
+/// Shows the state of the pinned grain (which the user selected with a click) in a corner of the scene, unless the
+/// sidebar shows this grain.
 pub(super) fn show_over_scene(ui: &Ui, context: &mut PanelContext<'_>) {
     if context.preferences.page == Some(Page::Pile) {
         return;

@@ -15,8 +15,9 @@ use crate::sim::{Observables, Settings};
 /// State of the bar above the scene, which shows the present lesson.
 #[derive(Default)]
 pub(crate) struct LessonBar {
-    /// Number of initial states that the window had loaded when the user opened the present lesson. While the newest
-    /// frame contains no larger number, it still shows the run before the lesson.
+    /// Number of initial states that the window had loaded when the user opened the present lesson. The window shows
+    /// the run of the lesson once it has loaded more initial states than this; until then it still shows the run before
+    /// the lesson.
     pub loads_before: u64,
     /// True while the summary of the lessons is open.
     pub shows_summary: bool,

@@ -1,5 +1,5 @@
-//! Panel: the stepper (rule that advances the grains by Δt) with its contact law, the parameters that have no main
-//! slider, and quantities derived from them.
+//! Panel: the stepper (rule that advances the grains by Δt) with its contact law, the parameters without a main slider
+//! (all except Bond, Δt, ρ and μ), and quantities derived from the parameters.
 
 use egui::{RichText, Ui};
 

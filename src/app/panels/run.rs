@@ -16,7 +16,8 @@ use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Sizes};
 /// Groups of scenes in the gallery. Stability scenes (scenes that are hard for solvers) are not among them, because
 /// they are for experts (page "Law, solver").
 const SCENE_GROUPS: [SceneGroup; 2] = [SceneGroup::Paper, SceneGroup::Experiments];
-/// Largest number of grains of a new pile that the panel offers. The command line allows more.
+/// Largest number of grains of a new pile that the panel offers. With more grains, the user would wait longer for the
+/// pile and for each step. The command line allows more.
 const MOST_GRAINS: usize = 20_000;
 
 /// Smallest number of grains of a new pile for which the panel states the computing time.
@@ -238,8 +239,9 @@ fn name_field(ui: &mut Ui, run: &mut WatchedRun, number: Option<u64>, given: &st
     response.on_hover_text("A name for this run. Sessions keep it.");
 }
 
-/// Returns a title for an earlier run. If the run has one simulation, the title contains the values of all main sliders
-/// and the slump; if it has several, the settings in which they differ.
+/// Returns a title for an earlier run. If the run has one simulation, the title contains Bond, Δt, ρ, μ and the slump.
+/// If it has two, the title contains the settings of both in which they differ; if it has more, their number and these
+/// settings of the first one.
 fn title(run: &PastRun, slumps: bool) -> String {
     let controls: Vec<Controls> = run.worlds.iter().map(|world| world.controls).collect();
     let first = title_among(&controls, 0);

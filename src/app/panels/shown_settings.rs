@@ -1,4 +1,5 @@
-//! The settings that the window shows for the open scene, and the settings that have a main slider.
+//! The settings that the window shows for the open scene, and the settings with a main slider (one of the most
+//! prominent sliders): Bond, Δt, ρ and μ.
 
 use glam::DVec2;
 
@@ -7,7 +8,8 @@ use crate::setting::{About, Group, Needs};
 use crate::sim::Settings;
 use crate::world::Parameters;
 
-/// Names of the settings that have a main slider.
+/// Names of the settings that have a main slider: the Bond number, the time step Δt, the restitution coefficient ρ and
+/// the friction coefficient μ.
 pub const FRONT_SETTINGS: [&str; 4] = ["bond", "dt", "rho", "mu"];
 
 /// Returns the settings of the contact law and of the time step that have an effect in the scene and that the stepper

@@ -22,10 +22,12 @@ use crate::solver::{METHODS, Method, SolverSettings, StopTest};
 const TOLERANCES: [f64; 8] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
 /// Limit on the computing time of a step, s. A solver that takes longer is not tried with tighter tolerances.
 const LIMIT_SECS: f64 = 0.25;
-/// Largest number of times that each solver solves the step to each tolerance. The shortest computing time is reported.
+/// Largest number of times that each solver solves the step to each tolerance. The shortest computing time is reported,
+/// because other programs can only make a solve slower. With a larger number the comparison takes longer.
 const REPEATS: usize = 3;
 const MOST_SWEEPS: u32 = 20_000;
-/// Largest number of steps whose computing time is measured.
+/// Largest number of steps whose computing time is measured. The measurement ends earlier if these steps together take
+/// [`TIMED_SECS`].
 const TIMED_STEPS: u32 = 50;
 /// Largest sum of the measured computing times of steps, s. When the sum reaches this value, no further step is
 /// measured.

@@ -142,7 +142,8 @@ impl TrustPanel {
         (trust == Trust::No).then_some(reason)
     }
 
-    /// Shows the panel: the reason of the verdict, the bars of the error budget, and the other reasons below.
+    /// Shows the panel: the reason of the verdict, the bars of the error budget, and below them the solved steps,
+    /// warnings and the mean slump of runs from other initial states.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &PanelContext<'_>) {
         let (trust, reason) = self.verdict(context.run);
         ui.horizontal(|ui| {
@@ -303,8 +304,8 @@ fn bar(ui: &mut Ui, effect: &BudgetEffect, within: f64, reach: f64) {
     response.response.on_hover_text(text);
 }
 
-/// Returns a warning if a grain at rest would fall too far in one step of a simulation for contacts to be found in time
-/// (the limit is 0.2 mean diameters).
+/// Returns a warning if a grain at rest would fall by more than 0.2 mean diameters in one step of a simulation (in one
+/// substep if the stepper divides its steps), because contacts would then be found too late.
 fn warning(world: &WorldFrame) -> Option<String> {
     too_long(&world.controls.settings, &world.snapshot.surroundings, world.substeps)
 }

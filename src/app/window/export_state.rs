@@ -9,7 +9,8 @@ use super::keeping::replace_file;
 use crate::app::state::AppState;
 use crate::app::told::told;
 
-/// Least time between two writes of the state to the file while the run plays.
+/// Least time between two writes of the state to the file while the run plays. With a shorter time, tests see changes
+/// sooner, but writing takes more of the window's time.
 const INTERVAL: Duration = Duration::from_millis(50);
 
 /// Writer of the file with the state of the window and of the run. It limits the rate of writes.

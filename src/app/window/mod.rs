@@ -28,12 +28,14 @@ pub(crate) use start::WindowOptions;
 use start::{attributes, first, no_display};
 use surface::{Drawn, WindowSurface};
 
-/// Least time between two frames that are drawn because the simulation has advanced.
+/// Least time between two frames that are drawn because the simulation has advanced. It allows about 60 frames per
+/// second, the rate of common screens.
 pub(crate) const FRAME_INTERVAL: Duration = Duration::from_millis(16);
 /// Least time between two frames if the processor draws instead of a graphics card. More than 25 frames per second
 /// hardly look smoother, and drawing takes processor time from the solver.
 pub const SOFTWARE_FRAME_INTERVAL: Duration = Duration::from_millis(40);
-/// Number of consecutive losses of the graphics device after which the program ends with an error.
+/// Largest number of consecutive losses of the graphics device after which the device is opened again. After one more
+/// loss the program ends with an error.
 const MOST_LOSSES: u32 = 3;
 
 /// Opens the window and returns when it is closed.

@@ -17,8 +17,8 @@ const FLOOR: f64 = -10.0;
 type Drop<'a> =
     (&'a str, f64, &'a [[f64; 3]], [f64; 2], [f64; 2], Option<(Support, Option<Support>)>);
 
-/// Checks where single dropped discs come to rest. Each disc is dropped twice: on the discs of its case, and at the
-/// mirrored position on the mirrored discs.
+/// Checks where single dropped discs come to rest. Each disc is dropped twice: on the discs of its test case, and,
+/// mirrored at x = 0, at the mirrored position on the mirrored discs.
 #[test]
 fn single_discs_come_to_lie_where_geometry_says() {
     let (floor, between) = ((Support::Floor, None), (Support::Disc(0), Some(Support::Disc(1))));

@@ -91,8 +91,9 @@ fn solved_steps_obey_the_model_as_world_data_show_it() {
 /// Friction coefficient of [`piles`].
 const MU_OF_PILES: f64 = 0.5;
 
-/// A visitor that solves a contact problem with the given solver settings, starting from random impulses with the given
-/// seed. It returns the velocities of the bodies.
+/// Arguments of a solve: solver settings, and the seed of the random initial impulses. [`Simulation::next_problem`]
+/// passes the contact problem of the next step to this value, which solves the problem and returns the velocities of
+/// the bodies.
 struct FromRandomStarts<'a>(&'a SolverSettings, u64);
 
 impl ProblemVisitor for FromRandomStarts<'_> {
@@ -172,9 +173,9 @@ fn every_step_of_a_pile_that_slumps_is_solved_within_its_model() {
 
 /// Returns two estimates of the velocity error of a step under Coulomb friction, m/s, computed from positions,
 /// velocities and impulses. The first is the root of S/M: S is the duality gap (the difference between the energies of
-/// the optimisation problem and of its dual problem, J), and M is the mass of all touching grains. The second is the
-/// velocity change of all grains that is needed so that no contact closes too fast. The module
-/// `solver::problem::velocity_error` contains the definitions.
+/// the optimisation problem and of its dual problem, J), and M is the mass of all touching grains. The second is an
+/// estimate of the change of the velocities that gives each contact the normal velocity that the contact law demands
+/// (restitution included). The module `solver::problem::velocity_error` contains the definitions.
 fn errors_of_world(run: &Simulation, pile: &Scene, before: &Simulation) -> [f64; 2] {
     let (mut gap, mut touches) = (0.0, vec![false; run.grains().len()]);
     let grains = run.grains().len();

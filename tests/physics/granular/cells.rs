@@ -12,7 +12,7 @@ const EXACT: f64 = 1e-12;
 
 /// Returns the index of the disc to whose cell (the region that belongs to the disc) a point belongs: the disc for
 /// which the power (squared distance from the centre minus r²) is smallest, if this power is below `largest_power` =
-/// 3r̄² (r̄: mean radius).
+/// 3r̄² (r̄: mean radius). Otherwise the point is outside the packing, and the result is `None`.
 fn owner(point: DVec2, discs: &[(DVec2, f64)], largest_power: f64) -> Option<usize> {
     let power =
         |&(centre, radius): &(DVec2, f64)| (point - centre).length_squared() - radius * radius;
@@ -21,9 +21,10 @@ fn owner(point: DVec2, discs: &[(DVec2, f64)], largest_power: f64) -> Option<usi
     (least < largest_power).then_some(index)
 }
 
-/// Returns two areas for each grain, m², found by counting points of a raster: the area of its cell (the region nearer
-/// to the grain than to any other disc) within the box around all grains, and the area of its cell within the box
-/// `room` (lower left and upper right corner, m). The raster divides the box into `steps` steps along each side.
+/// Returns two areas for each grain, m², found by counting points of a raster: the area of the part of its cell (the
+/// region nearer to the grain than to any other disc) that is in the box around all grains and in the box `room` (lower
+/// left and upper right corner, m), and the area of the part that is in the box `room`. The raster divides the box
+/// around all grains into `steps` steps along each side.
 fn areas_by_counting(moment: &Moment, steps: i32, room: [DVec2; 2]) -> Vec<[f64; 2]> {
     let grains = &moment.grains;
     let radii: f64 = grains.iter().map(|grain| grain.radius).sum();

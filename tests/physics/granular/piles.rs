@@ -16,8 +16,9 @@ fn virial(pile: &PileMeasures) -> [f64; 4] {
         .map(|stress| stress * pile.area)
 }
 
-/// Returns the same sum as [`virial`], computed from external forces: the total contact force on each grain times its
-/// position, minus the contact forces on bodies that are not grains times the contact points.
+/// Returns the sum Σ f ⊗ ℓ of contact forces f times branch vectors ℓ (components xx, xy, yx, yy), J, computed from
+/// external forces. If `force` returns the total contact force on each grain, the sum is this force times the position
+/// of the grain, minus the contact forces on bodies that are not grains times the contact points.
 fn virial_from_outside(
     moment: &Moment,
     before: &Moment,

@@ -266,7 +266,7 @@ fn before_a_wall(stepper: Stepper, restitution: f64) -> Scene {
 }
 
 /// Returns the speed at which a wall follows the user's mouse in a scene without gravity, m/s: half of √(g·d) with g =
-/// 9.8 m/s² and the mean diameter d.
+/// 9.8 m/s² and the mean diameter d. Slump limits the speed to this value, which every stepper tolerates.
 fn speed_of_hand() -> f64 {
     0.5 * (9.8 * 2.0 * RADIUS).sqrt()
 }

@@ -1,5 +1,5 @@
-//! Tests of conserved quantities: momentum, angular momentum (which only the overlap of grains can change), and the
-//! energy balance.
+//! Tests of conserved quantities: momentum, angular momentum (which changes only if the forces of a contact act at
+//! different points on the two grains, because the grains overlap), and the energy balance.
 
 use crate::common::*;
 
@@ -69,8 +69,9 @@ fn the_overlap_alone_changes_the_angular_momentum() {
     check_angular_momentum(&scene);
 }
 
-/// Runs 400 steps and checks in each step that the overlaps explain the change of the angular momentum. Returns the sum
-/// of these changes and the sum of the magnitudes of the initial terms of the angular momentum, both in kg·m²/s.
+/// Runs 400 steps and checks in each step that the change of the angular momentum is the sum, over all contacts, of gap
+/// (negative for an overlap) times tangential impulse. Returns the sum of these changes and the sum of the magnitudes
+/// of the initial terms of the angular momentum, both in kg·m²/s.
 fn check_angular_momentum(scene: &Scene) -> (f64, f64) {
     let mut run = start(scene);
     let (mut explained, mut largest) = (0.0, 0f64);

@@ -5,8 +5,9 @@
 use crate::common::*;
 
 /// Runs the cradle `scene` for 2.5 s with the time step `dt` (s). Returns true if the falling disc k has broken the
-/// bond between the discs i and j: the gap between i and j is then more than 0.1 d (d: diameter). The impact comes at
-/// the latest, if k starts 8.5 d away, at √(2·7.5 d/g) = 1.5 s, where g is the acceleration of k (m/s²).
+/// bond between the discs i and j: the gap between i and j is then more than 0.1 d (d: diameter). The disc k starts at
+/// most 8.5 d away (distance of the centres) and falls 7.5 d until it touches i, with the acceleration g (m/s²). So the
+/// impact comes no later than √(2·7.5 d/g) = 1.5 s.
 fn opens(mut scene: Scene, dt: f64) -> bool {
     scene.parameters.time_step_secs = dt;
     let run = after(&scene, (2.5 / dt).round() as usize);

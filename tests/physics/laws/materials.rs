@@ -243,9 +243,11 @@ fn bare(scene: &Scene) -> Scene {
 fn every_row_of_a_mixed_pile_is_within_the_bounds_of_its_own_pair() {
     const FORCE: f64 = 2e-3;
 
-    /// A visitor of contact problems. For each pair of materials it returns the largest ratio of the tangential impulse
-    /// to its friction bound and the smallest ratio of the normal impulse to the cohesion impulse. It also returns true
-    /// if sweeps solve the problem and Newton's method solves it within 100 sweeps.
+    /// Gets the contact problem of a step from [`Simulation::next_problem`] and returns, for each pair of materials,
+    /// the largest ratio of the tangential impulse to its friction bound and the smallest ratio of the normal impulse
+    /// to the cohesion impulse. Also returns true if two solvers solve the problem: Gauss–Seidel, and Newton's method
+    /// with at most 100 Gauss–Seidel sweeps. (Newton's method makes such sweeps before and after each factorisation of
+    /// a matrix.)
     struct Extremes<'a>(&'a World);
 
     impl ProblemVisitor for Extremes<'_> {

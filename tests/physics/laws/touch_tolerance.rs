@@ -6,7 +6,8 @@ use crate::common::*;
 const RADIUS: f64 = 0.01;
 const DIAMETER: f64 = 2.0 * RADIUS;
 const BOND: f64 = 20.0;
-/// Largest rounding error that the tests allow in gaps, in diameters.
+/// Largest deviation of a gap from its expected value that the tests allow, in diameters. Slump itself treats a contact
+/// with such a gap as closed, because rounding makes gaps between touching grains.
 const ROUNDING: f64 = 1e-4;
 
 /// Returns a scene of two weightless discs with the gap `gap` (in diameters) that separate at the speed `opening`
@@ -108,10 +109,11 @@ fn a_bond_takes_its_force_times_the_tolerance_to_break() {
     }
 }
 
-/// Checks up to which angular velocity ω a circling pair of diameter d stays together. In a time step Δt it opens by
-/// ½ω²Δt²d. If the bond is only a little stronger than the circular motion requires, the pull needs some steps to
-/// reverse this opening. Meanwhile the gap grows by at most ω⁴Δt²d/8(ω_b² − ω²), where ω_b is the largest angular
-/// velocity at which the bond can hold the pair. The touch tolerance must be larger than this gap.
+/// Checks up to which angular velocity ω two bonded discs of diameter d that circle about their common centre stay
+/// together. In a time step Δt their gap opens by ½ω²Δt²d. If the bond is only a little stronger than the circular
+/// motion requires, the pull needs some steps to reverse this opening. Meanwhile the gap grows by at most
+/// ω⁴Δt²d/(8(ω_b² − ω²)), where ω_b is the largest angular velocity at which the bond can hold the pair. The touch
+/// tolerance must be larger than this gap.
 #[test]
 fn a_pair_turns_for_good_up_to_the_spin_that_its_bond_bears() {
     let break_up = (BOND * G / DIAMETER).sqrt();
@@ -144,8 +146,8 @@ fn a_pair_turns_for_good_up_to_the_spin_that_its_bond_bears() {
 }
 
 /// Checks how many steps a bond survives turning at touch tolerance 0, however strong it is. Each step opens the gap by
-/// ½ω²Δt²d (angular velocity ω, time step Δt, diameter d), so the bond ends when this has used up the initial overlap.
-/// With a touch tolerance that is larger than the opening of one step, the bond survives.
+/// ½ω²Δt²d (angular velocity ω, time step Δt, diameter d), so the bond ends when the openings of all steps together
+/// exceed the initial overlap. With a touch tolerance that is larger than the opening of one step, the bond survives.
 #[test]
 fn without_a_tolerance_turning_uses_up_the_overlap_of_a_bond() {
     let break_up = (BOND * G / DIAMETER).sqrt();

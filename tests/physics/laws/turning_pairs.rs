@@ -1,5 +1,5 @@
 //! Tests of bonded pairs that circle about their common centre. If bonds have a length, a pair breaks at the angular
-//! velocity √(Bond·g/2r), where r is the radius and g the gravitational acceleration that defines the cohesion force.
+//! velocity √(Bond·g/(2r)), where r is the radius and g the gravitational acceleration that defines the cohesion force.
 //! If a bond ends at a gap of zero, the pair breaks at a lower angular velocity, and Slump warns.
 
 use crate::common::*;

@@ -81,7 +81,7 @@ fn a_piston_at_rest_carries_its_pressure_however_light_it_is() {
     }
 }
 
-/// Checks that sweeps and the interior-point method move an obliquely force-driven wall alike, with bounded friction.
+/// Checks that Gauss–Seidel sweeps and the interior-point method move a wall alike if friction is bounded.
 #[test]
 fn sweeps_and_the_interior_point_move_a_wall_alike_within_bounds_of_friction() {
     let of_grain = std::f64::consts::PI * 1e-4;

@@ -25,8 +25,8 @@ fn farthest(one: &Simulation, other: &Simulation, shift: f64) -> f64 {
     ways.map(|way| cell.shortest(way).length()).fold(0.0, f64::max)
 }
 
-/// Returns a scene of grains on a floor and on discs that are not grains, and the width of a periodic cell for it (20
-/// diameters, m). Each grain can come to rest at only one position.
+/// Returns a scene of grains on a floor and on discs that are not grains, and the width of a periodic cell for this
+/// scene, m (20 mean diameters). Each grain can come to rest at only one position.
 pub(super) fn at_rest_on_discs() -> (Scene, f64) {
     let mut scene = at_rest_and_falling();
     scene.boundaries = vec![level()];

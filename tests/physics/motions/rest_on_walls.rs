@@ -1,5 +1,5 @@
-//! Tests of discs at rest relative to moving walls: the gap must not change. To ensure this, the solver uses as the
-//! velocity of each wall the exact mean over the step.
+//! Tests of discs at rest relative to moving walls: the gap must not change. To ensure this, the velocity of each wall
+//! in the contact problem is the exact mean of its velocity over the step.
 
 use super::through_a_file;
 use crate::common::*;

@@ -13,8 +13,9 @@ const MU: f64 = 0.25;
 const DT: f64 = 1e-3;
 const SPEED: f64 = 0.6;
 
-/// Returns floors whose surface moves to the right at [`SPEED`], with their names: one floor for each combination of
-/// shape and kind of motion for which this is possible.
+/// Returns floors whose surface moves to the right at [`SPEED`], with their names: one floor for each possible
+/// combination of a shape (half-space, segment, polyline, polygon) and a motion. The body moves to the right, or it is
+/// at rest and only its surface moves like a belt.
 fn belts() -> Vec<(&'static str, Boundary, Motion)> {
     let at = |x: f64| DVec2::new(x, 0.0);
     let low = |x: f64| DVec2::new(x, -1.0);
@@ -213,8 +214,8 @@ fn a_drum_keeps_its_grains_and_one_that_is_cut_open_loses_them() {
     }
 }
 
-/// Checks which grains count as lost (having passed through a wall): a grain on a rising wall does not, but a grain
-/// does if a wall jumps past it within one step.
+/// Checks which grains Slump counts as lost, which means that they have passed through a wall. A grain that is carried
+/// by a moving wall is not lost. A grain is lost if a wall moves past it within one step.
 #[test]
 fn a_grain_is_lost_where_a_wall_passes_it_and_not_where_it_rides_on_it() {
     let floor = Boundary::Segment { from: DVec2::new(-1.0, 0.0), to: DVec2::new(1.0, 0.0) };

@@ -80,9 +80,9 @@ fn solvers() -> Vec<SolverSettings> {
     solvers
 }
 
-/// Returns the velocity error of a step under Coulomb friction, and the velocity by which the tolerance is multiplied,
-/// both in m/s. Both are computed from positions, velocities and impulses. `before` contains the grains before the
-/// step.
+/// Returns the velocity error of a step under Coulomb friction, and the velocity by which the (dimensionless) tolerance
+/// is multiplied before it is compared with this error, both in m/s. Both are computed from positions, velocities and
+/// impulses. `before` contains the grains before the step.
 fn velocity_error(run: &Simulation, before: &Grains) -> (f64, f64) {
     let friction = if run.physics().friction { run.parameters().friction } else { 0.0 };
     let world = run.world();

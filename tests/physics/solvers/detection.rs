@@ -58,8 +58,8 @@ fn radius(kind: usize, random: &mut Pcg64) -> f64 {
     }
 }
 
-/// Returns a dense random set of grains about `origin`, with a floor and with small and large discs that are not
-/// grains.
+/// Returns a dense random set of grains in a square of 8 m whose lower left corner is `origin`, with a floor and with
+/// small and large discs that are not grains. `kind` selects one of the distributions of the radii in [`radius`].
 fn random_world(kind: usize, origin: DVec2, random: &mut Pcg64) -> World {
     let mut place = || origin + 8.0 * DVec2::new(random.random(), random.random());
     let places: Vec<DVec2> = (0..160).map(|_| place()).collect();

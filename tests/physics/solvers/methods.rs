@@ -86,7 +86,8 @@ fn newton_solves_nearly_all_steps_of_a_moving_pile_in_less_than_half_the_sweeps(
     }
 }
 
-/// A visitor that solves a contact problem with these settings. It returns the solver's report and the residual.
+/// Settings with which [`Simulation::next_problem`] solves the contact problem of the next step. The result is the
+/// solver's report and the residual.
 struct Solve(SolverSettings);
 
 impl ProblemVisitor for Solve {
@@ -98,8 +99,8 @@ impl ProblemVisitor for Solve {
     }
 }
 
-/// A visitor that solves a contact problem with the first settings and then, starting from this solution, with the
-/// second settings. It returns both reports.
+/// Two sets of settings with which [`Simulation::next_problem`] solves the contact problem of the next step: with the
+/// first settings, and then, from this solution, with the second settings. The result is both reports of the solver.
 pub struct SolveTwice(pub SolverSettings, pub SolverSettings);
 
 impl ProblemVisitor for SolveTwice {

@@ -1,5 +1,5 @@
-//! Tests that warnings are right under every stepper and that their advice helps: after the recommended change, the
-//! scene no longer raises the warning.
+//! Tests of warnings under every stepper: Slump raises them in scenes with the problem that they name, and their advice
+//! helps: after the recommended change, the scene no longer raises the warning.
 
 use slump::scene::stability::{column, mass_ratio, overlapped, squeeze};
 

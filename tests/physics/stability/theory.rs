@@ -86,11 +86,12 @@ fn a_disc_goes_through_a_wall_in_the_share_of_phases_that_geometry_gives() {
     }
 }
 
-/// Checks the final velocities of n touching balls in a row of which the first has the speed v, with restitution 1.
-/// With the final velocities v₁ and v₂ of the first two balls, the struck contact requires v₂ − v₁ = v. All other
-/// contacts require zero relative velocity. If all balls except the first move at u, conservation of momentum gives u −
-/// v + (n − 1) u = v. So they leave with u = 2v/n, and the first ball bounces back. Momentum and energy are conserved,
-/// but no real Newton's cradle behaves in this way.
+/// Checks the final velocities of n touching balls in a row of which the first has the speed v, with restitution 1. The
+/// contact between the first two balls closes at the speed v, so after the impact it opens at this speed: v₂ − v₁ = v
+/// for the final velocities v₁ and v₂ of these balls. All other contacts require zero relative velocity, so all balls
+/// except the first move at one velocity u, and v₁ = u − v. Conservation of momentum gives u − v + (n − 1) u = v. So u
+/// = 2v/n, and the first ball bounces back if n > 2. Momentum and energy are conserved, but no real Newton's cradle
+/// behaves in this way.
 #[test]
 fn balls_in_a_row_keep_momentum_and_energy_and_leave_together() {
     for count in [2, 3, 5, 20] {

@@ -202,7 +202,8 @@ fn tearing_part(delta: f64) -> f64 {
 }
 
 /// Returns true if two bonded grains that turn as one body are still together after two turns. `part` is their angular
-/// velocity divided by ω_c (see [`tearing_part`]), and `size` the ratio of their radii.
+/// velocity divided by the angular velocity at which the cohesion force is the centripetal force, and `size` the ratio
+/// of their radii.
 fn circling_pair_holds(
     part: f64,
     [bond, time_step_secs, size]: [f64; 3],

@@ -202,7 +202,7 @@ fn a_pile_without_cohesion_slumps_as_it_does_in_contact_dynamics() {
     }
 }
 
-/// Returns a scene of discs on one another along x, on a disc that does not move. The radius of the top disc is `ratio`
+/// Returns a scene of a column of discs along x, on a disc that does not move. The radius of the top disc is `ratio`
 /// times the radius of the others.
 fn column(count: usize, ratio: f64) -> Scene {
     let radius = 0.1;

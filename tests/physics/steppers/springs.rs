@@ -292,7 +292,7 @@ fn a_dashpot_lets_a_fast_pair_lose_twice_that_work_and_none_more() {
 }
 
 /// Pulls a bonded pair apart slowly, within the time 2000/ω₀ (ω₀: natural angular frequency). Returns the work that the
-/// contact takes, and the work of fracture C₀²/2k (C₀: cohesion force, k: stiffness), both in J.
+/// contact absorbs, and the work of fracture C₀²/(2k) (C₀: cohesion force, k: stiffness), both in J.
 fn pulled_apart(damping_ratio: f64) -> [f64; 2] {
     let grain = weightless(Grain::at_rest(DVec2::new((2.0 - REST) * RADIUS, 0.0), RADIUS));
     let mut scene = scene(LINE, G * DVec2::X, parameters(1.0, 1e-4, 1.0, 0.0), vec![grain]);

@@ -174,8 +174,9 @@ fn a_validation_goes_on_where_it_was_stopped_and_comes_out_the_same() {
     assert_eq!(read("quantities.csv"), before);
 }
 
-/// Checks that the elasticity of a row of discs in the report equals the published elasticity, and that the report
-/// names the source of each number.
+/// Checks the report of `slump validate elasticity`: the apparent elasticity of a row of rigid discs, which is an
+/// effect of steps that are not solved accurately, equals the published elasticity, and the report names the source of
+/// each number.
 fn check_report(folder: &Path) {
     let rows = rows(folder);
     let of = |name: &str| {

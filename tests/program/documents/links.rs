@@ -132,7 +132,7 @@ fn links_lead_somewhere_and_numbers_are_those_of_their_reports() {
     assert!(numbers > 100, "{numbers} numbers of reports");
 }
 
-/// Largest width of a picture on a page, pixels.
+/// Largest width of a picture that fits a page of the documentation, pixels.
 const MOST_WIDTH: u32 = 1_200;
 
 #[test]

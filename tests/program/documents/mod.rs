@@ -9,9 +9,11 @@ use std::path::{Path, PathBuf};
 
 use crate::program::read;
 
-/// Largest number of words on one page, and on all pages together. Words in generated parts do not count.
+/// Largest number of words on one page, and on all pages together. The limits keep the documentation short enough to be
+/// read. Words in generated parts do not count.
 const MOST_WORDS: [usize; 2] = [2_000, 20_000];
-/// Largest number of pages that are written by hand. Two further pages are generated, and the summary is an index.
+/// Largest number of pages that are written by hand; the limit keeps the documentation easy to survey. Two further
+/// pages are generated, and the summary is an index.
 const MOST_PAGES: usize = 16;
 const NOT_WRITTEN: [&str; 3] = ["SUMMARY.md", "commands.md", "columns.md"];
 

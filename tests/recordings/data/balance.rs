@@ -29,7 +29,8 @@ fn vectors(table: &Table, names: [&str; 2]) -> Vec<DVec2> {
 /// Data of a frame: grains, and contacts of the last step or of all steps since the previous frame.
 struct FrameTables {
     places: Vec<DVec2>,
-    /// Total distance along y by which the periodic borders have moved each grain back, m.
+    /// For each grain, the y coordinate of its unwrapped position (which continues across periodic borders) minus the y
+    /// coordinate of its position in the periodic cell, m.
     brought_back: Vec<f64>,
     velocities: Vec<DVec2>,
     spins: Vec<f64>,

@@ -67,8 +67,8 @@ fn scenes() -> Vec<(&'static str, Scene, f64)> {
     ]
 }
 
-/// A visitor that solves the contact problem of a step by this number of sweeps and returns the residual and the
-/// impulses.
+/// Number of sweeps by which [`Simulation::next_problem`] solves the contact problem of the next step. The result is
+/// the residual and the impulses.
 struct Swept(u32);
 
 impl ProblemVisitor for Swept {

@@ -1,10 +1,11 @@
 //! Gap and normal between two bodies, and the time at which two freely moving bodies meet.
 //!
-//! **Time of impact.** The bodies are convex, so along a straight path the gap is a convex function of time. Its
-//! tangent never exceeds it, so Newton's iteration approaches the first zero of the gap from below and never passes it.
-//! If the bodies accelerate, the parabola with the present gap, speed and acceleration replaces the tangent. If the gap
-//! begins to open before it is zero, the two bodies pass each other. The tangent at the beginning of the path alone
-//! cannot show whether they meet or pass, so the iteration is needed.
+//! **Time of impact.** The bodies are convex, so the gap between two bodies on straight paths is a convex function of
+//! time. A tangent to the graph of this function is nowhere above the graph. So Newton's iteration approaches the first
+//! time at which the gap is zero from earlier times, and never passes it. If the bodies accelerate, a parabola with the
+//! gap, speed and acceleration at the present iterate replaces the tangent. If the gap begins to open before it is
+//! zero, the two bodies pass each other. A single tangent, at the beginning of the path, cannot show whether the bodies
+//! meet or pass each other, so an iteration is needed.
 
 use glam::DVec2;
 
@@ -22,9 +23,9 @@ const MOST_STEPS: u32 = 60;
 /// allows for rounding errors.
 const ROUNDING_IN_RADII: f64 = 1e-13;
 
-/// Returns the normal and the gap (m) between another body and a disc with the given centre and radius (m). `None` if
-/// the other body is a part of a wall, its nearest point is a corner where it meets another wall part, and the contact
-/// counts for that other part instead.
+/// Returns the gap (m) between another body and a disc with the given centre and radius (m), and the unit normal from
+/// the other body to the disc. `None` if the other body is a wall part, the point of it that is nearest to the disc is
+/// a corner which it shares with a second wall part, and a contact at this corner counts for the second part.
 #[inline(always)]
 pub(super) fn approach(
     world: &World,
@@ -63,9 +64,9 @@ fn disc_gap(offset: DVec2, radii: f64, axes: usize) -> (DVec2, f64) {
 }
 
 impl Contact {
-    /// Returns the gap of the contact at the present positions of its bodies, m. `None` if the other body is a part of
-    /// a wall, its nearest point is now a corner where it meets another wall part, and the contact counts for that
-    /// other part instead.
+    /// Returns the gap of the contact at the present positions of its bodies, m. `None` if the other body is a wall
+    /// part, the point of it that is nearest to the grain is now a corner which it shares with a second wall part, and
+    /// a contact at this corner counts for the second part.
     pub(crate) fn gap_now(&self, world: &World, near: &Candidates, axes: usize) -> Option<f64> {
         let (grain, other) = (self.grain as usize, Numbering::of(world).other(self.other));
         let (position, radius) = (world.grains.positions[grain], world.grains.radii[grain]);
@@ -79,8 +80,8 @@ impl Contact {
 pub(crate) struct LookAhead {
     /// Time step Δt, s.
     pub time_step_secs: f64,
-    /// Distance, m. A pair of bodies is added to the contact list if its gap would shrink to less than this distance
-    /// within the step.
+    /// Distance, m. A pair of bodies that do not touch is added to the contact list if its gap is less than this
+    /// distance, after the closing motion of the bodies in one step at their present velocities is subtracted.
     pub distance: f64,
     /// Largest gap, m. A pair of bodies with a larger gap is not added to the contact list, unless it is bonded.
     pub reach: f64,
@@ -105,8 +106,9 @@ pub(crate) enum InTouch {
 }
 
 impl LookAhead {
-    /// Returns a copy of this criterion in which cohesion acts between all pairs of bodies with a gap of at most
-    /// `range` (m). The search for contacts is extended to this gap if it was shorter.
+    /// Returns a copy of this criterion for the contacts of a step, changed so that cohesion acts between all pairs of
+    /// bodies with a gap of at most `range` (m). If the search for contacts ended at a smaller gap, it is extended to
+    /// `range`.
     pub(crate) fn pulling_within(self, range: f64) -> Self {
         Self {
             distance: self.distance.max(range),
@@ -116,10 +118,10 @@ impl LookAhead {
         }
     }
 
-    /// Returns the search margin of a grain with this velocity (m/s), m: the gap that the grain may close by its own
-    /// speed within the step. If the contact law has bonds that exist until they break ([`InTouch::Bonded`]), the
-    /// margin is half of `reach` (the largest gap of a contact) for every grain, because a bond may be open although
-    /// its grains are slow.
+    /// Returns the search margin of a grain with this velocity (m/s), m: the distance by which the grain moves in the
+    /// step at this velocity, plus the length `distance`, and at most `reach` (the largest gap of a contact). If the
+    /// contact law has bonds that exist until they break ([`InTouch::Bonded`]), the margin is half of `reach` for every
+    /// grain, because a bond may be open although its grains are slow.
     pub(crate) fn way_of_grain(&self, velocity: DVec2) -> f64 {
         /// Factor that makes the margin slightly larger than the computed motion of the grain, because the speed is
         /// rounded.
@@ -134,9 +136,9 @@ impl LookAhead {
     }
 
     /// Returns the search margin of walls and fixed discs, m: the distance by which a gap may be closed by their motion
-    /// within the step. `way_of_walls` is the distance by which the fastest of them moves in the step, m. If the
-    /// contact law has bonds that exist until they break, the margin is at least half of `reach` (the largest gap of a
-    /// contact).
+    /// within the step, and at most `reach` (the largest gap of a contact). `way_of_walls` is the distance by which the
+    /// fastest of them moves in the step, m. If the contact law has bonds that exist until they break, the margin is at
+    /// least half of `reach`.
     pub(crate) fn way_of_others(&self, way_of_walls: f64) -> f64 {
         let of_bonds =
             if matches!(self.in_touch, InTouch::Bonded) { 0.5 * self.reach } else { 0.0 };
@@ -144,36 +146,41 @@ impl LookAhead {
     }
 }
 
-/// Motion of a grain relative to the other body of a contact during a step, with constant acceleration. Its time is 0
-/// at the beginning of the step.
+/// Motion of a grain relative to the other body of a contact during a step, with constant acceleration. Times are
+/// counted in seconds from the beginning of the step. If a shock (collision) has changed the velocity during the step,
+/// this is the motion after the shock, extended back to the beginning of the step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RelativeMotion {
-    /// Position (m) that the grain would have had, relative to the other body, at the beginning of the step (time 0) if
-    /// its present velocity had been the same since then, minus its actual relative position at that time. It is 0
-    /// unless a shock (collision) has changed the velocity during the step.
+    /// Displacement, m, that makes the positions after a shock (collision) right, although times are counted from the
+    /// beginning of the step. It points from the actual relative position at the beginning of the step to the position
+    /// from which the grain would have had to start at its present velocity to be where it is now. 0 if no shock has
+    /// changed the velocity during the step.
     pub offset: DVec2,
-    /// Velocity of the grain minus the velocity of the other body at the time 0 of this motion, m/s.
+    /// Velocity of the grain minus the velocity of the other body of the contact at the beginning of the step, m/s. If
+    /// a shock (collision) has changed the velocity during the step, the motion after the shock is extended back to the
+    /// beginning of the step.
     pub velocity: DVec2,
-    /// Acceleration of the grain relative to the other body of the contact, m/s². It is constant during the motion.
+    /// Acceleration of the grain relative to the other body of the contact, m/s². It is constant during the step.
     pub acceleration: DVec2,
 }
 
 impl RelativeMotion {
-    /// Returns the displacement (m) of the grain relative to the other body of the contact, `secs` seconds after the
-    /// time 0 of this motion, measured from their actual relative position at the beginning of the step.
+    /// Returns the displacement (m) of the grain relative to the other body of the contact, from the beginning of the
+    /// step to the time `secs` seconds later.
     fn way(&self, secs: f64) -> DVec2 {
         self.offset + secs * (self.velocity + 0.5 * secs * self.acceleration)
     }
 
-    /// Returns the velocity of the grain relative to the other body of the contact, `secs` seconds after the time 0 of
-    /// this motion, m/s.
+    /// Returns the velocity of the grain relative to the other body of the contact at the time `secs`, counted in
+    /// seconds from the beginning of the step, m/s.
     pub(crate) fn velocity_at(&self, secs: f64) -> DVec2 {
         self.velocity + secs * self.acceleration
     }
 
-    /// Returns the normal and the gap (m) of the two bodies of a contact, `secs` seconds after the time 0 of this
-    /// motion. `None` if the other body is a part of a wall, its nearest point is a corner where it meets another wall
-    /// part, and the contact counts for that other part instead.
+    /// Returns the unit normal from the other body of a contact to its grain, and the gap between them (m), at the time
+    /// `secs`, counted in seconds from the beginning of the step. `None` if the other body is a wall part, the point of
+    /// it that is nearest to the grain is a corner which it shares with a second wall part, and a contact at this
+    /// corner counts for the second part.
     pub(crate) fn approach(
         &self,
         world: &World,
@@ -188,8 +195,9 @@ impl RelativeMotion {
         approach(world, candidates, place + self.way(secs), radius, other, axes)
     }
 
-    /// Returns the time of impact (the first time in the interval `from` to `to`, s, at which the two bodies touch)
-    /// and the normal at that time. `None` if they do not meet.
+    /// Returns the time of impact (the first time in the interval `from` to `to`, in seconds from the beginning of the
+    /// step, at which the two bodies of the contact touch and approach each other), and the unit normal at that time,
+    /// from the other body to the grain. `None` if they do not meet in this interval.
     pub(crate) fn time_of_impact(
         &self,
         world: &World,

@@ -4,17 +4,17 @@
 //! are squares. Their width is the largest distance between the centres of two discs at which a pair is searched: the
 //! diameter of the largest disc plus two search margins (lengths that are added to the radii, so that pairs that may
 //! touch soon are found, too). So the two points of a pair lie in the same cell or in neighbouring cells. Each point
-//! (the centre of a disc) is compared with the points of its own cell and of half of the 8 cells around it (on a line,
-//! of half of 2), so each pair is found once. The index of a cell is hashed into about as many buckets as there are
-//! points. So a grain that flies far away costs one bucket instead of a larger grid, and a scene far from the origin
-//! costs nothing. Points are sorted by bucket with a counting sort. The stored cell of each point distinguishes points
-//! of different cells in the same bucket.
+//! (the centre of a disc) is compared with the points of its own cell and with those of 4 of the 8 cells around it, so
+//! each pair is found once. In scenes on a line, a cell has 2 neighbours, and one of them is searched. The index of a
+//! cell is hashed into about as many buckets as there are points. So a grain that flies far away costs one bucket
+//! instead of a larger grid, and a scene far from the origin costs nothing. Points are sorted by bucket with a counting
+//! sort. The stored cell of each point distinguishes points of different cells in the same bucket.
 //!
-//! **The tree** is parry's bounding volume hierarchy, for discs of very different sizes. Grid cells are wider than the
-//! largest disc, so each small disc would be compared with very many others. A tree does not need a common cell width.
-//! The tree is built once. After that, its bounding boxes are adjusted to the moved discs, and its structure is
-//! improved a little in each search. According to `cargo bench --bench broad_phase`, building the tree again for each
-//! search is slower than the grid.
+//! **The tree** is the bounding volume hierarchy of the Rust library `parry`, for discs of very different sizes. Grid
+//! cells are wider than the largest disc, so each small disc would be compared with very many others. A tree does not
+//! need a common cell width. The tree is built once. After that, its bounding boxes are adjusted to the moved discs,
+//! and its structure is improved a little in each search. According to `cargo bench --bench broad_phase`, building the
+//! tree again for each search is slower than the grid.
 
 use glam::DVec2;
 use parry2d_f64::bounding_volume::Aabb;
@@ -47,13 +47,15 @@ impl Default for PairFinder {
 }
 
 impl BroadPhase {
-    /// Prepares the search for discs of these radii, m. The radii decide if the search uses a grid or a tree.
+    /// Creates an object that searches for pairs of nearby discs. `radii` are the radii of the discs, m. They decide if
+    /// the search uses a grid or a tree.
     pub fn of(radii: &[f64]) -> Self {
         let (radii_differ, _) = spread(radii.iter().copied());
         Self { radii_differ, ..Self::default() }
     }
 
-    /// Discards the tree, because the next search has a different number of discs.
+    /// Discards the tree (bounding volume hierarchy) of the discs, if the search uses a tree, because the next search
+    /// has a different number of discs.
     pub(crate) fn forget_discs(&mut self) {
         if matches!(self.finder, PairFinder::Tree(_)) {
             self.finder = PairFinder::default();
@@ -113,7 +115,7 @@ pub struct Grid {
     /// Indices of all points, sorted by bucket (points whose grid cells have the same hash). Within a bucket the
     /// indices increase.
     entries: Vec<u32>,
-    /// Grid cell of the point at each position of `entries`.
+    /// For each entry of `entries` (the index of a point), the grid cell of the point.
     cells: Vec<GridCell>,
 }
 
@@ -149,7 +151,7 @@ impl Grid {
     }
 
     /// Calls `found` once for every pair of points that are in the same cell or in neighbouring cells. These include
-    /// all pairs within one cell width.
+    /// all pairs of points that are at most one cell width apart.
     pub fn pairs<const AXES: usize>(&self, mut found: impl FnMut(u32, u32)) {
         /// Offsets from a grid cell to half of its 8 neighbouring cells. The other half is not needed, because a search
         /// from those cells finds the same pairs. On a line a cell has 2 neighbours, and only the first offset is used.
@@ -204,7 +206,8 @@ impl std::fmt::Debug for Tree {
 }
 
 impl Tree {
-    /// Updates the tree to these discs (centre and radius, m). The number of discs must not change between calls.
+    /// Fits the tree of bounding squares to discs (centre and radius, m). The first call builds the tree. The number of
+    /// discs must not change between calls.
     fn update(&mut self, discs: impl Iterator<Item = (DVec2, f64)>) {
         let boxes = discs
             .map(|(centre, radius)| Aabb::from_half_extents(centre, DVec2::splat(radius)))

@@ -45,26 +45,27 @@ pub struct Candidates {
     /// The index of the boundary to which each feature (half-space, segment or polygon) belongs.
     #[serde(skip)]
     boundary_of: Vec<usize>,
-    /// Upper bound, m, for the displacement of the surface of any feature (half-space, segment or polygon) near any
-    /// grain since the list was last built.
+    /// Upper bound, m, for the distance by which the surface of any feature (half-space, segment or polygon) has moved,
+    /// near any grain, since the list of candidate pairs (pairs that may touch soon) was last built.
     way_of_features: f64,
-    /// Largest displacement, since the list was last built, of a fixed disc with a prescribed or force-driven motion,
-    /// m.
+    /// Upper bound, m, for the distance by which any fixed disc with a prescribed or force-driven motion has moved
+    /// since the list of candidate pairs (pairs that may touch soon) was last built.
     way_of_discs: f64,
     /// Distance along x, m, by which the copies of the discs above and below the periodic cell have moved relative to
-    /// the discs themselves since the list was last built. It is 0 unless the periodic borders are sheared, so that
-    /// these copies slide along x.
+    /// the discs themselves since the list of candidate pairs (pairs that may touch soon) was last built. It is 0
+    /// unless the periodic borders are sheared, so that these copies slide along x.
     way_of_images: f64,
     #[serde(skip)]
     broad_phase: BroadPhase,
     /// Radii of the grains, then of the fixed discs, m.
     #[serde(skip)]
     radii: Vec<f64>,
-    /// Skin (search margin) of each grain and fixed disc when the list was last built, m. The list is rebuilt when a
-    /// disc has moved farther than its skin.
+    /// Skin (search margin) of each grain and fixed disc when the list of candidate pairs (pairs that may touch soon)
+    /// was last built, m. The list is rebuilt when a disc has moved farther than its skin.
     skins: Vec<f64>,
     skin_of_features: f64,
-    /// Centres of the grains and fixed discs when the list was last built, m.
+    /// Centres of the grains and fixed discs when the list of candidate pairs (pairs that may touch soon) was last
+    /// built, m.
     centres: Vec<DVec2>,
     /// Candidate pairs (pairs that may touch soon) of two discs, in the order in which the search found them.
     #[serde(skip)]
@@ -109,7 +110,7 @@ impl Candidates {
     }
 
     /// Returns an object for the search of candidate pairs (bodies that may touch soon) in `world`, with the search
-    /// distances of this one and an empty list of pairs.
+    /// distances of `self` and an empty list of pairs.
     ///
     /// # Errors
     /// The errors of [`Self::new`].
@@ -117,10 +118,12 @@ impl Candidates {
         Self::new(world, self.reach)
     }
 
-    /// Completes candidates (pairs of bodies that may touch soon) that were read from a file with the fields that the
-    /// file does not contain. `world` is the world to which the candidates belong.
+    /// Returns the candidates (pairs of bodies that may touch soon) in `self`, which were read from a file, with all
+    /// fields set. The fields that the file does not contain are recomputed from `world`, the world to which the
+    /// candidates belong.
     ///
     /// # Errors
+    ///
     /// If the candidates refer to bodies that do not exist.
     pub(crate) fn complete(self, world: &World) -> Result<Self> {
         let Self { reach, way_of_features, way_of_discs, way_of_images, .. } = self;
@@ -229,9 +232,10 @@ impl Candidates {
         self.update_ahead::<AXES>(world, |_| 0.0, 0.0)
     }
 
-    /// Like [`update`](Self::update), but the list also contains pairs whose gap can be closed by the displacements
-    /// of their bodies in the next step. `way_of_grain` returns the displacement of a grain (m), and `way_of_others`
-    /// is the displacement of walls and fixed discs (m).
+    /// Rebuilds the list of candidates (pairs of bodies that may touch soon) if it may be incomplete at the end of the
+    /// next step. Returns true if the list was rebuilt. Unlike the list of [`update`](Self::update), this list also
+    /// contains pairs whose gap can be closed by the displacements of their bodies in the next step. `way_of_grain`
+    /// returns the displacement of a grain (m), and `way_of_others` is the displacement of walls and fixed discs (m).
     pub(crate) fn update_ahead<const AXES: usize>(
         &mut self,
         world: &World,

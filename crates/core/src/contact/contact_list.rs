@@ -181,13 +181,14 @@ impl ContactList {
         &self.now.found_in
     }
 
-    /// State of the bond of each contact: if it exists, and its stretch. Valid only if the list also contains pairs
-    /// that do not touch yet, which it always does under the law `range`.
+    /// State of the bond of each contact: whether the bond exists, and its stretch. Up to date only if the search for
+    /// contacts also included pairs that do not touch yet, because a search for touching pairs only does not change the
+    /// states. Under the law `range` it always includes them.
     pub(crate) fn bonds(&self) -> &[Bond] {
         &self.now.bonds
     }
 
-    /// State of the bond of each contact, mutable.
+    /// State of the bond of each contact (whether the bond exists, and its stretch), for the stepper to change.
     pub(crate) fn bonds_mut(&mut self) -> &mut [Bond] {
         &mut self.now.bonds
     }

@@ -19,9 +19,10 @@ pub(crate) enum Feature {
         /// A copy of this half-space that is moved so that its surface passes through the origin.
         shape: HalfSpace,
     },
-    /// A segment that discs can touch from both sides. Neighbouring segments of a polyline share a corner. Only the
-    /// later segment reports a contact with this corner, and only if the corner is the nearest point of both segments.
-    /// If the corner is not the nearest point of both, an inner point of one of the two segments is nearer to the disc.
+    /// A segment that discs can touch from both sides. Neighbouring segments of a polyline share a corner. A contact of
+    /// a disc with this corner counts for the later segment only. It exists only if the corner is, for both segments,
+    /// the point that is nearest to the disc. Otherwise an inner point of one of the two segments is nearer to the
+    /// disc.
     Segment {
         /// The segment.
         shape: Segment,
@@ -89,8 +90,9 @@ impl Feature {
         Ok(())
     }
 
-    /// Checks a chain of points and appends the segments between them to `features`. `name` returns the name of a
-    /// point in error messages from its index in the chain.
+    /// Checks a chain of points (finite, and each apart from the next) and appends the segments between neighbouring
+    /// points to `features`. `name` receives the index of a point in the chain and returns the name of the point for
+    /// error messages.
     fn collect_chain(
         points: &[DVec2],
         field: &str,
@@ -188,8 +190,9 @@ impl Feature {
     }
 
     /// Returns the unit normal towards `centre`, and the distance of `centre` from the surface of this part of a
-    /// boundary (half-space, segment or polygon), m, negative inside solids. `None` if the nearest point is a corner
-    /// where this part meets another part, and the contact counts for that other part instead.
+    /// boundary (half-space, segment or polygon), m, negative inside solids. `None` if the point of this part that is
+    /// nearest to `centre` is a corner which it shares with a second part, and a contact at this corner counts for the
+    /// second part.
     pub(crate) fn distance(&self, centre: DVec2) -> Option<(DVec2, f64)> {
         match self {
             Feature::HalfSpace { point, shape } => {

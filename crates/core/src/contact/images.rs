@@ -5,10 +5,12 @@
 //! reported only for the two nearest images of its discs, so that each pair is reported once, however large the search
 //! distance is.
 //!
-//! If the lower and the upper border are sheared (they slide along x relative to each other), images above the cell are
-//! shifted sideways. They are wrapped into the cell along x before images beside the cell are searched for.
+//! If the lower and the upper border are sheared (they slide along x relative to each other), the images of discs above
+//! the periodic cell are shifted along x. Before the images to the left and right are searched for, the shifted images
+//! are moved along x by whole periods, so that they are directly above the cell.
 //!
-//! **Shapes** of finite length lie in the cell. A disc near a border may be nearest to an image of a shape. So the
+//! **Segments and polygons** of boundaries are not repeated: they are stored once, inside the periodic cell (the
+//! rectangle that repeats). A disc near a border may be nearest to a periodic image of a segment or polygon. So the
 //! distance is computed for the disc at its own position and for positions one period to each side.
 
 use glam::DVec2;
@@ -85,8 +87,8 @@ fn near_border(borders: Option<[f64; 2]>, at: f64, periods: f64, reach: f64) -> 
     }
 }
 
-/// Returns the normal and the distance (m) between a disc and the nearest periodic image of a feature (half-space,
-/// segment or polygon), as in [`Feature::distance`].
+/// Returns the unit normal of the nearest periodic image of a feature (half-space, segment or polygon) towards
+/// `centre`, and the distance of `centre` from this image (m), as in [`Feature::distance`]. A half-space has no images.
 pub(super) fn distance(
     feature: &Feature,
     periodic: Periodic,
@@ -111,7 +113,8 @@ pub(super) fn distance_to_any_point(feature: &Feature, world: &World, centre: DV
     }
 }
 
-/// Returns the position of a disc in the periodic cell, and the positions one period to each side, m.
+/// Returns the periodic image of the point `centre` in the periodic cell, and its images one period away on each side,
+/// m.
 fn places(periodic: Periodic, centre: DVec2) -> impl Iterator<Item = DVec2> {
     let centre = periodic.wrap(centre);
     periodic.around().map(move |by| centre + by)

@@ -13,8 +13,8 @@
 //!
 //! C₀Δt/m_ij = Bond·a·Δt is the capture speed (m/s), with the Bond number Bond and the acceleration a, which is g
 //! unless another acceleration is given. It is the same for all contacts of a scene, unless the scene gives the
-//! cohesion for pairs of materials. In terms of σ, cohesion is only a constant pull against which the contact pushes.
-//! Without cohesion the capture speed is 0.
+//! cohesion for pairs of materials. The law for σ is the law of a contact without cohesion, so cohesion only adds a
+//! constant pulling impulse to the impulses that act on the two bodies. Without cohesion the capture speed is 0.
 //!
 //! Coulomb's law with the friction coefficient μ is |λ_t| ≤ μσ in the shifted cone and |λ_t| ≤ μ max(σ − capture
 //! speed, 0) in the compressive cone. Both have the form |λ_t| ≤ μ max(σ − c, 0), with the tip of the cone at c. In

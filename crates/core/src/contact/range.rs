@@ -40,9 +40,9 @@
 //!
 //! If the step does not break the bond, the stretch s grows by Δt·(v + v^n)/2, where v^n is the opening speed at the
 //! end of the step. This is exact for a constant force. The bond stores the stretch s and not the gap, which differs
-//! from s by the order of Δt². So the work C₀·s equals the work of the impulses. A pair that rotates about itself does
-//! not tear its bond, although its gap opens by (Δt v_t)²/2d in every step and closes in the next step (v_t:
-//! tangential velocity, d: diameter).
+//! from s by the order of Δt². So the work C₀·s equals the work of the impulses. Two bonded grains that circle each
+//! other do not tear their bond, although their gap opens by (Δt v_t)²/2d in every step and closes in the next step
+//! (v_t: tangential velocity, d: diameter).
 
 use serde::{Deserialize, Serialize};
 
@@ -103,8 +103,9 @@ pub fn escape_speed(bond: f64, acceleration: f64, debonding_distance: f64) -> f6
     (2.0 * law::cohesion_force(bond, 1.0, acceleration) * debonding_distance).sqrt()
 }
 
-/// Returns the time √(2δ_c m_ij/C₀), s, in which the pull of a bond alone would open or close it by the debonding
-/// distance δ_c (m). The cohesion force per effective mass, C₀/m_ij (m/s²), is the Bond number `bond` times the
+/// Returns the time √(2δ_c m_ij/C₀), s, in which the cohesion force C₀ of a bond alone moves two grains of effective
+/// mass m_ij from rest towards each other by the debonding distance δ_c, `debonding_distance` (m). In the same time the
+/// bond stops two grains that separate at the escape speed. C₀/m_ij (m/s²) is the Bond number `bond` times the
 /// acceleration of cohesion `acceleration` (m/s²). Infinite without cohesion.
 pub(crate) fn bond_time_secs(bond: f64, acceleration: f64, debonding_distance: f64) -> f64 {
     (2.0 * debonding_distance / law::cohesion_force(bond, 1.0, acceleration)).sqrt()

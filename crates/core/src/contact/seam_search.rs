@@ -9,8 +9,8 @@ use super::seams::{Piece, Seam};
 use crate::world::World;
 
 /// Largest distance of a corner from another boundary, in mean diameters, at which the two share the corner. If the
-/// value is smaller, corners that are equal except for rounding slow down discs that slide over them. If it is
-/// larger, discs do not feel intended small steps in a floor.
+/// value is smaller, corners that are equal except for rounding slow down discs that slide over them. If it is larger,
+/// small steps that a floor is meant to have are ignored, and discs slide over them.
 const APART_IN_DIAMETERS: f64 = 1e-9;
 
 /// Finds the corners that features (segments, polygons) of different boundaries share and stores them in the

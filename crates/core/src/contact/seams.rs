@@ -6,13 +6,14 @@
 //! than r if the distance x to the corner is short. If the disc overlaps the floor a little, it touches that corner
 //! before it reaches the next piece, and the corner slows the disc down.
 //!
-//! A point that several pieces share is the nearest point of their union only if it is the nearest point of each piece.
-//! Otherwise one of the pieces has a point that is nearer. So a disc touches a shared corner only if the corner is the
-//! nearest point of every piece to which it belongs. Only the last of these pieces in the list of pieces counts the
-//! contact, so that the contact exists once. Within a polyline, `Feature::distance` follows the same rule.
+//! A point that several pieces share is the point of the whole floor that is nearest to the disc only if it is also the
+//! nearest point of each of these pieces. Otherwise one of the pieces has a point that is nearer to the disc. So a disc
+//! touches a shared corner only if the corner is, for every piece to which it belongs, the point that is nearest to the
+//! disc. Only the last of these pieces in the list of pieces counts the contact, so that the contact exists once.
+//! Within a polyline, `Feature::distance` follows the same rule.
 //!
-//! A corner may also lie on a side of another piece, or on a half-space. Such a corner is never the nearest point of
-//! the union.
+//! A corner may also lie on a side of another piece, or on a half-space. Then a contact at this place counts for the
+//! other piece, which has a point that is at least as near to the disc, and never for the corner.
 
 use parry2d_f64::query::PointQueryWithLocation;
 use parry2d_f64::shape::{Segment, SegmentPointLocation};

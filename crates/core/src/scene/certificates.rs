@@ -14,7 +14,8 @@ use crate::solver::{
     velocity_distance, velocity_error,
 };
 
-/// Largest number of grains of a tested scene. Larger scenes would take longer and show the same.
+/// Largest number of grains of a tested scene. Larger scenes are left out because they take longer and do not test
+/// anything further.
 const MOST_GRAINS: usize = 250;
 
 /// Number of steps that the test computes before the tested steps, if a scene has walls that are driven by a force.
@@ -64,8 +65,9 @@ impl ProblemVisitor for Certified {
 /// > m_ij (σ(w + 2z) + z² + g|v| + λv),
 ///
 /// with the effective mass m_ij (kg), the shifted normal impulse σ and the tangential impulse λ (both per effective
-/// mass, m/s), the normal velocity w with its restitution term, the tangential velocity v, the amount z by which w is
-/// below 0 (all in m/s), and the friction bound g (largest allowed |λ|, m/s).
+/// mass, m/s), the normal velocity w after the step plus its restitution term (restitution times the normal velocity
+/// before the step), the tangential velocity v, the amount z by which w is below 0 (all in m/s), and the friction bound
+/// g (largest allowed |λ|, m/s).
 fn gap<M: Model>(problem: &StepProblem<M>) -> (f64, f64) {
     let spins = f64::from(u8::from(M::ROTATION));
     let coordinates = |grain: u32| M::coordinates(&problem.bodies.now[grain as usize]);

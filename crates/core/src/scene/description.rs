@@ -241,7 +241,7 @@ impl Scene {
         }
         let mean = 2.0 * self.grains.iter().map(|grain| grain.radius).sum::<f64>()
             / self.grains.len() as f64;
-        // `reach_in` checks the other limit, which depends on the largest grain.
+        // Lower limit of `mean_diameter`. The upper limit depends on the largest grain; `reach_in` checks it.
         let least = mean / MOST_DIAMETERS_OF_MEAN;
         if self.mean_diameter < least {
             let allowed =
@@ -327,8 +327,11 @@ impl Scene {
         Ok(())
     }
 
-    /// Returns the rectangle that pictures show. It is the `view` of the scene or, if that is missing, the bounding
-    /// box of the initial grains with margins to the left and right as wide as the box is high.
+    /// Returns the rectangle that pictures show: the `view` of the scene or, if that is missing, a rectangle around the
+    /// initial grains. Without periodic borders this is the bounding box of the grains, with margins to the left and
+    /// right as wide as the box is high (no margins in scenes on a line). Along an axis with periodic borders it is the
+    /// periodic cell with margins of half a mean diameter. The rectangle is extended to the fixed discs above and below
+    /// it.
     pub fn view(&self) -> View {
         if let Some(view) = self.view {
             return view;

@@ -27,7 +27,8 @@ pub struct Sizes {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Kind {
-    /// Uniform distribution from d·(1 − s) to d·(1 + s). The number is s.
+    /// Uniform distribution from d·(1 − s) to d·(1 + s), with the mean diameter d of the scene. The number is s,
+    /// dimensionless.
     Uniform(f64),
     /// Normal distribution. The number is the standard deviation in mean diameters, before the tails are cut off.
     Normal(f64),
@@ -88,8 +89,9 @@ impl Sizes {
         diameter / self.mean()
     }
 
-    /// Returns the mean of the diameters as given, before they are scaled so that their mean is the mean diameter of
-    /// the scene.
+    /// Returns the mean of the diameters before they are scaled to the mean diameter of the scene: in units of the
+    /// smaller diameter if there are two diameters, in the unit of the openings if the distribution is given by sieves,
+    /// and otherwise in units of the median diameter.
     fn mean(&self) -> f64 {
         match &self.kind {
             Kind::Uniform(_) | Kind::Normal(_) => 1.0,

@@ -8,8 +8,9 @@ use crate::solver::{FrictionModel, Method, SolverSettings};
 use crate::world::{FrictionCone, Periodic, Physics, World};
 
 /// Solver tolerance that is too small for any step of a pile, because rounding errors are larger. It has the unit of
-/// the stop criterion: dimensionless, or m/s if the solver stops at a change of impulses per mass. If the tolerance in
-/// the settings is smaller than this value, the advice for unsolved steps is a larger tolerance.
+/// the quantity that the tolerance limits: m/s for the stop criterion `impulse-per-mass` (change of the impulses in a
+/// sweep, divided by the mean mass), dimensionless for all other stop criteria. If the tolerance in the settings is
+/// smaller than this value, the advice for unsolved steps is a larger tolerance.
 const BELOW_ROUNDING: f64 = 1e-15;
 
 words! {
@@ -69,10 +70,11 @@ pub(super) fn on_no_cohesion(
     }
 }
 
-/// Returns the advice for bonds that ended because the line between their two grains turned. Under the stepper `moreau`
-/// it is the remedy `turning-bonds` (the opening by turning becomes part of the law). Other steppers do not support this
-/// remedy, and it may already be on; then the advice is a stepper whose bonds do not depend on turning: `range`, or
-/// `dem` if the friction cone is compressive, which `range` does not support.
+/// Returns the advice for bonds that ended because their two grains circled each other, which opened the gap, although
+/// the bonds could have carried the pull. Under the stepper `moreau` it is the remedy `turning-bonds`, which makes this
+/// opening a part of the law. Other steppers do not support the remedy, and it may already be on. Then the advice is a
+/// stepper whose bonds do not end this way: `range`, or, under the compressive friction cone (friction bounded by the
+/// pushing part of the normal force only), which `range` does not support, the stepper `dem`.
 pub(super) fn on_turned_bonds(settings: &Settings) -> Advice {
     match settings.parameters.cone {
         _ if settings.stepper == Stepper::Moreau && !settings.remedies.turning_bonds => {

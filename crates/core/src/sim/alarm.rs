@@ -19,11 +19,11 @@ const STEPS_AT_LIMIT: u32 = 100;
 /// is subtracted from the overlap first. With a smaller value, errors within a solver's tolerance would raise the
 /// alarm. With a larger value, the alarm comes later if discs sink into each other because steps are not solved.
 const LARGEST_OVERLAP: f64 = 0.05;
-/// Upper limit for the part of an overlap that raises no alarm because it may be the distance that the two grains
-/// travelled in one step, in diameters of the smaller disc. A contact is detected up to one step late, so in a falling
-/// pile contacts overlap by up to this distance (measured: 0.43 to 0.56 mean diameters in simulations of 138 grains
-/// without cohesion, Δt = 5 ms, six initial states). With a larger value, grains pass through each other without an
-/// alarm.
+/// Upper limit for the distance that is subtracted from an overlap before the overlap can raise an alarm, in diameters
+/// of the smaller disc. The subtracted distance is the distance that the two grains travel in one step: a contact is
+/// detected up to one step late, so in a falling pile contacts overlap by up to this distance (measured: 0.43 to 0.56
+/// mean diameters in simulations of 138 grains without cohesion, Δt = 5 ms, six initial states). With a larger value,
+/// grains pass through each other without an alarm.
 const LARGEST_TRAVEL: f64 = 0.75;
 /// Growth of the overlap that raises an alarm if grains were placed in overlap, in diameters of the smaller disc. With
 /// a smaller value, errors that a solver's tolerance allows would raise the alarm.
@@ -140,12 +140,13 @@ pub(super) struct Watch {
     /// True if grains were placed (at the start, or moved by the user) and no step has been taken since.
     are_placed: bool,
     /// Smallest value that the overlap of the deepest contact ([`DeepestContact`]) has had since grains were last
-    /// placed, in diameters of the smaller disc. If it is large, grains were placed in overlap, and only a growth of
-    /// their overlap raises an alarm.
+    /// placed, in diameters of the smaller disc. If it is above [`LARGEST_OVERLAP`], grains were placed in overlap and
+    /// have been deep in each other ever since. Then only a growth of the overlap above this value raises an alarm.
     placed_overlap: f64,
     /// Longest distance that each grain has moved in a single step so far, m.
     travels: Vec<f64>,
-    /// Number of bonds that have ended since the start because their pairs of grains turned.
+    /// Number of bonds that have ended since the start because their two grains circled each other, which opened the
+    /// gap.
     turned_bonds: u64,
     energy: ContactEnergy,
 }
@@ -156,7 +157,8 @@ pub(super) struct Watch {
 struct ContactEnergy {
     /// Work of all contacts since the start, J, except the work of moving walls and of bonds.
     work: f64,
-    /// Smallest value of `work` so far, J. Contacts have created `work` minus this value.
+    /// Smallest value of `work` so far, J. Contacts that only dissipate energy make `work` decrease, so its increase
+    /// above this value is energy that contacts have created.
     least_work: f64,
     /// Largest kinetic energy so far, J.
     largest_kinetic_energy: f64,
@@ -210,9 +212,9 @@ impl Watch {
         self.are_placed = false;
     }
 
-    /// Checks the state after a step, and raises alarms. Counts the grains that went through a wall or left the world
-    /// in `observables`, and excludes them from the slump. `finite` is false if a position, a velocity or the kinetic
-    /// energy is not finite.
+    /// Checks the state after a step, and raises alarms. Writes two measurements to `observables`: the number of grains
+    /// that went through a wall or left the world, and the slump without these grains. `finite` is false if a position,
+    /// a velocity or the kinetic energy is not finite; then `observables` report the step as not solved.
     pub(super) fn look(
         &mut self,
         state: &State,
@@ -263,8 +265,8 @@ impl Watch {
     }
 
     /// Adds the work of the contacts in the last step to the total of the run, and raises an alarm if contacts have
-    /// created energy. May be called only for steppers whose works of contacts balance the energy, and whose contacts
-    /// return no stored energy: not for `avbd` or `dem`.
+    /// created energy. Must not be called for two steppers: `avbd`, in which the works of the contacts do not equal the
+    /// change of energy that they cause, and `dem`, whose contact springs store energy and return it as positive work.
     pub(super) fn count_work(
         &mut self,
         state: &State,
@@ -360,9 +362,9 @@ impl Watch {
         self.add(Alarm { longest_time_step_secs, ..alarm });
     }
 
-    /// Adds `more` to the number of bonds that ended because their pairs of grains turned. Raises an alarm once this
-    /// number exceeds half the number of contacts. Fewer such bonds are normal: in most moving cohesive piles a few
-    /// bonds end this way.
+    /// Adds `more` to the number of bonds that ended because their two grains circled each other, which opened the gap.
+    /// Raises an alarm once this number exceeds half the number of contacts. Fewer such bonds are normal: in most
+    /// moving cohesive piles a few bonds end this way.
     pub(super) fn count_turned_bonds(
         &mut self,
         settings: &Settings,

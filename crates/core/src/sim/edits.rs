@@ -145,9 +145,10 @@ impl Simulation {
     /// Adds a grain with the given velocity (m/s) at the end of the list of grains.
     ///
     /// # Errors
-    /// Fails if there is no room for the grain, if its size is outside [`NEW_GRAIN_DIAMETERS`] or does not suit the
-    /// settings, if its position or velocity is not finite, or if its velocity is not along x in a scene with one axis.
-    /// The simulation is then unchanged.
+    /// Fails if there is no room for the grain, if its size is outside [`NEW_GRAIN_DIAMETERS`], if the settings do not
+    /// support so small a grain (the contact springs of the stepper `dem` may then need too many substeps), if its
+    /// position or velocity is not finite, or if its velocity is not along x in a scene with one axis. The simulation
+    /// is then unchanged.
     pub fn add_grain(&mut self, disc: Disc, velocity: DVec2) -> Result<()> {
         let Disc { mut position, radius } = disc;
         let world = &self.state.world;

@@ -60,7 +60,8 @@ pub struct PairSum {
     /// Sum of the normal impulses on grain i, N·s, each along the contact normal of its step; negative if the pair
     /// pulls.
     pub normal: f64,
-    /// Sum of the tangential impulses on grain i, N·s, each along the tangent (−n_y, n_x) of its step.
+    /// Sum of the tangential impulses on grain i, N·s, each along the tangent (−n_y, n_x) of its step, with the contact
+    /// normal n.
     pub tangential: f64,
     /// Sum of the moments r × P about the origin, N·m·s, with the impulse P on grain i and the touched point r of body
     /// j's surface.

@@ -16,7 +16,7 @@ use crate::contact::Feature;
 use crate::world::{Disc, Physics, World};
 
 /// Distance of the world's edges from the smallest rectangle around all grains and fixed bodies at the start, divided
-/// by the longest side of this rectangle. A grain beyond the edges has left the world.
+/// by the sum of the longest side of this rectangle and one mean diameter. A grain beyond the edges has left the world.
 const ROOM_IN_SIDES: f64 = 3.0;
 /// Depth at which a grain counts as lost, in diameters of the grain: the depth of its centre inside a half-space or
 /// polygon, or below the lowest body of the initial state. A half-space may push the grain out again, but the grain
@@ -68,9 +68,9 @@ pub(super) struct NewLosses {
     pub through_wall: bool,
     /// True if a grain left the world.
     pub left: bool,
-    /// Largest speed of a grain that left the world below a fixed disc, through which it may have passed in a single
-    /// step, in diameters of the grain per second. The alarm derives the longest time step without such a passage from
-    /// it. 0 if no grain left the world below a fixed disc.
+    /// Largest speed of a grain that left the world below a fixed disc, in diameters of the grain per second; 0 if no
+    /// grain did. In a long time step so fast a grain may pass through the disc. From this speed the alarm derives the
+    /// longest time step in which the grain cannot pass through.
     pub diameters_per_second: f64,
     /// True if a grain was placed inside a wall.
     pub placed: bool,
@@ -166,8 +166,8 @@ impl Losses {
     }
 
     /// Returns the slump Δy_G (relative drop of the mean height; Abramian & Staron 2020, eq. 11) of all grains that are
-    /// not lost: both sums in its formula exclude lost grains. Returns NaN if all grains are lost, because the mean
-    /// height of no grains is undefined.
+    /// not lost: the initial and the present mean height, from which it is computed, both exclude lost grains. Returns
+    /// NaN if all grains are lost, because the mean height of no grains is undefined.
     pub(super) fn slump(&self, world: &World) -> f64 {
         if self.count as usize == self.lost.len() {
             return f64::NAN;
@@ -305,9 +305,10 @@ fn carried(place: DVec2, before: [DVec2; 2], now: [DVec2; 2]) -> DVec2 {
     now[0] + local.x * along_now + local.y * along_now.perp()
 }
 
-/// Compares the path of a grain's centre with one wall, and returns if the grain is lost or its centre inside a
-/// polygon. The path is the straight line from `from`, a point outside all polygons, to `to` (m). `deep` is the
-/// negative of the depth inside a half-space or polygon at which a grain is lost, m.
+/// Compares the path of a grain's centre with one wall. Returns [`Fate::Lost`] if the grain is lost, [`Fate::Inside`]
+/// if its centre has entered a polygon, and otherwise [`Fate::There`]. The path is the straight line from `from`, a
+/// point outside all polygons, to `to` (m). `deep` is the negative of the depth inside a half-space or polygon at which
+/// a grain is lost, m.
 fn fate(feature: &Feature, from: DVec2, to: DVec2, deep: f64) -> Fate {
     let if_lost = |lost: bool| if lost { Fate::Lost } else { Fate::There };
     match feature {

@@ -38,7 +38,7 @@ pub struct Simulation {
     observables: Observables,
     /// Sum of the initial heights of all grains, Σ y_i(0), m (Abramian & Staron 2020, eq. 11).
     pub(super) initial_heights: f64,
-    /// Stepper of the last step; contacts keep its data. `None` at the start and after a step with your own stepper.
+    /// Stepper whose data contacts keep from the last step; `None` at the start and after [`Simulation::step_by`].
     last_stepper: Option<Stepper>,
     pub(super) watch: Watch,
     pub(super) surroundings: Arc<Surroundings>,
@@ -158,7 +158,7 @@ impl Simulation {
         self.look()
     }
 
-    /// Clears the data that contacts keep from the last step, unless `stepper` took it: steppers keep different data.
+    /// Clears the data that contacts keep from the last step if a stepper other than `stepper` has stored them.
     fn become_of(&mut self, stepper: Option<Stepper>) {
         if self.last_stepper != stepper {
             self.state.contacts.forget();

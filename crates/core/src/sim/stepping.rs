@@ -13,7 +13,8 @@ use crate::world::{Parameters, World};
 /// Result of a step: solver report, measurements and works.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StepResult {
-    /// Sum of the reports of all solves in the step.
+    /// Report of the contact solver for the step. If the step is divided into pieces or needs several solves, the
+    /// sweeps and factorisations of all of them are added.
     pub report: SolveReport,
     /// Residual of the step, numbers of contacts, and works of the contact forces.
     pub measures: Measures,
@@ -23,20 +24,22 @@ pub struct StepResult {
     pub drive_work: f64,
     /// Energies that bonds absorbed and released in the step; `None` under a contact law without bonds.
     pub bonds: Option<BondEnergies>,
-    /// Number of bonds that ended in the step because their pairs of grains circled each other, which opens the gap,
-    /// and not because of the pull on them. The steppers `moreau`, `tgs-soft` and `avbd` count such bonds; for other
-    /// steppers the number is 0.
+    /// Number of bonds between two grains that ended in the step because the two grains circled each other, which opens
+    /// the gap, and not because of the pull on the bond. The steppers `moreau`, `tgs-soft` and `avbd` count such bonds;
+    /// for other steppers the number is 0.
     pub turned_bonds: u64,
 }
 
 /// Energies that bonds absorb and release in a step, J.
 ///
 /// A bond with the cohesion force C₀ (N) that is stretched by s (m) has absorbed the energy C₀ s. The bond releases
-/// this energy when it closes, and dissipates it when it breaks. So the work of a bond is −Δ(C₀ s). In the step in
-/// which a bond breaks, its work is −C₀ times the opening until the break. If b m_ij is the impulse of the bond until
-/// the break, with b in m/s and the effective mass m_ij, this work equals −b m_ij ½(v⁺ + v^n), with the opening speeds
-/// v⁺ after the shocks (collisions) and v^n at the end of the step. A bond that breaks at the stretch δ_c has
-/// dissipated C₀δ_c in total. The rest of the normal work of a contact is done by the repulsion between the grains.
+/// this energy when it closes, and dissipates it when it breaks. So the work of a bond in a step is −C₀ times the
+/// change of s. In the step in which a bond breaks, its work is −C₀ times the distance by which the contact opens until
+/// the break. The code computes this work as −b m_ij ½(v⁺ + v^n): the negative product of the impulse of the bond until
+/// the break, b m_ij (b in m/s, effective mass m_ij in kg), and the mean of two opening speeds of the contact, v⁺ after
+/// the collisions of the step and v^n at the end of the step (m/s). A bond that breaks at the stretch δ_c has
+/// dissipated C₀δ_c in total. The bond does only a part of the work of a contact's normal force; the rest is done by
+/// the repulsion between the grains.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BondEnergies {
     /// Work of all bonds in this step, J.
@@ -49,7 +52,8 @@ pub struct BondEnergies {
 }
 
 impl StepResult {
-    /// Returns the initial value for adding up the result of a step: all works are 0, and nothing has been solved.
+    /// Returns the value to which the results of the pieces of a divided step are added: all works are 0, and nothing
+    /// has been solved.
     pub fn nothing_yet() -> Self {
         Self { report: SolveReport::nothing_yet(), ..Self::default() }
     }
@@ -105,8 +109,8 @@ impl<'a, M: Model> Stage<'a, M> {
         self.problem
     }
 
-    /// Returns the contact problem of the step for a solver of your own. The impulses of that solver move the bodies
-    /// ([`BodySystem::new`]).
+    /// Returns the contact problem of the step in the form in which a solver of your own can read and change its
+    /// impulses. Impulses that your solver sets change the velocities of the bodies at once ([`BodySystem::new`]).
     pub fn system(&mut self) -> BodySystem<'_, M> {
         BodySystem::new(self.problem)
     }

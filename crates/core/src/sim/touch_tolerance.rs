@@ -14,11 +14,12 @@ use crate::sim::state::State;
 /// > 0 ≤ P + C₀Δt ⟂ v_n + gap/Δt ≥ 0.
 ///
 /// Gaps up to τ/2, but at most [`TOUCH_IN_DIAMETERS`](crate::contact::range::TOUCH_IN_DIAMETERS) mean diameters, count
-/// as rounding: grains with such gaps touch, and the law does not let them close the gap. Without this allowance a
-/// pyramid of logs falls. A contact pulls with C₀ until its gap is closed. Breaking a bond takes the work C₀ (τ + e),
-/// with the distance e by which the pair opens within one step. A pair of grains with the distance L between their
-/// centres that turns with the angular velocity ω opens by ½ω²Δt²·L per step (`sim::turned_bonds`). If this distance
-/// stays below τ, the next step closes the gap.
+/// as rounding: grains with such gaps touch, and the law does not let them close the gap. Without this allowance
+/// rounding separates logs that a scene file places in contact, and a pyramid of logs in equilibrium falls. A contact
+/// pulls with C₀ until its gap is closed. Breaking a bond takes the work C₀ (τ + e), with the distance e by which the
+/// pair opens within one step. A pair of grains with the distance L between their centres that turns with the angular
+/// velocity ω opens by ½ω²Δt²·L per step (`sim::turned_bonds`). If this distance stays below τ, the next step closes
+/// the gap.
 pub(in crate::sim) fn touch_tolerance(state: &State, settings: &Settings) -> f64 {
     let tolerance = settings.parameters.touch_tolerance * state.world.mean_diameter;
     let is_read = settings.stepper.reads("touch-tolerance");

@@ -8,9 +8,9 @@
 //! **Walls that turn.** A wall turns about the pivot p with the angular velocity ω, by the angle α = ωΔt in a step. Let
 //! R be this rotation. A point of the wall at the place c has the mean velocity V(c) = (R − 1)(c − p)/Δt, of which the
 //! part −½ω²Δt(c − p) points inward. A step takes the normal n and the tangent t from its beginning, but the normal
-//! turns with the wall. Let a disc of radius r, with the relative normal velocity v_n and tangential velocity v_t,
-//! slide along a flat wall with the speed u, and take for c the centre of the disc, as if the wall extended to it. The
-//! gap grows by Δt cos α (v_n − V_n) with
+//! turns with the wall. Let a disc of radius r slide along a flat wall with the speed u relative to the wall. The disc
+//! has the normal velocity v_n and, at its touching point, the tangential velocity v_t. Take for c the centre of the
+//! disc, as if the wall extended to it. In a step the gap grows by Δt cos α (v_n − V_n) with
 //!
 //! > V_n = n·V(c) − u tan α,  V_t = t·V(c) − rω.
 //!
@@ -30,8 +30,9 @@
 //! > V_n = n·V(q) − w tan ½β = n·V(c) − u tan ½β − (tan ½β − tan ½α) L sin α/Δt.
 //!
 //! The speed u is taken at the beginning of the step. A grain at rest relative to the wall has had the mean velocity V⁻
-//! of the wall in the previous step, with (1 − R⁻¹)/Δt instead of (R − 1)/Δt, so u is relative to V⁻. Along n the grain
-//! has had the velocity n·V⁻(c) and the other terms of V_n with + instead of −. Restitution and collisions use
+//! of the wall in the previous step, with (1 − R⁻¹)/Δt instead of (R − 1)/Δt, so u is relative to V⁻. Its normal
+//! velocity just before the step is given by the formula for V_n with two changes: V⁻ replaces V, and the terms that
+//! contain tan have the opposite sign (on a flat wall it is n·V⁻(c) + u tan α). Restitution and collisions use
 //! velocities relative to this velocity.
 
 use std::f64::consts::FRAC_PI_4;
@@ -198,8 +199,8 @@ impl Walls {
         of_discs.chain(of_features).fold(fastest, f64::max)
     }
 
-    /// Returns the motion of the surface that a contact's grain touches; `None` if the grain does not touch a moving
-    /// wall.
+    /// Returns the velocities of the surface that a contact's grain touches, and the data on the force that drives it,
+    /// if any; `None` if the grain does not touch a moving wall.
     #[inline]
     pub(crate) fn surface(&self, world: &World, contact: &Contact) -> Option<Surface> {
         self.surface_at(world, contact, world.grains.positions[contact.grain as usize])
@@ -332,7 +333,8 @@ impl Walls {
     }
 }
 
-/// Grain that touches a wall: position, size and velocity.
+/// A contact of a grain with a moving wall: position, size and velocity of the grain, and the wall's shape at the
+/// contact.
 struct TouchedPlace<'a> {
     centre: DVec2,
     radius: f64,

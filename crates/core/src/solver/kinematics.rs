@@ -70,7 +70,7 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     /// Writes a body's velocity back to grain `index` of a world.
     fn store(body: &Self::Body<f64>, world: &mut World, index: usize);
     /// Returns the velocity that grain `index` reaches from its velocity `body` if gravity at the grain's position acts
-    /// on the grain for `time_step_secs`.
+    /// on it for `time_step_secs` (s).
     fn accelerated(
         body: &Self::Body<f64>,
         world: &World,
@@ -102,8 +102,8 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     fn slide(_normal: Self::Normal<f64>) -> f64 {
         0.0
     }
-    /// Returns the normal and tangential components, m/s, of the velocity w along x of the periodic image of body j
-    /// relative to j: (n_x w, −n_y w). The velocity relative to j minus these components is relative to the image.
+    /// Returns the components along normal and tangent, m/s, of the slide velocity (velocity w along x of the periodic
+    /// image of body j relative to j): (n_x w, −n_y w), with the components n_x and n_y of the unit normal.
     #[inline(always)]
     fn slide_along(normal: Self::Normal<f64>) -> [f64; 2] {
         let [x, y] = Self::components(normal);
@@ -153,11 +153,11 @@ pub trait Model: Copy + Debug + Default + Send + Sync + 'static {
     /// of `coordinates` are ignored.
     fn set(body: &mut Self::Body<f64>, coordinates: [f64; 3]);
     /// Returns the derivatives `[body][direction]` of a contact's velocity (direction 0: normal, 1: tangential) by the
-    /// velocity coordinates of the body (0: i, 1: j). Sums of derivatives times coordinates give the velocity.
+    /// velocity coordinates of its bodies (0: i, 1: j). The sum of all derivatives times coordinates is the velocity.
     fn gradients(normal: Self::Normal<f64>) -> [[[f64; 3]; 2]; 2];
     /// Returns the work of gravity on a body in a step, J: the impulse of gravity, `mass` × (`free` − `before`), times
-    /// the mean of the velocities `before` and `after` the step (see `solver::measure`). `free` is the velocity without
-    /// contacts.
+    /// ½ (`before` + `after`) (see `solver::measure`). `before` and `after` are the velocities before and after the
+    /// step, `free` is the velocity after it without contacts.
     fn work_of_gravity(
         before: &Self::Body<f64>,
         after: &Self::Body<f64>,

@@ -85,11 +85,12 @@ impl MethodOrder {
     }
 }
 
-/// Text that names the contact laws that a solution satisfies. A solution is a set of impulses at which the natural
-/// map, the measure of error of all methods, is zero.
+/// Text for users that names the contact laws of the solutions that a method finds: Signorini's law with cohesion, and
+/// Coulomb friction.
 const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
-/// Text that names the contact laws that a solution satisfies, for methods that recompute the friction bounds from
-/// their own impulses in every iteration.
+/// Text for users that names the contact laws of the solutions that a method finds. It is the counterpart of
+/// [`COULOMB`] for a method that recomputes the friction bounds from its own impulses in every iteration; such a method
+/// solves the laws that `COULOMB` names.
 const BOUND_BY_BOUND: &str = "the same, the bound of friction taken anew every iteration";
 
 /// Returns the properties of a method that supports periodic borders that shear, and contact laws that differ between

@@ -140,7 +140,8 @@ impl GravityTurn {
     pub(super) const NONE: Self =
         Self { course: TurnCourse::Rate { rate: 0.0 }, elapsed_secs: 0.0 };
 
-    /// True if gravity does not rotate over time (the rotation rate is 0).
+    /// Returns true if the rotation of gravity is given as a constant rate of 0. Returns false for a table of angles,
+    /// also if the angles do not change.
     pub fn is_none(&self) -> bool {
         self.course == Self::NONE.course
     }

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::{Parameters, Physics};
 use crate::error::{self, Error, Result};
 
-/// Largest allowed number of materials. It must be below 256, because the index of a material is stored in one byte
-/// per grain.
+/// Largest allowed number of materials: a round number below 256, the number of values of one byte. The index of a
+/// material is stored in one byte per grain.
 const MOST_MATERIALS: usize = 100;
 
 /// A material of a scene. If no material is given for a grain, fixed disc or boundary, the body consists of the first

@@ -24,8 +24,8 @@ pub struct Motion {
     /// Indices of the fixed discs that have this motion, counted from 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fixed_discs: Vec<usize>,
-    /// Prescribed position of the bodies over time (course). Without a course only the drive, if there is one, moves
-    /// the bodies.
+    /// Prescribed position of the bodies over time (course). If it is missing, only the force or pressure of `drive`,
+    /// if there is one, moves the bodies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub course: Option<MotionCourse>,
     /// Force or pressure that moves the bodies, in addition to their prescribed motion.
@@ -67,8 +67,8 @@ pub enum MotionCourse {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         travel: Option<f64>,
     },
-    /// Oscillation along a line. The displacement at time t is amplitude · (sin(2π·frequency·t + phase) −
-    /// sin(phase)).
+    /// Oscillation along a line. The displacement (m) at the time t (s) is amplitude · (sin(2π·frequency·t + phase) −
+    /// sin(phase)), with the amplitude in m as a vector along the line, the frequency in Hz and the phase in rad.
     Sine {
         /// Amplitude, m.
         amplitude: DVec2,
@@ -78,7 +78,8 @@ pub enum MotionCourse {
         #[serde(default, skip_serializing_if = "is_zero")]
         phase: f64,
     },
-    /// Oscillation about a pivot. The angle at time t is amplitude · (sin(2π·frequency·t + phase) − sin(phase)).
+    /// Oscillation about a pivot. The angle (rad) at the time t (s) is amplitude · (sin(2π·frequency·t + phase) −
+    /// sin(phase)), with the amplitude in rad, the frequency in Hz and the phase in rad.
     Swing {
         /// Position of the pivot, m.
         pivot: DVec2,
@@ -150,8 +151,8 @@ impl Motion {
         self.course.as_ref().is_some_and(|course| course.pivot().is_some())
     }
 
-    /// True if a prescribed translation or a drive moves the bodies in a direction with a component along an axis. The
-    /// index of the axis is 0 for x and 1 for y.
+    /// True if a prescribed translation, or a drive (a force or pressure that moves the bodies), acts in a direction
+    /// with a component along an axis. The index of the axis is 0 for x and 1 for y.
     pub(super) fn goes_along(&self, axis: usize) -> bool {
         self.drive.as_ref().is_some_and(|drive| drive.direction[axis] != 0.0)
             || match &self.course {

@@ -5,8 +5,9 @@ use crate::number::is_zero;
 use crate::setting::{settings, words};
 
 words! {
-    /// The part of the normal force that bounds the friction force T: N + C₀, or only a pushing N (N: normal force, C₀:
-    /// cohesion force, μ: friction coefficient). The text of Abramian & Staron (2020) allows both readings.
+    /// The bound of the friction force T: the friction coefficient μ times either the sum N + C₀ of the normal force N
+    /// and the cohesion force C₀, or only the normal force N, if it pushes. The text of Abramian & Staron (2020) allows
+    /// both readings.
     #[derive(Default)]
     pub enum FrictionCone {
         #[default]

@@ -5,8 +5,9 @@ use glam::DVec2;
 use super::{Boundary, Gravity, Motion, Periodic, Physics};
 use crate::error::{Error, Result};
 
-/// Smallest allowed width or height of a periodic cell, in diameters of its largest disc. In a narrower cell no grain
-/// could pass between a disc and the periodic image of this disc.
+/// Smallest allowed width or height of a periodic cell, in diameters of its largest disc. Then two discs of this size
+/// fit side by side between a disc and the periodic image of this disc. In a narrower cell they could not pass each
+/// other there.
 const LEAST_DIAMETERS: f64 = 3.0;
 /// Largest gap between two discs that can affect each other, in mean diameters. It is larger than the longest possible
 /// bond ([`Parameters::debonding_distance`](super::Parameters)).

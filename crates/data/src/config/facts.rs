@@ -9,9 +9,9 @@ use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::sim::Settings;
 
-/// Names of the fields of a scene that are not written as metadata of a recording: grains and fixed discs are in the
-/// tables of the recording; `source` names the file of the grains or describes a new pile; `data` has the options of
-/// the recording.
+/// Names of the fields of a scene that are not written as metadata of a recording. The grains (`grains`) and fixed
+/// discs (`fixed_discs`) are in the tables of the recording. `source` says from which file the grains were read, or how
+/// their pile was made. `data` has the options of the recording.
 const LEFT_OUT: [&str; 4] = ["grains", "fixed_discs", "source", "data"];
 
 /// Name of the metadata entry that lists the changes of settings during the run.

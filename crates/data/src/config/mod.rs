@@ -1,5 +1,5 @@
 //! Reads and writes configurations of runs. A configuration comes from options of the command line, from a scene file,
-//! from a line of a study (a list of runs), or from a saved run.
+//! from a run of a study (a list of runs), or from a saved run.
 
 mod facts;
 mod option_words;

@@ -5,7 +5,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, Value
 use crate::setting::{Kind, Settable, Value, Word};
 
 /// Returns the command-line parser that accepts the words of the type `T` and converts each word to the value that it
-/// stands for. It serves options that are not settings, such as `--preset` (a group of settings).
+/// stands for. It serves options that do not change a single setting, such as `--preset`, which changes a group of
+/// settings, and `--deposition`, which belongs to a new pile.
 pub fn parser_of<T: Settable + Send + Sync + 'static>() -> ValueParser {
     let words = if let Kind::Word(words) = T::KIND { words } else { &[] };
     let said = |said: String| {

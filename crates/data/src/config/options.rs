@@ -278,7 +278,7 @@ fn without_value_name(argument: &str) -> &str {
 }
 
 /// Describes the allowed values of an option that does not take a word from a list, such as `a number (…)`. The type of
-/// the value comes from the parser's error, and the range comes from the option's help text in parentheses.
+/// the value comes from the parser's error, and the range comes from the parentheses in the option's help text.
 fn kind_of_value(error: &clap::Error, command: &Command, argument: &str) -> String {
     let source = error.source();
     let kind = if source.is_some_and(|source| source.is::<ParseFloatError>()) {

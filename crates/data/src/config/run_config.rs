@@ -224,8 +224,8 @@ impl Config {
 
     /// Makes the scene of this configuration with all changes and checks it, but does not let the grains of a new pile
     /// settle. If a scene file describes the new pile, the scene has the new grains at their initial positions. If the
-    /// options of the configuration describe it, the scene has the grains of the built-in pile instead of the new
-    /// grains. This takes little time, so that a wrong value is reported before long work begins.
+    /// options of the configuration describe the new pile, the scene has the grains of the built-in pile instead of the
+    /// new grains. This takes little time, so that a wrong value is reported before long work begins.
     ///
     /// # Errors
     /// The error names the first field that is unknown or outside its range, or the file that cannot be read.

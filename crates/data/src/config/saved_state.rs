@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::sim::{Simulation, Tally};
 use crate::world::{Grain, Gravity};
 
-/// Header of files with saved runs, and the words by which error messages name such a file: a state of a run.
+/// Header of files with saved runs, and the words for such a file in error messages: "state of a run".
 const SEAL: Seal = Seal {
     magic: "slump-state ",
     format: 8,
@@ -44,8 +44,8 @@ pub struct SavedState {
     pub simulation: Simulation,
     /// Statistics over the steps of the run so far, such as the numbers of steps and sweeps.
     pub tally: Tally,
-    /// Additional data about the output of a run that resumes in its own output folder. Only the code of such runs
-    /// reads these bytes.
+    /// Serialised data about the files in the output folder of a run. A checkpoint contains them, because the run needs
+    /// them to resume in this folder. Empty in all other saved runs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub of_run: Vec<u8>,
 }
@@ -95,8 +95,9 @@ impl SavedState {
         SEAL.is_on(path)
     }
 
-    /// Returns a scene that starts at time 0 from the saved state: grains have the positions and velocities of this
-    /// state, and walls, fixed discs and periodic borders have its positions.
+    /// Returns a scene that starts at time 0 from the saved state: grains have the positions and velocities that they
+    /// have in the saved state, and walls, fixed discs and periodic borders the positions that they have in the saved
+    /// state.
     pub fn as_start(&self) -> Scene {
         let world = self.simulation.world();
         let grains = &world.grains;

@@ -40,8 +40,9 @@ pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<NewPile>)> {
     unsettled(scene, path.parent().unwrap_or(Path::new("")))
 }
 
-/// Reads the grains of a scene from the file that the scene names, or adds the grains of a new pile at their initial
-/// positions and returns the description of that pile. Relative paths in the scene start from `folder`.
+/// Adds the grains to a scene. If the scene names a file of grains, reads the grains from this file. If the scene
+/// describes a new pile, adds the grains of the pile at their initial positions. Returns the scene and the description
+/// of the new pile; the description is `None` without a new pile. Relative paths in the scene start from `folder`.
 pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Option<NewPile>)> {
     let mut new_pile = None;
     if let Some(source) = scene.source.take() {

@@ -109,7 +109,8 @@ impl TextTable {
         Ok(())
     }
 
-    /// Returns the open file. If the file is new, creates it and writes its head.
+    /// Returns the open file. If the file does not exist yet, creates it and writes the text above the rows: comments
+    /// and the header line.
     fn begun(&mut self) -> Result<&mut GrowingFile> {
         match &mut self.file {
             Some(file) => Ok(file),
@@ -121,13 +122,14 @@ impl TextTable {
         }
     }
 
-    /// Waits until all data of the file are on the disk. If no rows were added, creates the file with its head.
+    /// Waits until all data of the file are on the disk. If no rows were added, creates the file with the comments and
+    /// the header line only.
     pub(super) fn finish(&mut self) -> Result<()> {
         self.begun()?.sync()
     }
 
     /// Removes the rows of all steps after `step` (all rows if `step` is `None`), and an incomplete row at the end.
-    /// Returns the number of the rows that remain.
+    /// Returns the number of the rows that remain and the step of the last of these rows.
     pub(super) fn roll_back(&mut self, step: Option<u64>) -> Result<KeptRows> {
         self.file = None;
         let (kept, whole) = self.rows_there(step, u64::MAX)?;
@@ -139,9 +141,10 @@ impl TextTable {
         Ok(kept)
     }
 
-    /// Counts the rows of the file up to step number `step`, but no more than `most` rows. Also returns the length,
-    /// bytes, of the file up to the end of the counted rows, including the text above the rows. If the file does not
-    /// exist, the number of rows and the length are 0.
+    /// Counts the rows of the file up to step number `step` (no rows if it is `None`), but no more than `most` rows.
+    /// Returns the number of these rows with the step of the last row, and the length, bytes, of the file up to the end
+    /// of the counted rows, including the text above the rows. If the file does not exist, the number of rows and the
+    /// length are 0.
     pub(super) fn rows_there(&self, step: Option<u64>, most: u64) -> Result<(KeptRows, u64)> {
         let mut file = match File::open(&self.path) {
             Ok(file) => BufReader::new(file),

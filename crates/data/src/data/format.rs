@@ -104,8 +104,8 @@ pub(super) fn check_count(path: &Path, things: &str, found: u64, marked: u64) ->
 
 /// Writer of a recording in one file format. Writers run on a thread of their own, not on the thread of the solver.
 ///
-/// If the program is killed, all data written before remain readable. A writer starts in a folder without files of its
-/// format. If the folder has such files, [`Format::roll_back`] must be called before anything is written.
+/// If the program is killed, all data written before remain readable. If the folder has no files of the format, a new
+/// writer can write at once. If it has such files, [`Format::roll_back`] must be called before anything is written.
 pub(super) trait Format: Send {
     /// Writes the next frame. The used memory must not grow with the number of frames.
     fn add(&mut self, frame: &Frame) -> Result<()>;

@@ -10,9 +10,9 @@
 //! *Walls.* A grain is in front of a straight side of a boundary if the foot of the perpendicular from its centre lies
 //! between the ends of the side. The line of the side then cuts the grain's cell. If a grain is not in front of any
 //! side of a boundary, the nearest corner of the boundary cuts its cell, along a line perpendicular to the line from
-//! the grain's centre to the corner. So no cell reaches into a solid or through a wall, and a wall with a free end
-//! takes a little of the region around that end. *Periodic borders.* The periodic images of discs and walls cut cells
-//! like the originals.
+//! the grain's centre to the corner. So no cell reaches into a solid or through a wall, and a small region around the
+//! free end of a wall belongs to no cell. *Periodic borders.* The periodic images of discs and walls cut cells like the
+//! originals.
 //!
 //! *Extent of the packing.* A point belongs to the packing if its power with respect to the nearest grain is below
 //! 3r̄², with the mean radius r̄. If grains of that radius surround a pore that is just large enough for one more
@@ -39,9 +39,9 @@ use crate::world::{Boundary, Edge, Periodic};
 const LARGEST_POWER: f64 = 3.0;
 
 /// Relative margin for rounding errors in the test whether a cell (the region nearer to a grain than to any other disc)
-/// is closed, which means that all corners of the cell are in the packing. The squared distance of each corner from the
-/// centre of the grain must be below the largest squared distance of a point in the packing, by at least this fraction
-/// of the latter.
+/// is closed, which means that all corners of the cell are in the packing. A cell counts as closed if the squared
+/// distance of each corner from the centre of the grain is less than (1 − this margin) times the largest squared
+/// distance of a point in the packing.
 const CLOSED_WITHIN: f64 = 1e-9;
 
 pub(super) struct PowerCells {

@@ -63,11 +63,12 @@ pub(super) fn peculiar_energy(network: &Network, surroundings: &Surroundings) ->
 /// Sums over the neighbourhood of a grain, for the least-squares fit of a linear flow.
 #[derive(Clone, Copy)]
 struct FlowSums {
-    /// Σ (1, x, y) ⊗ (1, x, y) over the grains of the neighbourhood. The positions (x, y) are relative to the central
-    /// grain and in units of the neighbourhood's radius.
+    /// Matrix of the normal equations of the fit: Σ (1, x, y) ⊗ (1, x, y) over the grains of the neighbourhood. The
+    /// positions (x, y) are relative to the central grain and in units of the neighbourhood's radius.
     matrix: DMat3,
-    /// Σ (1, x, y) v over the grains of the neighbourhood, for each velocity component v relative to the central grain,
-    /// m/s.
+    /// Right-hand sides of the normal equations of the fit, one for each velocity component v relative to the central
+    /// grain: Σ (1, x, y) v over the grains of the neighbourhood, m/s. The positions (x, y) are relative to the central
+    /// grain and in units of the neighbourhood's radius.
     velocities: [DVec3; 2],
 }
 

@@ -14,8 +14,8 @@ const BEARS_FROM: f64 = 1e-6;
 /// Network of grains and their contacts, without lost grains (which went through a wall or left the scene).
 pub(super) struct Network<'a> {
     pub grains: &'a [GrainState],
-    /// For each grain, true if it is in the network: it is not lost and its position is finite. The contacts in `links`
-    /// have only indices of grains in the network.
+    /// For each grain, true if it is in the network: it is not lost and its position is finite. No contact of the
+    /// network has the index of a grain that is not in the network.
     pub counts: Vec<bool>,
     pub links: Vec<NetworkContact>,
 }

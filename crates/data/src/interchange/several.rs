@@ -13,8 +13,8 @@ use crate::solver::{Method, Model, SolutionSearch, SolverSettings, velocity_dist
 pub struct FoundSolution {
     /// Residual of the contact laws, dimensionless: the same measure for all solvers, 0 if all laws are obeyed.
     pub residual: f64,
-    /// True if the residual is within the tolerance of the search. Otherwise this entry is not a solution; it may be an
-    /// inaccurate form of a solution that the search reached from other initial guesses.
+    /// True if the residual is within the tolerance of the search. If it is false, the solver stopped before it reached
+    /// the tolerance. Its result may then be a poor approximation of another solution in the list.
     pub is_solved: bool,
     /// Numbers of the initial guesses that led to this solution. Guess 0 consists of the impulses in the file, guess 1
     /// of zero impulses, and all further guesses of random impulses.

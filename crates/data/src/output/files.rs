@@ -20,8 +20,8 @@ const ENDING_OF_DRAFT: &str = ".part";
 /// behind.
 #[cfg(not(target_arch = "wasm32"))]
 const MOST_OF_NAME: usize = 255 - 8 - ENDING_OF_DRAFT.len();
-/// Largest number of symbolic links that are followed from a path to its file. The system follows fewer links, so a
-/// longer chain of links must be a cycle.
+/// Number of symbolic links after which a chain of links counts as a cycle, which never leads to a file. Linux follows
+/// no more than 40 links, either.
 const MOST_LINKS: usize = 40;
 
 /// Converts the name of a draft (an incomplete file that a killed process left), `.NAME.LETTERS.part`, to the name that
@@ -319,7 +319,7 @@ impl Texts {
         self.0.iter().map(|(keyword, text)| (keyword.as_str(), text.as_str()))
     }
 
-    /// Returns one line for each text: keyword, colon, text.
+    /// Returns all texts as lines. Each line has the form `KEYWORD: TEXT`.
     pub fn lines(&self) -> String {
         self.iter().map(|(keyword, text)| format!("{keyword}: {text}\n")).collect()
     }

@@ -96,9 +96,10 @@ impl GrowingFile {
     /// bytes of the file. If the head spans two pages, its part in the second page is therefore written first. The rows
     /// remain a draft until the part in the first page is written, which happens completely or not at all. If the
     /// program is killed between the two parts, the line begins like the draft line and ends like the head. A reader
-    /// must therefore recognise a draft by its first letter that differs from the letter of every head at that
-    /// position. If this letter is in the second page, the rows are no longer a draft as soon as the second page is
-    /// written, because both lines have the same letters in the first page.
+    /// must therefore recognise a draft by the beginning of its first line, up to the first letter that differs from
+    /// every head. For example, if all heads begin with `ITEM: T` and the draft line with `ITEM: DRAFT`, each line that
+    /// begins with `ITEM: D` is a draft. If even this letter is in the second page, the head is complete as soon as the
+    /// second page is written, because the part in the first page is the same in the draft line and in the head.
     ///
     /// # Errors
     /// The error names the file and gives the system's message. The file then contains neither the rows nor the head.
@@ -184,8 +185,10 @@ pub fn end_of_last(rows: &[u8]) -> Option<usize> {
 mod tests {
     use super::*;
 
-    /// Checks after every single write of a head that the file shows either a draft or the complete head and rows.
-    /// Tests every position of a page end within the head.
+    /// Checks that [`GrowingFile::add_at_once`] never leaves incomplete data that look complete if the program is
+    /// killed. This function replaces a draft line by header lines (the head), with one write operation for each page
+    /// of the file. Before each operation the data must begin with a draft line. After it, they must begin with a draft
+    /// line or be the complete head and rows. The test places the end of a page at each position within the head.
     #[test]
     fn a_head_over_the_end_of_a_page_is_a_draft_until_it_is_whole() {
         let folder = tempfile::tempdir().expect("a folder");

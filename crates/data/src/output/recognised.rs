@@ -38,7 +38,8 @@ const BEGINNINGS: [(&[u8], &[u8]); 13] = [
         b" Name=\"smoothing_width\" ",
     ),
 ];
-/// First bytes of VTK files that Slump writes. They are long, because no field of these files names the program.
+/// First bytes of VTK files that Slump writes. The strings are long, so that files of other programs do not match by
+/// chance: no field of VTK files names the program that wrote them.
 const OF_VTK: [&[u8]; 2] = [
     b"<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" \
         byte_order=\"LittleEndian\">\n<Collection>\n",

@@ -43,19 +43,21 @@ const SWEEPS: u32 = 20;
 /// Tolerance of the solver: the solve of a step stops when a sweep changes the contact impulses by less than this
 /// fraction of their size.
 const TOLERANCE: f64 = 1e-7;
-/// Damping of a new pile by the thick medium at first: the fraction by which the medium reduces all velocities per
-/// step, multiplied by the number of layers of grains in the pile. The value is twice the frequency of the slowest
-/// oscillation of the pile, in the same unit: per step, times the number of layers. With half of this value the pile
-/// oscillates, and with twice the value it creeps. Both double the time to settle.
+/// Damping of a settling pile by the thick medium (the strong damping that acts first): the fraction by which the
+/// medium reduces all velocities per step, multiplied by the number of layers of grains in the pile. The value is twice
+/// the frequency of the slowest oscillation of the pile, in the same unit: per step, times the number of layers. With
+/// half of this value the pile oscillates, and with twice the value it creeps. Both double the time to settle.
 const DAMPING_BY_LAYERS: f64 = 7.0;
-/// Largest fraction by which the thick medium reduces the velocities per step. It applies to piles of fewer than 35
-/// layers, for which [`DAMPING_BY_LAYERS`] divided by the number of layers is larger.
+/// Largest fraction by which the thick medium (the strong damping that acts first on a settling pile) reduces the
+/// velocities per step. It applies to piles of fewer than 35 layers, for which [`DAMPING_BY_LAYERS`] divided by the
+/// number of layers is larger.
 const MOST_DAMPING: f64 = 0.2;
 /// Median speed of the grains, in √(g·d) (g: gravity, d: mean diameter), below which the pile no longer oscillates.
 /// Then the medium that damps all velocities becomes thin.
 const STILL_SPEED: f64 = 1e-3;
-/// Terminal speed of a grain that falls through the thin medium, in √(g·d) (g: gravity, d: mean diameter). The other
-/// method of generating a pile, rain, has the same terminal speed.
+/// Terminal speed of a grain that falls through the thin medium (the weak damping that acts on a pile that no longer
+/// oscillates), in √(g·d) (g: gravity, d: mean diameter). In rain, the other method of generating a pile, the terminal
+/// speed is the same.
 const TERMINAL_SPEED: f64 = 0.5;
 /// Mean kinetic energy of a grain, in m g d (mass, gravity, mean diameter), below which the medium that damps all
 /// velocities is removed if no grain falls. After that, the pile is at rest if its energy stays below ten times this
@@ -196,7 +198,8 @@ impl Medium {
 /// speeds of its centre and its rim.
 struct GrainSpeeds {
     energy: f64,
-    /// Speed of the fastest grain, apart from the few grains that may still move in a pile at rest.
+    /// Speed of the fastest grain, in √(g·d) (g: gravity, d: mean diameter). The few grains that may still move in a
+    /// pile at rest are left out.
     fastest: f64,
     median_speed: f64,
 }
@@ -219,8 +222,9 @@ impl GrainSpeeds {
         self.energy <= energy && self.fastest <= REST_SPEED
     }
 
-    /// Returns the present speed divided by the speed below which the pile is at rest: the larger ratio of two, for
-    /// the kinetic energy (as a square root) and for the fastest grain.
+    /// Returns a ratio that shows how far the pile is from rest. It is the larger of two numbers: the speed of the
+    /// fastest grain divided by its limit [`REST_SPEED`], and the square root of the kinetic energy divided by its
+    /// limit [`REST_ENERGY`]. The limits are met if the ratio is at most 1.
     fn over_rest(&self) -> f64 {
         (self.energy / REST_ENERGY).sqrt().max(self.fastest / REST_SPEED)
     }

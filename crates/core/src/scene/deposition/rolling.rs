@@ -15,8 +15,8 @@
 //! * It meets the floor.
 //! * φ = 90°, and the disc falls off.
 //!
-//! An obstacle supports the disc if the centre of the disc is between disc i and the obstacle. Otherwise the disc
-//! rolls on over the obstacle.
+//! An obstacle supports the disc if the centre of the disc is horizontally between the centre of disc i and the
+//! obstacle. Otherwise the disc continues to roll, now on the obstacle.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -29,9 +29,9 @@ use crate::world::Disc;
 /// that it passes by this length, and a falling disc may land this length above the point where its fall began. With
 /// the value 0, a disc between two discs that leave it exactly enough room would roll from one to the other endlessly.
 /// And a disc that falls off one disc at the point where it touches the next disc would fall through that next disc.
-/// The falls still come to an end: a falling disc passes each disc that it would overlap by less than this length to
-/// the side, so after it has landed it rolls down by at least a millionth of the sum of the radii before it falls
-/// again.
+/// Although a fall may end above its beginning, a disc does not fall endlessly. A falling disc passes a disc whose side
+/// it would overlap by less than this length. So where it lands, it rolls down by at least a millionth of the sum of
+/// the radii before it falls again.
 const GRAZING: f64 = 1e-12;
 
 /// The surface onto which discs are dropped: fixed discs, discs that were dropped before, a floor and two walls. The
@@ -162,8 +162,8 @@ pub struct Rest {
     pub supports: (Support, Option<Support>),
 }
 
-/// Angle, rad, that allows for rounding: a rolling disc can still meet an obstacle although its present angle on the
-/// disc below is beyond the angle at which it touches the obstacle, by less than this value.
+/// Tolerance for rounding errors of an angle, rad. A rolling disc that touches an obstacle can, by rounding, have
+/// rolled past the angle of this contact. If it is past by less than the tolerance, it still meets the obstacle.
 const ROUNDING: f64 = 1e-9;
 
 /// Returns the position of rest of a disc of radius `radius` (m) that is dropped at the coordinate `x` (m) from above

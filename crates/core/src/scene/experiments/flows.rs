@@ -15,13 +15,13 @@ use crate::world::{
 /// Number of grains of a column whose half-width R₀ and height H₀ are one grain diameter d each: a rectangle of 2 d by
 /// d, of which the grains (area π d²/4 each) cover a fraction of 0.82.
 const GRAINS_OF_SQUARE: f64 = 2.09;
-/// Distance by which each gate is pulled away from the column, m.
+/// Distance by which each of the two gates of the scene `collapse` is pulled away from the column, m.
 const GATE_WAY: f64 = 3.0;
-/// Time in which each gate is pulled away from the column, s. The gates then move at 15 m/s, faster than grains can
-/// follow.
+/// Time in which each of the two gates of the scene `collapse` is pulled away from the column, s. The gates then move
+/// at 15 m/s, faster than grains can follow.
 const GATE_SECS: f64 = 0.2;
-/// Half-width of the rough floor, divided by the largest half-width that collapsed columns of the same aspect ratio are
-/// known to reach. Farther out, the floor is smooth.
+/// Half-width of the rough floor of the scene `collapse`, divided by the largest half-width that a collapsed column
+/// with the aspect ratio (height by half-width) of the scene is known to reach. Farther out, the floor is smooth.
 const REACH: f64 = 1.3;
 
 /// Returns the half-width R₀, in diameters, of a column with this number of grains and the aspect ratio H₀/R₀ (H₀:
@@ -50,7 +50,7 @@ pub fn collapse() -> Scene {
 pub fn collapse_of(mut scene: Scene, half: f64, release_secs: f64) -> Scene {
     let top = |grain: &Grain| grain.position.y + grain.radius;
     let aspect = scene.grains.iter().map(top).fold(0.0, f64::max) / (half * DIAMETER);
-    // The longest known run-out of columns, times a margin.
+    // Half-width of the rough floor: the largest half-width that collapsed columns are known to reach, times a margin.
     let reach = REACH * half * (1.0 + (2.5 * aspect).max(3.25 * libm::pow(aspect, 0.7)));
     scene.fixed_discs = rough_base(2.0 * reach, DIAMETER);
     let gate = |side: f64| half_space(DVec2::new(side * half, 0.0), DVec2::new(-side, 0.0));
@@ -110,11 +110,12 @@ pub fn silo_of(mut scene: Scene, orifice: f64, release_secs: f64) -> Scene {
 const INCLINE_WIDTH: f64 = 40.0;
 /// Height of the walls of the box that is tilted in the scene `incline`, in diameters.
 const INCLINE_HEIGHT: f64 = 30.0;
-/// Simulated time during which the box is level, so that the grains come to rest, before it is tilted, s.
+/// Simulated time during which the box of the scene `incline` is level, so that the grains come to rest, before it is
+/// tilted, s.
 pub const LEVEL_SECS: f64 = 0.4;
-/// Angular velocity at which the box is tilted, rad/s.
+/// Angular velocity at which the box of the scene `incline` is tilted, rad/s.
 pub const TILT_RATE: f64 = 0.12;
-/// Angle at which the tilting of the box ends, rad.
+/// Angle from the horizontal at which the tilting of the box of the scene `incline` ends, rad.
 const STEEPEST: f64 = 0.72;
 
 /// Returns the scene of an incline: a layer of grains in a flat box with a rough bottom that is tilted slowly. The

@@ -138,12 +138,14 @@ pub fn shear_periodic() -> Scene {
 const GRAINS: usize = 300;
 /// Width of the initial lattice of grains in the biaxial test, in diameters.
 const WIDTH: f64 = 19.0;
-/// Distance from the outer centres of the initial lattice of grains to the walls, in diameters.
+/// Distance from the centres of the outermost grains to the walls at the start of the biaxial test, in diameters.
 const ROOM: f64 = 0.75;
 /// Pressure of the side walls on the grains in the biaxial test, in m g/d (mass of a grain, gravity, diameter). A
 /// constant force presses each side wall, so the pressure has this value only while the grains are [`HEIGHT`] high.
 const CONFINING_PRESSURE: f64 = 10.0;
-/// Height of the layer of grains in the middle of the biaxial test, in diameters.
+/// Height of the grains, in diameters, at which the side walls of the biaxial test exert the pressure
+/// [`CONFINING_PRESSURE`]: the constant force on a wall is this pressure times this height. In the second part of the
+/// test the height decreases from 19.2 to 14.2 diameters.
 const HEIGHT: f64 = 18.0;
 /// Distance by which the lid moves down in the first part of the biaxial test, in diameters, while the side walls
 /// compress the grains.
@@ -162,8 +164,8 @@ const COMPRESSION_SECS: f64 = 2.0;
 /// First the lid moves down fast onto loose grains while the side walls compress them. Then it moves slowly. The
 /// strength of the grains is the ratio σ_yy/σ_xx of their vertical to their horizontal stress, which is in the table
 /// `measures` of a recording. Flowing grains reach (1 + sin φ_f)/(1 − sin φ_f), with their friction angle φ_f (Mohr,
-/// Coulomb). The force on a side wall is constant, so its pressure varies with the height of the box, by about ten per
-/// cent.
+/// Coulomb). The force on a side wall is constant, so its pressure increases while the lid moves down slowly: from 0.94
+/// to 1.27 times [`CONFINING_PRESSURE`], because the height of the box decreases from 19.2 to 14.2 diameters.
 pub fn biaxial() -> Scene {
     let mut scene = of_loose_grains("biaxial", lattice(GRAINS, WIDTH, ROOM));
     scene.grains.iter_mut().for_each(|grain| grain.feels_gravity = false);

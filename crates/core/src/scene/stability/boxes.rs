@@ -40,8 +40,8 @@ fn places(spacing: f64) -> Vec<DVec2> {
 /// > x = −s, 0 or s,  y = 1/2 + 2kh, and h higher in the middle column,
 ///
 /// as long as s > 1/2. At s = 1/2 the outer columns meet, and nothing can move any more. With more than three columns,
-/// a disc on the floor would be in contact only with the floor and with the discs that lean on it from both sides, and
-/// these would push it away.
+/// there would be a disc on the floor that does not touch a wall. Only the discs that lean on it from both sides would
+/// hold it in place horizontally, and they would push it aside.
 pub fn press() -> Scene {
     let widest = 0.75f64.sqrt();
     let grains = places(widest).into_iter().map(|place| place * (1.0 - TOUCH));

@@ -52,10 +52,10 @@ pub const ROLLING_FRICTION_OF_COLUMN: f64 = 1.0;
 /// with tan φ = 1/(2n). Without rolling friction the column rolls aside, at any friction coefficient.
 ///
 /// Each disc has the weight w and the radius r. The contact below the k-th disc from the top carries k discs, so its
-/// normal force is N = k w cos φ and its tangential force k w sin φ. The weight of these discs acts at the distance k r
-/// from the contact, so the contact must transmit the moment M = k² r w sin φ. Rolling friction with the coefficient
-/// μ_r transmits moments up to μ_r R N, with the reduced radius R = r/2 of two equal discs. So the lowest contact, k =
-/// n, decides, and the column holds if
+/// normal force is N = k w cos φ and its tangential force k w sin φ. The weight of these discs acts at their centre of
+/// mass, which is at the distance k r from the contact along the inclined line, so the contact must transmit the moment
+/// M = k² r w sin φ. Rolling friction with the coefficient μ_r transmits moments up to μ_r R N, with the reduced radius
+/// R = r/2 of two equal discs. So the lowest contact, k = n, decides, and the column holds if
 ///
 /// > μ_r ≥ 2n tan φ = 1.
 pub fn leaning_column(count: usize) -> Scene {

@@ -122,7 +122,7 @@ pub fn dilatancy() -> Scene {
     scene
 }
 
-/// Distance of the wall from the origin, near which the disc starts, in the scene [`thin_wall`], in diameters.
+/// Distance from the origin to the wall in the scene [`thin_wall`], in diameters. The disc starts near the origin.
 pub const WALL_DISTANCE: f64 = 20.0;
 
 /// Returns the scene of a fast disc and a wall without thickness. The disc moves `travel` diameters per step. Its

@@ -23,7 +23,8 @@ struct PushedContact {
     normal: DVec2,
     /// Required increase of the gap, m. If it is negative, the gap may decrease by up to its absolute value.
     want: f64,
-    /// Push λ of the contact, kg·m: an impulse that displaces a grain of the mass m by λ/m.
+    /// Push λ of the contact, kg·m: it displaces a grain of the mass m (kg) by λ/m (m), as an impulse would change the
+    /// velocity of the grain.
     push: f64,
     /// Effective mass of the two bodies, kg.
     mass: f64,
@@ -32,10 +33,11 @@ struct PushedContact {
 /// Moves overlapping grains apart after a step with the time step `time_step_secs` (s). The contacts of `state` are
 /// still those of the beginning of the step.
 ///
-/// The displacements δ of the grains after a step make the gap of each contact grow by a fraction ([`SHARE`]) of its
-/// overlap beyond [`LEFT`]. They let no contact be pushed to an overlap above [`LEFT`] by its neighbours. Let `want` be
-/// the required increase of the gap, n the normal, λ ≥ 0 the push of a contact, and m the mass of a grain. Then δ_i = Σ
-/// n λ/m_i over the contacts of grain i, and each contact has
+/// The displacements δ of the grains increase the gap of each contact that overlaps by more than [`LEFT`], by a
+/// fraction ([`SHARE`]) of the overlap beyond [`LEFT`]. All other gaps may decrease, but only until the overlap is
+/// [`LEFT`]. Let `want` (m) be the required increase of a gap, which is negative if the gap may decrease, n the normal
+/// and λ ≥ 0 (kg·m) the push of the contact, and m_i (kg) the mass of grain i. Then δ_i (m) is the sum of n λ/m_i over
+/// the contacts of grain i, and each contact of the grains i and j has
 ///
 /// > 0 ≤ λ ⟂ n·(δ_i − δ_j) − want ≥ 0.
 ///

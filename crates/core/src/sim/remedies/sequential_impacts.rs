@@ -56,8 +56,8 @@ use crate::solver::{
 /// each step.
 const LEAST_IN_STEPS_OF_GRAVITY: f64 = 2.0;
 /// Closing speed below which contacts do not bounce, divided by the fastest closing speed of the step. This limit
-/// serves scenes without gravity: for ρ < 1 the contacts of a chain close infinitely often, ever more slowly. With a
-/// smaller value, more passes are spent on invisible motion.
+/// serves scenes without gravity: with a coefficient of restitution below 1, the contacts of a chain close infinitely
+/// often, ever more slowly. With a smaller value, more passes are spent on invisible motion.
 const LEAST_IN_FASTEST: f64 = 1e-6;
 /// Largest number of passes in the calculation of a step's shocks (collisions). A pass solves all contacts that close
 /// at the same time. A shock through a row of n balls needs n − 1 passes.
@@ -72,7 +72,8 @@ const LEAST_GAIN: f64 = 1e-6;
 const HALVINGS: u32 = 5;
 
 /// Solver settings for a pass of shocks (collisions), which solves the contacts that close at the same time. They do
-/// not depend on the solver of the step, because only few contacts close at the same time.
+/// not depend on the solver of the step: only few contacts close at the same time, so the solver `nsgs` reaches this
+/// small residual at little cost.
 const PASS: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-12, 1000);
 
 /// Computes the shocks (collisions) of a step whose contact problem has been set up, and solves the step so that its

@@ -11,20 +11,22 @@
 //!
 //! > a = (L − √(L² − v_t²Δt²))/Δt.
 //!
-//! So this remedy lets cohesive contacts approach at the speed a, and requires v_n + a = 0 where the law of the paper
-//! requires v_n = 0. In the next step the normal has turned by the angle v_tΔt/L, so that the same relative velocity
-//! has the normal component +a. The impulse that turns the velocity per step is thus about m_ij v_t²Δt/L (m_ij:
-//! effective mass), the centripetal force of the circular motion times Δt. The bond ends if this exceeds the cohesion
-//! force: for two grains of radius r at the angular velocity √(Bond·g/2r).
+//! So this remedy lets cohesive contacts approach at the speed a: it requires v_n + a = 0 instead of the condition v_n
+//! = 0 of Abramian & Staron (2020). In the next step the normal has turned by the angle v_tΔt/L, so that the same
+//! relative velocity has the normal component +a. The impulse that turns the velocity in a step is thus about m_ij
+//! v_t²Δt/L (m_ij: effective mass), which is Δt times the centripetal force m_ij v_t²/L of the circular motion. The
+//! bond ends if the centripetal force exceeds the cohesion force Bond·m_ij·g (Bond: Bond number, g: gravity): for two
+//! grains of radius r above the angular velocity √(Bond·g/(2r)).
 
 use crate::contact::{Contact, Numbering, Other};
 use crate::sim::state::State;
 use crate::sim::stepping::Stage;
 use crate::solver::Model;
 
-/// Adds the speed of approach that keeps the distance of the pair to all contacts with cohesion between grains, and
-/// between grains and fixed discs that do not move. Walls are flat or bounded by corners, so their contacts do not
-/// need it. The time step is `time_step_secs`, s.
+/// Changes the contact law of cohesive contacts so that the two bodies approach each other at the speed that keeps the
+/// distance between their centres although they circle each other. This concerns contacts between grains, and between
+/// grains and fixed discs that do not move. Contacts with walls stay unchanged, because walls are flat or bounded by
+/// corners. The time step is `time_step_secs`, s.
 pub(in crate::sim) fn let_turn<M: Model>(stage: &mut Stage<'_, M>, time_step_secs: f64) {
     let Stage { state, problem, .. } = stage;
     if M::AXES < 2 || problem.law.capture_speed() == 0.0 {

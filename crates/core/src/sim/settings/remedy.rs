@@ -6,9 +6,9 @@ use crate::setting::{Group, Value, settings};
 use crate::sim::settings::stepper::Stepper;
 
 /// Value of the remedy `max-travel` in the preset (group of settings) `robust`, in mean diameters. The remedy divides a
-/// step into pieces in which no grain moves farther than this distance. In a piece longer than half a diameter, the
-/// radius of a grain, a grain that does not yet touch a wall could pass through the wall. The value is half of this
-/// length.
+/// step into pieces in which no grain moves farther than this distance. A grain that moves farther than its radius,
+/// half a diameter, in a piece could pass through a wall that it does not yet touch at the beginning of the piece. The
+/// value is half of this distance.
 const ROBUST_TRAVEL: f64 = 0.25;
 
 /// Registry entry of a remedy (an optional correction of a step): its name, the steppers that support it and its value

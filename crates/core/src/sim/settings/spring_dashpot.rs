@@ -156,8 +156,9 @@ fn restitution_of(damping_ratio: f64) -> f64 {
     }
 }
 
-/// Returns arccos ζ and √(1 − ζ²) for ζ < 1, or arcosh ζ and √(ζ² − 1) for ζ > 1. Returns `None` at ζ = 1, where the
-/// quotient of the two numbers tends to 1.
+/// Returns the angle (rad) and the root in the formulas for restitution and contact time, for the damping ratio ζ:
+/// arccos ζ and √(1 − ζ²) for ζ < 1, or arcosh ζ and √(ζ² − 1) for ζ > 1. Returns `None` at ζ = 1, where both are 0 and
+/// the formulas use the limit 1 of the quotient angle/root.
 fn angle_and_root(damping_ratio: f64) -> Option<(f64, f64)> {
     // Written as a product, because the difference 1 − ζ² would lose digits near ζ = 1.
     let root = ((1.0 - damping_ratio) * (1.0 + damping_ratio)).abs().sqrt();

@@ -98,7 +98,7 @@ impl Stepper {
         self.reads("solver")
     }
 
-    /// True if this stepper has observables of bonds.
+    /// True if this stepper measures the energies of bonds, such as the observable `bond_energy`.
     pub(in crate::sim) fn has_bonds(self) -> bool {
         self.info().observables.contains(&"bond_energy")
     }

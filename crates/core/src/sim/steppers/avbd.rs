@@ -1,14 +1,16 @@
 //! Stepper `avbd`: augmented vertex block descent (C. Giles, E. Diaz and C. Yuksel, *Augmented Vertex Block Descent*,
-//! ACM Transactions on Graphics 44, 2025). It minimises, body by body, penalties that become stiffer while a contact is
-//! violated. Multipliers gradually replace the penalty forces.
+//! ACM Transactions on Graphics 44, 2025). It minimises, body by body, the kinetic energy plus penalties for velocities
+//! that break the contact law. A penalty becomes stiffer while the velocities break the law. Multipliers (impulses that
+//! do not depend on the velocities) gradually replace the penalty impulses.
 //!
 //! The unknowns are the velocities V of the bodies at the end of a substep of length h. A body at x at the beginning of
-//! the substep is at x + hV at its end; contact normals are those of the beginning. A contact is violated by the
-//! velocity c = v − w + b (m/s; c_n along the normal, c_t along the tangent without b), with the relative velocity v of
-//! its two bodies and the velocity w of its wall. The term b = gap/h keeps a gap from closing by more than its size.
-//! Let λ_n⁰ and λ_t⁰ be the multipliers, k the stiffness of the penalty along normal or tangent, μ the friction
-//! coefficient, Bond the Bond number, a the acceleration in the cohesion force C₀ = Bond·m_ij·a, and σ = λ_n +
-//! Bond·a·h. A contact pushes with the impulses (divided by the effective mass m_ij)
+//! the substep is at x + hV at its end; contact normals are those of the beginning. A contact requires the velocity c =
+//! v − w + b (m/s; c_n along the normal, c_t along the tangent without b) to be 0 along normal and tangent, unless the
+//! contact law limits its impulse. Here v is the relative velocity of its two bodies, w the velocity of its wall, and
+//! the term b = gap/h keeps a gap from closing by more than its size. Let λ_n⁰ and λ_t⁰ be the multipliers, k the
+//! stiffness of the penalty along normal or tangent, μ the friction coefficient, Bond the Bond number, a the
+//! acceleration in the cohesion force C₀ = Bond·m_ij·a, and σ = λ_n + Bond·a·h. A contact exerts the impulses (divided
+//! by the effective mass m_ij, m/s)
 //!
 //! > λ_n = max(λ_n⁰ − κ_n c_n, −Bond·a·h),  λ_t = λ_t⁰ − κ_t c_t projected onto |λ_t| ≤ μσ,  κ = k h²/m_ij.
 //!
@@ -17,19 +19,20 @@
 //!
 //! > (D + Σ s κ ∇c ∇cᵀ) ΔV = D (V_free − V) + Σ s λ ∇c,  s = m_ij/m_i,
 //!
-//! with the inertia D of body i divided by its mass m_i, the velocity V_free that the body would have without contacts,
-//! and sums Σ over the normals and tangents of the body's contacts. Then, **for each contact**, it replaces the
-//! multipliers λ⁰ by the impulses λ, and increases κ in proportion to |c| unless the contact law has limited λ. The
-//! matrix on the left side contains the penalties of all contacts, also of those with limited impulses, because also
-//! these contacts hold a body back; without them, the grains of collapsing piles fly apart. Bodies in contact start
-//! from their velocities before the substep. A contact that slides keeps the smallest κ, which is 1. If a body slides
-//! on a fixed body without turning, each iteration then halves the remaining change of its velocity, so after the ten
-//! iterations 2⁻¹⁰ of the change is missing. Stiffnesses are kept from step to step, and reduced slightly in each
-//! substep. A last pass over the bodies, with b computed from the overlap beyond a margin, changes positions but not
-//! velocities.
+//! with the inertia D of body i divided by its mass m_i, the gradient ∇c of c with respect to V, the velocity V_free
+//! that the body would have without contacts, and sums Σ over the normals and tangents of the body's contacts. Then,
+//! **for each contact**, it replaces the multipliers λ⁰ by the impulses λ, and increases κ in proportion to |c| unless
+//! the contact law has limited λ. The matrix on the left side contains the penalties of all contacts, also of those
+//! with limited impulses, because also these contacts hold a body back; without them, the grains of collapsing piles
+//! fly apart. Bodies in contact start from their velocities before the substep. A contact that slides keeps the
+//! smallest κ, which is 1. If a body slides on a fixed body without turning, each iteration then halves the remaining
+//! change of its velocity, so after the ten iterations 2⁻¹⁰ of the change is missing. Stiffnesses are kept from step to
+//! step, and reduced slightly in each substep. A last pass over the bodies, with b computed from the overlap beyond a
+//! margin, changes positions but not velocities.
 //!
 //! **Momentum** is not conserved: each body uses λ before its partners have responded, so action and reaction differ by
-//! the error of the iteration. Work and energy have errors of the same size. There is no restitution.
+//! the error of the iteration. For the same reason the works of the contacts do not equal the change of energy exactly.
+//! There is no restitution.
 
 use glam::{DMat3, DVec3};
 
@@ -106,9 +109,9 @@ const SOFTEST: f64 = 1.0;
 /// step, effective mass m_ij). A stiffer contact would dominate all other forces on its two bodies.
 const STIFFEST: f64 = 1e6;
 /// Increase of a contact's dimensionless stiffness κ (stiffness times squared substep length, divided by effective
-/// mass) per iteration, if the velocity that violates the contact equals the speed that gravity adds in a substep. With
-/// a larger value columns are more stable, but impacts make contacts so stiff that iterations that change one body at a
-/// time cannot transmit forces, and the grains of collapsing piles fly apart.
+/// mass) per iteration, if the relative velocity that the contact law requires to be 0 equals the speed that gravity
+/// adds in a substep. With a larger value columns are more stable, but impacts make contacts so stiff that iterations
+/// that change one body at a time cannot transmit forces, and the grains of collapsing piles fly apart.
 const GROWTH: f64 = 0.1;
 /// Factor that multiplies the stiffnesses of all contacts at the beginning of each substep (part of a step). With a
 /// smaller value, contacts of resting grains soften.
@@ -117,7 +120,7 @@ const KEPT: f64 = 0.99;
 /// Cohesive contacts need some overlap to pull.
 const MARGIN: f64 = 5e-4;
 
-/// One side of a contact: its effect on one of its two bodies.
+/// One side of a contact: the effect of the contact on one of its two bodies.
 #[derive(Clone, Copy)]
 struct Side {
     row: u32,
@@ -131,7 +134,7 @@ struct BlockDescent {
     substep_secs: f64,
     law: ContactLaw,
     /// Speed that gravity adds in a substep (part of a step), g·h (gravity g, length h of the substep), m/s: the unit
-    /// in which the velocities that violate contacts are measured.
+    /// in which the stepper measures the relative velocities that contacts require to be 0.
     speed_scale: f64,
     /// Overlap that remains after the correction of positions at the end of a substep (part of a step), m.
     margin: f64,
@@ -255,9 +258,10 @@ impl BlockDescent {
         }
     }
 
-    /// Sets the stored impulses of each contact (the multipliers) to its present penalty impulses, and makes violated
-    /// contacts stiffer. The closure `bias` returns, for the gap of a contact (m), the closing speed that the contact
-    /// allows (m/s).
+    /// Sets the stored impulses of each contact (the multipliers) to its present impulses including penalties. Makes a
+    /// contact stiffer in proportion to the relative velocity that it requires to be 0, unless the contact law limits
+    /// its impulse. The closure `bias` returns, for the gap of a contact (m), the closing speed that the contact allows
+    /// (m/s).
     fn multiply<M: Model>(
         &mut self,
         problem: &StepProblem<M>,
@@ -316,9 +320,9 @@ impl BlockDescent {
     }
 }
 
-/// Normal and tangential impulses of a contact divided by the effective mass, m/s; the velocities by which the contact
-/// is violated along normal and tangent, m/s, which cause the impulses; and for each impulse a flag that is true if the
-/// contact law has limited the impulse.
+/// Impulses of a contact, and the velocities that cause them. Each array has an entry for the normal and an entry for
+/// the tangential direction: `impulse` is the impulse divided by the effective mass, m/s; `violation` is the relative
+/// velocity that the contact requires to be 0, m/s; `is_cut` is true if the contact law has limited the impulse.
 struct ContactPush {
     impulse: [f64; 2],
     violation: [f64; 2],

@@ -1,13 +1,14 @@
 //! Stepper `dem`: smooth discrete elements (P. A. Cundall & O. D. L. Strack, 1979), with the linear cohesive law from
 //! which S. Luding (2008) starts. A contact is a spring (stiffness k) and a dashpot (damping γ), and pulls with the
 //! cohesion force C₀ while the discs overlap. With the overlap δ = −gap, the normal and tangential velocities v_n and
-//! v_t, the stretch ξ, stiffness k_t and damping γ_t of the tangential spring, and the largest friction force bound(N +
-//! C₀), the normal force N and the tangential force T are
+//! v_t, the stretch ξ, stiffness k_t and damping γ_t of the tangential spring, and the largest friction force F, the
+//! normal force N and the tangential force T are
 //!
-//! > N = max(k δ − γ v_n, 0) − C₀,  T = −k_t ξ − γ_t v_t with ξ̇ = v_t,  |T| ≤ bound(N + C₀).
+//! > N = max(k δ − γ v_n, 0) − C₀,  T = −k_t ξ − γ_t v_t with ξ̇ = v_t,  |T| ≤ F.
 //!
-//! Spring and dashpot together never pull: N ≥ −C₀, as in all contact laws of this program. The friction bound is also
-//! that of all contact laws. If a contact slides, ξ is shortened so that T is at the bound.
+//! Spring and dashpot together never pull: N ≥ −C₀, as in all contact laws of this program. The largest friction force
+//! is the same as in the other contact laws: F = μ(N + C₀) with the shifted friction cone, and F = μ max(N, 0) with the
+//! compressive cone (friction coefficient μ). If a contact slides, ξ is shortened so that |T| = F.
 
 use crate::contact::{Contact, ContactLaw, ContactMemory, ContactParts, Impulse, Transmitted, law};
 use crate::number::Parts;
@@ -169,8 +170,8 @@ impl Elements {
 /// beginning of the substep. `pushes` contains for each contact the effective mass (kg), the impulses divided by this
 /// mass (m/s), and the velocity of the contact's wall (m/s).
 ///
-/// The motion of a wall of mass M with n contacts of stiffness k is stable if the substep h is below 2 √(M/nk). This is
-/// guaranteed if M is at least the mass of n of the lightest grains, because substeps are short enough for these
+/// The motion of a wall of mass M with n contacts of stiffness k is stable if the substep h is below 2 √(M/(nk)). This
+/// is guaranteed if M is at least the mass of n of the lightest grains, because substeps are short enough for these
 /// grains.
 fn drive_walls<M: Model>(
     stage: &mut Stage<'_, M>,

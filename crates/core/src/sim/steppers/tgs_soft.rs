@@ -8,8 +8,9 @@
 //!
 //! 1. Gravity accelerates the grains.
 //! 2. The impulses of the previous substep are applied (warm start).
-//! 3. One sweep visits all contacts as **soft** contacts, v_n + b = −c σ with the softness c and the speed b of pushing
-//!    overlap out: each is an overdamped spring that acts on the gap.
+//! 3. One sweep visits all contacts as **soft** contacts, v_n = b − σ c/(1 − c), with the normal velocity v_n, the
+//!    speed b at which overlap is pushed out, and the softness c (0 if rigid, near 1 if soft): each is an overdamped
+//!    spring that acts on the gap.
 //! 4. The grains move for the time h, and each gap changes by h v_n.
 //! 5. One sweep visits all contacts as **rigid** contacts, v_n = 0. It removes the speed with which overlaps were
 //!    pushed out, so that pushing out changes only positions and adds no energy.
@@ -155,21 +156,24 @@ const PUSH_OUT_SPEED: f64 = 1.0;
 
 /// Constants of soft contacts that are the same for all contacts of a step.
 ///
-/// **Softness.** At the gap s the spring's force is −k s − γ ṡ (stiffness k, damping γ), with ω² = k/m_ij and ζ = γ/(2
-/// m_ij ω) for the effective mass m_ij. The force is evaluated at the end of a substep of length h, with the gap s + h
-/// v and the normal velocity v. Then its impulse divided by m_ij is σ = −h(ω²(s + h v) + 2ζω v). With a = 2ζ + hω this
-/// is σ = −hωa (v + s ω/a). A Gauss–Seidel update requires this equation for the new impulse σ + Δσ and the new
-/// velocity v + Δσ:
+/// **Softness.** At the gap s (m), which changes at the normal velocity v (m/s), the spring's force is −k s − γ v
+/// (stiffness k, N/m; damping γ, N·s/m). For the effective mass m_ij it has the angular frequency ω, with ω² = k/m_ij,
+/// and the damping ratio ζ = γ/(2 m_ij ω). The force is evaluated at the end of a substep of length h, with the gap s +
+/// h v and the normal velocity v reached there. Then its impulse divided by m_ij is σ = −h(ω²(s + h v) + 2ζω v). With a
+/// = 2ζ + hω this is σ = −hωa (v + s ω/a). A Gauss–Seidel update changes σ by Δσ, and so v by Δσ, such that this
+/// equation is satisfied afterwards:
 ///
 /// > Δσ = −(1 − c)(v + s ω/a) − c σ,  c = 1/(1 + hωa).
 ///
-/// The spring's force corresponds to σ, not to λ_n: at rest N + C₀ = −k s, as for smooth discrete elements (`dem`). If
-/// it corresponded to λ_n, a pulling contact would rest at a positive gap, at which it has no cohesion, and would
+/// The contact's normal impulse λ_n (also divided by m_ij) is σ minus the impulse of the cohesion force C₀. So the
+/// spring's force is N + C₀, with the normal force N: at rest N + C₀ = −k s, as for smooth discrete elements (`dem`).
+/// If the spring's force were N, a pulling contact would rest at a positive gap, at which it has no cohesion, and would
 /// break.
 struct Softness {
     substep_secs: f64,
-    /// Rate at which a contact spring closes an overlap, 1/s: closing speed divided by overlap. It is ω/(2ζ + hω), with
-    /// the spring's angular frequency ω, its damping ratio ζ and the length h of a substep (part of a step).
+    /// Rate at which a contact spring removes an overlap, 1/s: the speed with which the overlap decreases, divided by
+    /// the overlap. It is ω/(2ζ + hω), with the spring's angular frequency ω, its damping ratio ζ and the length h of a
+    /// substep (part of a step).
     rate: f64,
     /// Softness c of a contact, dimensionless: 0 for a rigid contact, near 1 for a soft contact ([`Softness`]).
     compliance: f64,
@@ -251,11 +255,18 @@ impl Softness {
 ///
 /// In a substep of length h a wall with the mass M, the driving force F and the damping c moves with the speed V_free =
 /// r (M V⁻ + hF), r = 1/(M + ch), as long as no contact pushes it; V⁻ is its speed before the substep. Let λ_n and λ_t
-/// be the impulses of a contact with a grain of mass m_i, divided by m_i. They change V at once by −r m_i (b_n λ_n +
-/// b_t λ_t), with the components b_n and b_t of the wall's direction of motion along normal and tangent. So the next
-/// contact of the sweep uses the new speed. With κ = r m_i, λ_n changes the contact's normal velocity by d_n λ_n with
-/// d_n = 1 + κb_n², and λ_t changes its tangential velocity by 3 d_t λ_t with d_t = 1 + κb_t²/3. So the update of a
-/// contact is divided by d_n or d_t, and its spring belongs to the effective mass m_i/d_n.
+/// (m/s) be the normal and tangential impulses of a contact with a grain of mass m_i, divided by m_i. They change V at
+/// once by −κ (b_n λ_n + b_t λ_t), with κ = r m_i and the components b_n and b_t of the wall's direction of motion (a
+/// unit vector) along normal and tangent. So the next contact of the sweep uses the new speed.
+///
+/// The relative velocity of grain and wall thus changes by more than at a wall of prescribed speed. Along the normal it
+/// changes by d_n λ_n with d_n = 1 + κb_n²: 1 from the grain, and the rest from the wall. Along the tangent it changes
+/// by (q + κb_t²) λ_t = q d_t λ_t, with d_t = 1 + κb_t²/q. Here q λ_t is the change of the grain's surface velocity: q
+/// is 1 if grains do not rotate, and 3 for a solid disc that rotates, because λ_t then adds λ_t to the velocity of its
+/// centre and 2 λ_t by rotation. So an update that is computed for a wall of prescribed speed is divided by d_n or d_t.
+/// Along the normal, grain and wall together respond like a grain of mass m_i/d_n, the effective mass of the contact.
+/// The contact spring has the same frequency and damping ratio as all contact springs, so its stiffness and damping are
+/// those for the mass m_i/d_n.
 impl Touching {
     /// Copies the present velocity of the contact's wall into the contact, if a force drives the wall.
     #[inline(always)]

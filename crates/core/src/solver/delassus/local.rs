@@ -125,8 +125,10 @@ mod tests {
     use super::*;
     use crate::number::Parts;
 
-    /// Returns the error of the impulses that `solve` computes for a contact: the largest violation of the contact's
-    /// law, as a velocity divided by the velocities at zero impulses.
+    /// Returns the relative error of the impulses that `solve` computes for a contact, dimensionless. It is the largest
+    /// violation of the contact's law, as a velocity, divided by the sum of the magnitudes of the normal and tangential
+    /// velocity that the contact has at zero impulses. Under the compressive cone, this sum also contains the velocity
+    /// that the cohesion impulse causes.
     fn fault(block: &LocalBlock, compressive: bool, free: [f64; 2]) -> f64 {
         let [p, t] = block.solve(free, compressive);
         let u = [

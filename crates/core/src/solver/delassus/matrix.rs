@@ -81,7 +81,7 @@ pub(super) fn blocks(matrix: &Triplets, contacts: usize) -> Result<Vec<EntryBloc
         if blocks.last().is_none_or(|(last, _)| *last != place) {
             blocks.push((place, [[0.0; 2]; 2]));
         }
-        // The list is not empty: if it was empty, a block has just been added.
+        // `blocks` is not empty here: the condition above adds a block to an empty list.
         let (_, block) = blocks.last_mut().expect("a block");
         block[row[entry] as usize % 2][col[entry] as usize % 2] += val[entry];
     }

@@ -32,14 +32,15 @@ use crate::error::{self, Error, Result};
 use crate::number::Parts;
 use crate::world::FrictionCone;
 
-/// Change of the impulses in a sweep, divided by the allowed error of the impulses, at or below which the residual is
-/// computed after the sweep. The residual costs as much as a sweep, and the change in a sweep is about the error before
-/// that sweep. A smaller number risks an unnecessary sweep, a larger number an unnecessary computation of the residual.
+/// Limit of the change of the impulses in a sweep, in multiples of the error of the impulses that the tolerance allows:
+/// the residual is computed after each sweep whose change is at most this limit, to test whether the tolerance is met.
+/// The residual costs as much as a sweep, and the change in a sweep is about as large as the error before that sweep. A
+/// smaller limit risks an unnecessary sweep, a larger limit an unnecessary computation of the residual.
 const NEAR: f64 = 2.0;
-/// Interval, in sweeps, at which the residual is computed while the impulses still change by more than [`NEAR`] times
-/// their allowed error in a sweep. With a smaller interval, more computations of the residual, each as expensive as a
-/// sweep, are in vain; with a larger interval, a solve that has already reached its tolerance may do up to this number
-/// of unnecessary sweeps.
+/// Interval, in sweeps, at which the residual is computed while the impulses still change in each sweep by more than
+/// [`NEAR`] times the error that the tolerance allows. The residual costs as much as a sweep. With a smaller interval
+/// it is computed more often without effect; with a larger interval, a solve that has already reached its tolerance may
+/// do up to this number of unnecessary sweeps.
 const TEST_INTERVAL: u32 = 16;
 
 /// A 2×2 block of the Delassus operator outside its diagonal, 1/kg: the change of a contact's velocity per impulse of

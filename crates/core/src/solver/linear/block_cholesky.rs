@@ -83,8 +83,9 @@ impl<const D: usize> SymmetricBlockMatrix<D> {
         self.factorise_each(elimination);
     }
 
-    /// Replaces the matrix by its factors like `factorise_each`, compiled for the AVX instructions: the same operations
-    /// in the same order, four numbers at a time, so that the result is bitwise the same.
+    /// Replaces the matrix by its Cholesky factors. Does the operations of `factorise_each`, the version for all
+    /// processors, in the same order, but compiled for the AVX instructions: four numbers at a time. The result is
+    /// bitwise the same.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx")]
     fn factorise_with_avx(&mut self, elimination: &Elimination) {
@@ -288,8 +289,8 @@ fn solve_lower<const D: usize>(factor: &Padded<D>, block: &mut Padded<D>) {
     }
 }
 
-/// Returns N blocks: each block of `left` minus the sum of the products aᵀb of two lists of blocks. The list `a` is
-/// common to all N sums; `b` has one list per sum.
+/// Returns N blocks. Block number k is `left[k]` minus the sum of the matrix products of the blocks of `a`, transposed,
+/// with the blocks of the list `b[k]`: the first of `a` with the first of `b[k]`, and so on.
 #[inline(always)]
 fn less_products<const D: usize, const N: usize>(
     mut left: [Padded<D>; N],

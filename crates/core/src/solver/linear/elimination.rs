@@ -133,8 +133,8 @@ impl Elimination {
         }
     }
 
-    /// Makes `body` a neighbour of all other bodies of `clique`, the list of the neighbours of the body that is being
-    /// eliminated.
+    /// Makes `body` a neighbour of all other bodies of `clique`, and no longer a neighbour of the body `eliminated`,
+    /// which is being eliminated. `clique` contains all neighbours of `eliminated`.
     fn join(&mut self, body: u32, eliminated: u32, clique: &[u32]) {
         let own = &mut self.neighbours[body as usize];
         self.merged.clear();

@@ -18,12 +18,13 @@
 //! > (M + Σ m_ij/ε (n nᵀ + m_t/m_n t tᵀ)) V = M V_free + Σ m_ij [n (2σ' − σ − c + v_n/ε) + t (…)],
 //!
 //! with the inertias M of the bodies, their velocities V_free without contacts, and the capture speed c, m/s (the
-//! opening speed that cohesion cancels in one step). The term (…) is the tangential counterpart of the term along n,
-//! without c. The matrix depends only on ε, so an iteration is one pass over the contacts and one solve with cached
-//! factors. At a fixed point V agrees with the impulses, and the impulses with the law: the natural map is 0. ε
-//! determines how fast the impulses and the velocities converge; it is changed if one of two residuals is much larger
-//! than the other: ε(σ' − σ), the distance of z from the contact velocities HV, and (z' − z)/ε, with the new z' and the
-//! previous z.
+//! opening speed that cohesion cancels in one step). The term (…) is 2λ_t' − λ_t + v_t m_t/(m_n ε), the tangential
+//! counterpart of the term along n. The matrix depends only on ε, so an iteration is one pass over the contacts and one
+//! solve with cached factors. At a fixed point V agrees with the impulses, and the impulses with the law: the natural
+//! map is 0. ε determines how fast the impulses and the velocities converge; it is changed if one of two residuals of
+//! all contacts, m/s, is much larger than the other. The first residual, ε (σ' − σ) along the normal, is the difference
+//! between z and the contact velocities HV. The second residual, (z' − z)/ε with the new z' and the previous z, is the
+//! change of the contact velocities in an iteration divided by ε.
 
 use super::contact_system::{BestIterate, BodySystem, ContactSystem, ScaledVector};
 use super::stopping::{SolveReport, is_tested};
@@ -33,23 +34,23 @@ use crate::solver::linear::{BlockMatrix, Elimination};
 use crate::solver::problem::{Row, StepProblem};
 use crate::solver::settings::SolverSettings;
 
-/// Initial compliance ε, the inverse of the penalty that couples body velocities and contact velocities, relative to
-/// the compliance 1/m_ij of a contact (effective mass m_ij). A smaller ε penalises the difference between these two
-/// velocities more.
+/// Compliance ε with which a solve begins, relative to the compliance 1/m_ij of a contact (effective mass m_ij). A
+/// penalty proportional to 1/ε couples the velocities of bodies to separate unknowns, the contact velocities; with a
+/// smaller ε it keeps the two closer together. The method changes ε during the solve.
 const FIRST_COMPLIANCE: f64 = 0.03;
-/// Number of iterations between two decisions whether the compliance ε, the inverse of the penalty that couples body
-/// velocities and contact velocities, is changed. A change requires a new factorisation, which costs as much as about
+/// Number of iterations between two decisions whether the compliance ε is changed (the inverse of the penalty that
+/// couples body velocities and contact velocities). A change requires a new factorisation, which costs as much as about
 /// ten iterations.
 const BALANCE_INTERVAL: u32 = 24;
-/// Minimum ratio of the larger to the smaller of two residuals at which the compliance ε, the inverse of the penalty
-/// that couples body velocities and contact velocities, is changed. The residuals are the difference between these two
-/// velocities, and the change of the contact velocities in an iteration.
+/// Minimum ratio of the larger to the smaller of two residuals at which the compliance ε is changed (the inverse of the
+/// penalty that couples body velocities and contact velocities). The first residual is the difference between these two
+/// velocities; the second is the change of the contact velocities in an iteration, divided by ε.
 const OUT_OF_BALANCE: f64 = 4.0;
-/// Maximum factor by which the compliance ε, the inverse of the penalty that couples body velocities and contact
-/// velocities, is increased or decreased in one change.
+/// Maximum factor by which one change increases or decreases the compliance ε (the inverse of the penalty that couples
+/// body velocities and contact velocities).
 const LARGEST_CHANGE: f64 = 10.0;
-/// Minimum and maximum of the compliance ε, the inverse of the penalty that couples body velocities and contact
-/// velocities, relative to the compliance 1/m_ij of a contact (effective mass m_ij). With a smaller ε rounding errors
+/// Minimum and maximum of the compliance ε (the inverse of the penalty that couples body velocities and contact
+/// velocities), relative to the compliance 1/m_ij of a contact (effective mass m_ij). With a smaller ε rounding errors
 /// in the factorisation matter; with a larger ε the effect of an impulse hardly spreads from contact to contact.
 const COMPLIANCES: [f64; 2] = [1e-5, 1.0];
 
@@ -71,7 +72,8 @@ impl Clone for AdmmMemory {
     }
 }
 
-/// Body velocities V and contact velocities z of one solve, m/s, and the matrix that couples them.
+/// Unknowns and linear equations of one solve: body velocities V, m/s, contact velocities z, m/s, and the matrix of the
+/// equations for V, which contains the penalty for the difference between V and z.
 #[derive(Debug, Default)]
 struct Directions<const D: usize> {
     elimination: Elimination,
@@ -226,8 +228,9 @@ impl<const D: usize> Directions<D> {
     }
 
     /// Computes the contact impulses and the contact velocities z from the body velocities V. Returns the factor by
-    /// which the dimensionless compliance ε (`compliance`) must be multiplied to make two residuals equal: the
-    /// difference between z and the contact velocities that follow from V, and the change of z in this iteration.
+    /// which the dimensionless compliance ε (`compliance`) must be multiplied to make two residuals equal. The first is
+    /// the difference between z and the contact velocities that follow from V, and is proportional to ε; the second is
+    /// the change of z in this iteration divided by ε.
     fn apply_law<M: Model>(&mut self, problem: &mut StepProblem<M>, compliance: f64) -> f64 {
         let (mut of_velocities, mut of_impulses) = (0.0, 0.0);
         let mut targets = std::mem::take(&mut self.targets);

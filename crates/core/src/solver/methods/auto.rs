@@ -35,7 +35,8 @@ const PATIENCE_OF_CONTACTS: usize = 20_000;
 /// factorisations, and the pile does not fall.
 const LEAST_PATIENCE: [usize; 2] = [5, 10];
 /// Maximum patience of Newton's method: the method stops if the residual does not halve within this number of
-/// factorisations.
+/// factorisations. It limits the patience of problems with fewer than 200 contacts ([`PATIENCE_OF_CONTACTS`] divided by
+/// this number). With a larger maximum, Newton's method spends more factorisations on problems that it cannot solve.
 const MOST_PATIENCE: usize = 100;
 
 /// Minimum number of contacts of a flowing pile that `auto` solves by conjugate gradients. With fewer contacts Newton's
@@ -45,8 +46,8 @@ pub const CONTACTS_THAT_FLOW: usize = 500;
 /// contact impulses, for a pile to count as flowing. The fraction is 0 for 2,000 grains at rest, and 0.08 to 0.3 for
 /// 2,000 falling grains after the first steps.
 const SLIDING_SHARE: f64 = 0.05;
-/// Minimum speed of a contact that counts as sliding in the decision whether a pile flows, in √(g d) (gravity g, mean
-/// diameter d).
+/// Minimum tangential speed of a contact that counts as sliding in the decision whether a pile flows, in √(g d)
+/// (gravity g, mean diameter d). With a larger speed, fewer piles count as flowing.
 const SLIDING_SPEED: f64 = 0.02;
 
 /// Maximum number of sweeps of conjugate gradients after Newton's method has failed, or in place of Newton's method for
@@ -99,7 +100,9 @@ pub(super) fn solve<M: Model>(
     solve_by(method, problem, memory, &settings, effort)
 }
 
-/// Returns true for a large flowing pile, whose contact problems Newton's method does not solve.
+/// Returns true if the problem belongs to a large flowing pile, whose problems Newton's method does not solve: the
+/// problem has at least [`CONTACTS_THAT_FLOW`] contacts, and more than the fraction [`SLIDING_SHARE`] of its contacts
+/// between grains would slide faster than [`SLIDING_SPEED`] without contact impulses.
 fn flows<M: Model>(problem: &StepProblem<M>) -> bool {
     if problem.rows.len() < CONTACTS_THAT_FLOW {
         return false;

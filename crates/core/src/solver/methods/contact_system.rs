@@ -213,13 +213,14 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
     /// Computes the weights d of the diagonal matrix D with A ⪯ D⁻¹ (D⁻¹ − A is positive semi-definite), where A maps
     /// scaled impulses to scaled velocities. The weights follow from mass splitting (R. Tonge, F. Benevolenski, A.
     /// Voroshilov 2012): a body with k contacts is cut into k parts of 1/k of its mass and inertia, one per contact. By
-    /// Cauchy–Schwarz the separate parts respond at least as much as the body does: A ⪯ D⁻¹. In the diagonal entry of a
-    /// contact, the inverse mass 1/m_i of body i becomes k_i/m_i. So with the mass ratio g_i = m_ij/m_i (effective mass
-    /// divided by the mass of body i)
+    /// the Cauchy–Schwarz inequality the separate parts respond to impulses at least as much as the body does, so D⁻¹,
+    /// the response of the parts, is the required bound of A. For a contact between the grains i and j, which have k_i
+    /// and k_j contacts, the inverse mass 1/m_i becomes k_i/m_i. So with the mass ratio g_i = m_ij/m_i (effective mass
+    /// divided by the mass of grain i)
     ///
     /// > 1/d = k_i g_i + k_j (1 − g_i), or 1/d = k_i against a fixed body,
     ///
-    /// and 1/d = k_i + k κ(b_n² + b_t² m_t/m_n) against a wall that is driven by a force and has k contacts. Here κ is
+    /// and 1/d = k_i + K κ (b_n² + b_t² m_t/m_n) against a wall that is driven by a force and has K contacts. Here κ is
     /// the ratio of the grain's mass to the effective mass of the wall (mass plus damping coefficient times time step),
     /// b_n and b_t are the components of the wall's direction of motion along normal and tangent (`problem::walls`),
     /// and m_n and m_t are the effective masses along them.
@@ -263,7 +264,7 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
             return is_solved(self.problem, settings);
         }
         let tolerance = settings.tolerance;
-        // Impulses in N·s, without the shift by the cohesion impulse.
+        // Sums over all contacts of impulses in N·s, without the cohesion impulse.
         let (mut squared, mut absolute, mut whole) = (0.0, 0.0, 0.0);
         for ((number, (row, root)), [normal, tangential]) in self.rows().enumerate().zip(before) {
             let mass = row.effective_mass;
@@ -287,9 +288,10 @@ impl<M: Model> ContactSystem for BodySystem<'_, M> {
     }
 }
 
-/// Number of iterations between two computations of the residual that look for the best impulses so far and for a
-/// stalled solve, independently of the stopping test. A shorter interval costs more. A solve that fails returns the
-/// best impulses that were found in this way; with a longer interval it may miss better impulses.
+/// Number of iterations between two computations of the residual that are made independently of the stopping test. They
+/// find the impulses with the smallest residual so far, and whether the solve has stalled. A shorter interval costs
+/// more. A solve that fails returns the best impulses found in this way; with a longer interval it may miss better
+/// impulses.
 const LOOK_INTERVAL: u32 = 16;
 
 /// Returns trial impulses, which are impulses that may violate the contact law, projected on the law: the nearest

@@ -8,10 +8,11 @@ use crate::solver::kinematics::Model;
 use crate::solver::problem::StepProblem;
 use crate::solver::settings::{FrictionModel, SolverSettings};
 
-/// Numbers of sweeps under Coulomb's law that estimate the friction bounds, in two stages. The stopping test is made
-/// after each stage; most steps of a pile at rest are solved after the first stage. With fewer sweeps the bounds are
-/// worse: at 2,000 grains they are further from Coulomb's law than the bounds that the impulses of a first solve give.
-/// More sweeps cost more than the second solve that they save.
+/// Numbers of sweeps under Coulomb's law that estimate the friction bounds of a solve under `tresca`, in two stages.
+/// The stopping test is made after each stage; most steps of a pile at rest are solved after the first stage. With
+/// fewer sweeps the bounds are worse: at 2,000 grains they are further from Coulomb's law than bounds computed from the
+/// impulses of a complete solve under `tresca`. More sweeps cost more computing time than a second solve of the step,
+/// which good bounds make unnecessary.
 const SWEEPS_FOR_BOUNDS: [u32; 2] = [4, 46];
 
 /// Solves a problem with `solve_once` as often as the settings require. Before each further solve, recomputes the

@@ -4,24 +4,27 @@
 //! cohesion impulse) and λ_t (tangential), both divided by the effective mass, m/s, the velocities v_n and v_t along
 //! its normal n and tangent t, the effective masses m_n and m_t along them, and the friction coefficient μ; u = v_n + ρ
 //! v_n^{n−1} is the normal velocity plus the restitution term (restitution ρ times v_n^{n−1}, the normal velocity
-//! before the step). Regularised with a dimensionless compliance ε the law becomes
+//! before the step). Regularised with a dimensionless compliance ε the law for the impulses σ' and λ_t' after a Newton
+//! step is
 //!
 //! > σ' = max(σ − u/ε, 0),  λ_t' = clamp(λ_t − v_t m_t/(m_n ε), ±μσ'),
 //!
-//! with the velocities at the *end* of the Newton step. From the present impulses and velocities the method predicts
-//! the state of each contact: open, stick or slip. With a predicted state the law is linear, so impulses can be
-//! eliminated and the velocities V of the bodies remain:
+//! with the impulses σ and λ_t before the step, and the velocities u and v_t at the *end* of the step. From the present
+//! impulses and velocities the method predicts the state of each contact: open, stick or slip. With a predicted state
+//! the law is linear, so impulses can be eliminated and the velocities V of the bodies remain:
 //!
 //! > M (V − V_free) = Σ m_ij [ n (σ' − c) + t λ_t' ],
 //!
 //! with the inertias M of the bodies, their velocities V_free without contacts, the effective mass m_ij of a contact
 //! and the capture speed c, m/s (the opening speed that cohesion cancels in one step). This is one sparse system with a
 //! block per body, whose size is the body's number of degrees of freedom. Its matrix is the sum of the masses and the
-//! contact stiffnesses m_ij/ε. A slipping contact, λ_t' = ±μσ', adds the unsymmetric term n + (±μ) t. The exact
-//! solution is a fixed point for any ε. With a small ε the method converges in few steps; with a larger ε it also
-//! converges for some problems whose predicted states keep changing. A rolling moment is one more clamp, ψ' = clamp(ψ −
-//! v_r/(W ε), ±μ_r σ'), with its own predicted state; ψ is the rolling impulse, v_r the rolling velocity, W its
-//! compliance and μ_r the coefficient of rolling friction (`problem::rolling`). After each step
+//! contact stiffnesses m_ij/ε. A slipping contact, λ_t' = ±μσ', makes the matrix unsymmetric: its normal velocity
+//! (along n) causes an impulse along n ± μt. The exact solution is a fixed point for any ε. With a small ε the method
+//! converges in few steps; with a larger ε it also converges for some problems whose predicted states keep changing. A
+//! rolling moment is one more clamp, ψ' = clamp(ψ − v_r/(W ε), ±μ_r σ'), with its own predicted state; ψ and ψ' are the
+//! reduced rolling impulse before and after the step, m/s, v_r is the rolling velocity, m/s, W the dimensionless
+//! compliance of the contact to rolling, and μ_r the coefficient of rolling friction (`problem::rolling`). After each
+//! step
 //!
 //! 1. the impulses are projected on the law, and the velocities are computed from them;
 //! 2. a few Gauss–Seidel sweeps correct wrong predictions;

@@ -80,11 +80,14 @@ pub(super) struct Terms<const D: usize> {
     /// ± μt if the contact slips (tangent t, friction coefficient μ). If the rolling moment is at its bound, ±μ_r times
     /// the gradient of the rolling velocity is added (coefficient of rolling friction μ_r).
     answer: [f64; D],
-    /// Stiffness of the contact: impulse (N·s) per normal velocity (m/s) with which the contact responds, kg.
+    /// Normal stiffness of the contact, kg: its impulse (N·s) in the direction `answer` per change of its normal
+    /// velocity (m/s), with a minus sign; 0 if the contact is open.
     normal_stiffness: f64,
-    /// Stiffness of the contact: impulse (N·s) per tangential velocity (m/s) with which the contact responds, kg.
+    /// Tangential stiffness of the contact, kg: its tangential impulse (N·s) per change of its tangential velocity
+    /// (m/s), with a minus sign; 0 unless the contact sticks.
     tangential_stiffness: f64,
-    /// Stiffness of the contact: impulse (N·s) per rolling velocity (m/s) with which the contact responds, kg.
+    /// Rolling stiffness of the contact, kg: its rolling impulse (N·s) per change of its rolling velocity (m/s), with a
+    /// minus sign; 0 unless the rolling moment is below its bound.
     rolling_stiffness: f64,
     /// Right-hand side of the body's equations, kg·m/s: the change of the contact's impulse on the body that the
     /// regularised contact law requires at the present velocities.
@@ -135,8 +138,8 @@ impl<const D: usize> Terms<D> {
         }
     }
 
-    /// Adds the rolling moment of a contact to this contribution, which is for body j if `on_j` is set, otherwise for
-    /// body i. The contact has the normal velocity `normal_velocity`, m/s.
+    /// Adds the rolling moment of a contact to the contribution of the same contact to the equations of one of its
+    /// bodies: body j if `on_j` is set, otherwise body i. The contact has the normal velocity `normal_velocity`, m/s.
     #[inline(always)]
     pub(super) fn add_rolling<M: Model>(
         &mut self,

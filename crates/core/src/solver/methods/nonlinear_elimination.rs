@@ -163,8 +163,8 @@ mod tests {
     fn what_one_contact_holds_is_solved_there_and_nowhere_else() {
         for seed in 0..20 {
             let law = ContactLaw::new(0.4, 0.1, FrictionCone::Shifted);
-            // The numbers of a contact's bodies differ by at most two, so bodies with distant numbers are far from each
-            // other.
+            // The problem is random, but contacts exist only between bodies whose numbers differ by at most two. So
+            // bodies with distant numbers are many contacts away from each other.
             let mut problem = random_problem::<SpinningPlane>(seed, law, 60, 120, 3, 0.0..0.3);
             for _ in 0..2_000 {
                 sweep::<SpinningPlane, false>(&mut problem);

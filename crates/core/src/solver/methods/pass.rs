@@ -75,9 +75,9 @@ pub fn sweep<M: Model, const MEASURE: bool>(problem: &mut StepProblem<M>) -> Imp
     }
 }
 
-/// Performs one sweep over all contacts under the friction model with the projection `P`: from the last contact to the
-/// first if `backward` is set, otherwise from the first to the last. Returns the change of the impulses, which is
-/// measured if `MEASURE` is set and otherwise 0.
+/// Performs one sweep over all contacts, from the last contact to the first if `backward` is set, otherwise from the
+/// first to the last. `P` limits the impulses of a contact to the impulses that the friction model allows. Returns the
+/// change of the impulses, which is measured if `MEASURE` is set and otherwise 0.
 pub(super) fn sweep_by<M: Model, P: FrictionProjection, const MEASURE: bool>(
     problem: &mut StepProblem<M>,
     backward: bool,
@@ -93,9 +93,10 @@ pub(super) fn sweep_by<M: Model, P: FrictionProjection, const MEASURE: bool>(
     pass::<M, P, MEASURE, false>(problem, backward)
 }
 
-/// Performs one sweep over all contacts by a call of `pass` that is compiled for the AVX instructions of the processor.
-/// The operations and their order do not depend on the instructions, so the result is bitwise the same. The
-/// three-operand encoding of AVX saves copies that the older encoding needs.
+/// Performs one sweep over all contacts like the function `pass`, whose code is compiled here for the AVX instructions
+/// of the processor. The arithmetic operations and their order are the same as without AVX, so the result is bitwise
+/// the same. An AVX instruction writes its result to a separate register. Older instructions overwrite one of their
+/// operands, which often has to be copied first.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx")]
 fn pass_with_avx<M: Model, P: FrictionProjection, const MEASURE: bool>(

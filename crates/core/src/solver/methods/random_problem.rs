@@ -11,8 +11,9 @@ use crate::solver::problem::{FixedRow, PairRow, Row, StepProblem};
 
 /// Returns a problem with random contacts between bodies of different masses. The indices of the two bodies of a
 /// contact differ by less than `reach`; every sixth contact is with a fixed body. `added` is the range of the
-/// restitution terms that the law adds to the normal velocity of a contact, m/s. If these terms are positive, the
-/// problem has a solution, because bodies at rest satisfy the laws of all contacts.
+/// restitution terms that the law adds to the normal velocity of a contact, m/s. If these terms are not negative,
+/// bodies at rest satisfy every contact's condition on its normal velocity (normal velocity plus restitution term ≥ 0).
+/// So these conditions do not contradict each other, as they can in a problem without a solution.
 pub(super) fn random_problem<M: Model>(
     seed: u64,
     law: ContactLaw,

@@ -4,8 +4,9 @@
 //! times the velocity before the step) can demand velocities of wedged contacts that their neighbours do not allow.
 //! Such a problem has no solution: with any method the residual falls to some value and remains there, while impulses
 //! keep changing. In a problem that is merely slow to solve, doubling the number of sweeps clearly reduces the
-//! residual: if eight digits take 1e5 sweeps, the residual still falls by a third from 2,048 sweeps to 4,096. So each
-//! time the number of sweeps has doubled, the residual is compared with its value at half as many sweeps.
+//! residual: if a solve needs 1e5 sweeps to divide the residual by 1e8, the residual still falls by a third from 2,048
+//! sweeps to 4,096. So each time the number of sweeps has doubled, the residual is compared with its value at half as
+//! many sweeps.
 //!
 //! A stall is a property of a method: sometimes Newton's method finds a solution although Gauss–Seidel stalls. The
 //! problem has no solution only if all methods stall.
@@ -24,8 +25,8 @@ pub struct SolveReport {
     pub factorisations: u32,
     /// True if the stopping test was met: the error is within the tolerance.
     pub converged: bool,
-    /// True if a solve did not converge because its residual stopped decreasing; false if it was stopped by a limit
-    /// while the residual still decreased.
+    /// True if a solve did not converge because its residual stopped decreasing. False if the solve converged, or if a
+    /// limit stopped it while the residual still decreased.
     pub stalled: bool,
 }
 
@@ -36,7 +37,8 @@ impl SolveReport {
         Self { converged: true, ..Self::default() }
     }
 
-    /// Adds the report of another solve of the same step. The step has stalled if one of its solves has stalled.
+    /// Adds the report of another solve of the same step. The numbers of sweeps and factorisations are added. The step
+    /// has converged only if all of its solves have converged, and it has stalled if one of them has stalled.
     pub fn add(&mut self, other: Self) {
         self.sweeps += other.sweeps;
         self.factorisations += other.factorisations;
@@ -59,8 +61,9 @@ impl SolveReport {
 /// every [`TEST_INTERVAL`]th is tested, because a sweep that also measures its change costs more. With a smaller
 /// number, steps with good initial impulses would take more sweeps than they need.
 const SWEEPS_TESTED_EACH: u32 = 16;
-/// Number of sweeps between two stopping tests of a long solve. So a solve performs fewer than this number of sweeps
-/// that its stopping test would not have required.
+/// Number of sweeps from one stopping test to the next, after the first sweeps of a solve, which are all tested. A
+/// solve can end only at a test, so it may perform up to 7 unnecessary sweeps. With a smaller number the tests take
+/// more time; with a larger number there are more unnecessary sweeps.
 const TEST_INTERVAL: u32 = 8;
 
 /// Returns true if the stopping test is made after sweep (or iteration) number `sweeps`, counted from 1.
@@ -95,9 +98,10 @@ pub(in crate::solver) fn sweep_until_settled<P>(
     SolveReport { sweeps, stalled, ..SolveReport::default() }
 }
 
-/// Returns true if the stopping test is met after a sweep with the impulse change `change`. The other arguments are the
-/// quantities that the four kinds of stopping test need: the mean mass of the grains (kg), the sum of the squared
-/// impulses of all contacts ((N·s)²), the residual, and the velocity error.
+/// Returns true if the stopping test of the settings is met after a sweep that changed the impulses by `change`. A test
+/// on the relative change of the impulses also needs `squared_impulses`, the sum of the squared impulses of all
+/// contacts ((N·s)²). A test on their change per mass needs the mean mass of the grains, `mean_mass` (kg). The two
+/// tests on errors need only `residual` or `velocity_error`.
 pub(super) fn is_settled<P>(
     problem: &mut P,
     change: ImpulseChange,
@@ -120,22 +124,25 @@ pub(super) fn is_settled<P>(
     }
 }
 
-/// Number of sweeps after which the residual is compared for the first time. After fewer sweeps the comparison does not
-/// distinguish problems with and without a solution.
+/// Number of sweeps after which a solve records its residual for the first time, to detect a stall. The residual is
+/// recorded again each time the number of sweeps has doubled, and compared with the record before. After fewer sweeps
+/// this comparison does not distinguish problems that have a solution from problems that have none.
 const FIRST_LOOK: u32 = 512;
-/// Minimum ratio of the residual to the residual after half as many sweeps, from which the residual counts as no longer
-/// decreasing (flat).
+/// A residual counts as flat (no longer decreasing) if it is at least this fraction of the residual after half as many
+/// sweeps. With 0.9, the residual of a slow solve would count as flat: if a solve needs 1e5 sweeps to divide the
+/// residual by 1e8, the residual at 1,024 sweeps is 0.91 of the residual at 512.
 const FLAT: f64 = 0.95;
 /// Number of consecutive comparisons that end a solve if each finds a flat residual (hardly smaller than at half as
 /// many sweeps). This applies to a solve whose stopping test limits the residual or the velocity error. With 1, a solve
-/// whose residual only pauses would end, too.
+/// would also end if its residual pauses and later decreases again.
 const LOOKS_IN_VAIN: u32 = 2;
 
 /// History of the residual during a solve, to detect a stall.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StallWatch {
     next_look: u32,
-    /// The last two residuals that were computed for a comparison, the older one first.
+    /// The last two residuals that were recorded to detect a stall, the older one first. The newer one was recorded
+    /// after twice as many sweeps as the older one. Infinite as long as there is no record.
     looks: [f64; 2],
     in_vain: u32,
 }

@@ -7,8 +7,10 @@
 //!
 //! > σ ← max(σ − (v_n + ρ v_n^{n−1}), 0),  λ_t ← clamp(λ_t − v_t · m_t/m_n, ±bound(σ)).
 //!
-//! The normal impulse does not change v_t, so both velocities are computed once. Friction models other than Coulomb's
-//! law use another projection of the same trial impulses (`problem::friction`).
+//! The normal impulse does not change v_t, so both velocities are computed once. The first arguments of max and clamp
+//! are the trial impulses of the contact: with them its normal velocity would become −ρ v_n^{n−1} and its tangential
+//! velocity 0. Friction models other than Coulomb's law limit the same trial impulses by other rules
+//! (`problem::friction`).
 
 use crate::contact::{ContactLaw, Lanes};
 use crate::solver::kinematics::Model;
@@ -74,8 +76,9 @@ impl<M: Model, T: Lanes> Local<M, T> {
     }
 
     /// Solves contacts of grains with fixed bodies: updates the impulses (normal impulse plus cohesion impulse, and
-    /// tangential impulse, divided by the effective mass, m/s) and the velocities of the grains. `project` projects
-    /// trial impulses on the allowed impulses.
+    /// tangential impulse, divided by the effective mass, m/s) and the velocities of the grains. The update first
+    /// computes the impulses that would stop the relative motion at each contact, except for a rebound by restitution.
+    /// `project` limits them to the impulses that the friction model allows.
     #[inline(always)]
     pub(crate) fn solve_fixed<const MEASURE: bool>(
         &self,
@@ -92,8 +95,9 @@ impl<M: Model, T: Lanes> Local<M, T> {
 
     /// Solves contacts between grains i and j: updates the impulses (normal impulse plus cohesion impulse, and
     /// tangential impulse, divided by the effective mass, m/s) and the velocities of the grains. `share` is the mass
-    /// ratio m_ij/m_i: effective mass divided by the mass of grain i. `project` projects trial impulses on the allowed
-    /// impulses.
+    /// ratio m_ij/m_i: effective mass divided by the mass of grain i. The update first computes the impulses that would
+    /// stop the relative motion at each contact, except for a rebound by restitution. `project` limits them to the
+    /// impulses that the friction model allows.
     #[inline(always)]
     pub(crate) fn solve_pair<const MEASURE: bool>(
         &self,
@@ -111,7 +115,8 @@ impl<M: Model, T: Lanes> Local<M, T> {
 
     /// Updates the impulses (normal impulse plus cohesion impulse, and tangential impulse, divided by the effective
     /// mass, m/s) of contacts that have the given normal and tangential velocities. Returns the change of the two
-    /// impulses, m/s. `project` projects trial impulses on the allowed impulses.
+    /// impulses, m/s. The update first computes the impulses that would stop the relative motion at each contact,
+    /// except for a rebound by restitution. `project` limits them to the impulses that the friction model allows.
     #[inline(always)]
     fn update(
         &self,

@@ -7,9 +7,10 @@
 //! then look like an error of the solve. The path of the interior point method leads to the middle (the analytic
 //! centre) of the set of all wedged impulses. If the friction bounds are computed from these impulses, the middle moves
 //! with each solve. An example is three discs in a ring: they are in equilibrium with any normal impulse σ if each
-//! contact has the tangential impulse |λ| = σ tan 30°. If the bound of |λ| is the friction coefficient μ times the σ of
-//! the solve before, each solve multiplies the impulses at the middle by μ. So above a certain μ impulses would grow
-//! from step to step until rounding stops the solve.
+//! contact has the tangential impulse |λ| = σ tan 30°. With a fixed friction bound g of |λ|, σ can have any value from
+//! 0 to g/tan 30°, and the middle is at σ = g, where σ (g² − λ²) is largest. If g is the friction coefficient μ times
+//! the σ of the solve before, each solve therefore multiplies the impulses at the middle by μ. So if μ is above 1 in
+//! this example, impulses would grow from step to step until rounding stops the solve.
 
 use glam::DVec2;
 
@@ -18,9 +19,10 @@ use crate::solver::problem::{Bodies, StepProblem};
 use crate::solver::settings::FrictionModel;
 
 /// Friction coefficient μ above which a solve with fixed friction bounds (`tresca`) never starts from the impulses of
-/// the previous step. At μ = 2.5 the root mean square of the impulses of piles stays at 9 to 100 grain weights (5 to 7
-/// if each step starts from zero impulses) and rises with the Bond number; at μ = 3 and Bond number 20 the impulses
-/// grow to 3e4 grain weights in 0.3 s.
+/// the previous step. At μ = 2.5 the root mean square of the contact forces of piles (impulses divided by the time
+/// step) stays at 9 to 100 times the weight of a grain, or at 5 to 7 times this weight if each step starts from zero
+/// impulses. It rises with the Bond number. At μ = 3 and Bond number 20 the forces grow to 3e4 times the weight of a
+/// grain in 0.3 s.
 const WEDGING_FRICTION: f64 = 2.0;
 /// Maximum ratio of a contact's normal impulse to the summed magnitudes of the momentum changes that contacts cause in
 /// all bodies. A contact above this ratio counts as wedged. Levers and arches of grains make an impulse only a few

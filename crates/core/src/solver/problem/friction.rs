@@ -41,7 +41,9 @@ impl Default for LaggedFriction {
     }
 }
 
-/// The projection of a contact's trial impulses onto the impulses that a friction model allows.
+/// Projection of impulses of a contact onto the impulses that a friction model allows. A Gauss–Seidel update projects
+/// the impulses that would stop the relative motion at the contact, except for a rebound by restitution (trial
+/// impulses).
 pub(crate) trait FrictionProjection: Sized {
     /// True if the model needs a number per contact that stays fixed during a solve: a friction bound or an opening
     /// speed (a speed added to the normal velocity).
@@ -51,15 +53,18 @@ pub(crate) trait FrictionProjection: Sized {
     /// True if sweeps with this projection support walls that a force drives.
     const TAKES_DRIVES: bool = true;
 
-    /// Returns the allowed impulses (σ, λ_t) that are nearest to `trial` in the metric diag(1, m_n/m_t): normal impulse
-    /// plus cohesion impulse σ and tangential impulse λ_t, both divided by the effective mass, m/s. m_n and m_t are the
-    /// effective masses along normal and tangent. `lagged`, m/s, stays fixed during the solve: the contact's friction
+    /// Returns the impulses to which the friction model changes the given impulses `trial`. Both are pairs (σ, λ_t) of
+    /// the normal impulse plus cohesion impulse σ and the tangential impulse λ_t, divided by the effective mass, m/s.
+    /// Under a convex model the result is the allowed pair that is nearest to `trial` in the metric diag(1, m_n/m_t),
+    /// with the effective masses m_n and m_t along normal and tangent. Under Coulomb's law σ becomes at least 0, and
+    /// |λ_t| at most the friction bound of this σ. `lagged`, m/s, stays fixed during the solve: the contact's friction
     /// bound (`tresca`), or its opening speed, which is added to the normal velocity (`associated`, `desaxce`).
-    /// Coulomb's law ignores it.
+    /// Coulomb's law ignores `lagged`.
     fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2];
 }
 
-/// Evaluates an expression in which a type name stands for the projection (`FrictionProjection`) of a friction model.
+/// Evaluates an expression in which a type name stands for the projection of the problem's friction model: the rule
+/// that limits impulses to the impulses that the model allows (`FrictionProjection`).
 macro_rules! with_projection {
     ($problem:expr, $M:ident, $P:ident => $work:expr) => {
         match $problem.friction.model {
@@ -84,10 +89,11 @@ macro_rules! with_projection {
 }
 pub(crate) use with_projection;
 
-/// Projection of Coulomb's law. `ALL_RUBS` is true if the tip of the friction cone is at a shifted normal impulse of 0
-/// ([`ContactLaw::all_rubs`]) and all contacts have the same law. A sweep is one chain of dependent operations. If the
-/// compiler knows that the tip of the cone is at 0, it removes two operations of the chain, which saves 11 % of the
-/// time of a run.
+/// Projection of impulses onto the impulses that Coulomb's law allows. `ALL_RUBS` is true if all contacts have the same
+/// friction coefficient, and this coefficient times the sum of normal impulse and cohesion impulse bounds friction
+/// ([`ContactLaw::all_rubs`]). In the compressive friction cone only a part of this sum bounds friction. A sweep is one
+/// chain of dependent operations. If the compiler knows that the whole sum bounds friction, it removes two operations
+/// of the chain, which saves 11 % of the time of a run.
 pub(crate) enum CoulombFriction<const ALL_RUBS: bool> {}
 
 impl<const ALL_RUBS: bool> FrictionProjection for CoulombFriction<ALL_RUBS> {
@@ -104,9 +110,10 @@ impl<const ALL_RUBS: bool> FrictionProjection for CoulombFriction<ALL_RUBS> {
     }
 }
 
-/// Projects trial impulses on Coulomb's law. Returns the normal impulse plus cohesion impulse σ, which is the trial
-/// value or, if this is negative, 0, and the tangential impulse λ_t, which is limited to the friction bound that
-/// belongs to σ. All impulses are divided by the effective mass, m/s.
+/// Limits the impulses of a contact to the impulses that Coulomb's law allows, and returns them. `normal` is a normal
+/// impulse plus cohesion impulse; it is replaced by 0 if it is negative. `tangential` is a tangential impulse; its
+/// magnitude is limited to the friction bound that belongs to the returned normal impulse. All impulses are divided by
+/// the effective mass, m/s.
 #[inline(always)]
 pub(crate) fn project_by_coulomb<M: Model, T: Lanes>(
     law: &ContactLaw,
@@ -133,8 +140,10 @@ impl FrictionProjection for BoundedFriction {
     }
 }
 
-/// The projection of the friction models `associated` and `desaxce` on the friction cone. An opening speed, m/s, which
-/// stays fixed during a solve, is added to the normal velocity of a contact; under `associated` it is 0.
+/// The projection of the friction models `associated` and `desaxce` on the friction cone |λ_t| ≤ μσ: μ is the friction
+/// coefficient, σ the normal impulse plus cohesion impulse and λ_t the tangential impulse, both divided by the
+/// effective mass, m/s. An opening speed, m/s, which stays fixed during a solve, is added to the normal velocity of a
+/// contact; under `associated` it is 0.
 pub(crate) enum ConeFriction {}
 
 impl FrictionProjection for ConeFriction {
@@ -222,9 +231,10 @@ mod tests {
         ContactLaw::new(friction, 0.0, FrictionCone::Shifted)
     }
 
-    /// Returns half the squared distance between the impulses `point` = (σ, λ) and `trial` = (a, b) in the metric of
-    /// the projection, ½(σ − a)² + ½c(λ − b)². σ and a are normal impulses, λ and b tangential impulses, and c =
-    /// m_n/m_t is the ratio of the effective masses along normal and tangent.
+    /// Returns half of a squared distance, (m/s)², between the impulses `point` = (σ, λ) and `trial` = (a, b): it is
+    /// ½(σ − a)² + ½c(λ − b)². The projection on the friction cone finds the nearest point by this distance. σ and a
+    /// are normal impulses, λ and b tangential impulses, all divided by the effective mass, m/s, and c = m_n/m_t is the
+    /// ratio of the effective masses along normal and tangent.
     fn distance<M: Model>(point: [f64; 2], trial: [f64; 2]) -> f64 {
         let across = M::TANGENTIAL_COMPLIANCE * (point[1] - trial[1]).powi(2);
         0.5 * ((point[0] - trial[0]).powi(2) + across)

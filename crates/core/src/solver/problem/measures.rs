@@ -75,8 +75,8 @@ impl Measures {
 }
 
 /// Returns the residual of a problem under its own friction model, dimensionless; `None` if this model is Coulomb's
-/// law. `common_residual` is the residual under Coulomb's law. It is the result for a convex model if contacts have no
-/// friction, because all friction models are then the same.
+/// law. `common_residual` is the residual under Coulomb's law. If contacts have no friction, all friction models are
+/// the same, so `common_residual` is then also the result for a convex model.
 fn model_residual<M: Model>(problem: &StepProblem<M>, common_residual: f64) -> Option<f64> {
     match problem.friction.model {
         FrictionModel::Coulomb => None,
@@ -105,8 +105,9 @@ pub fn worst(one: f64, other: f64) -> f64 {
 /// as impulses on the bodies) the kinetic energy changes by ½(v^n + v^{n−1})·(ΔtF + HP). So a contact impulse P does
 /// the work P·½(u^n + u^{n−1}), with u^{n−1} and u^n the relative velocities of the contact before and after the step.
 /// Together with the work of gravity this closes the energy balance to rounding, however large the solver's error is.
-/// If i touches a periodic image of body j across a sheared border (beyond which images move along the border), u^{n−1}
-/// and u^n are relative to the image, and P times the velocity of the image relative to j is the work of the border.
+/// If a grain touches the periodic image of another grain across a sheared border (beyond which images move along the
+/// border), u^{n−1} and u^n are relative to the image. P times the velocity of the image relative to the other grain
+/// itself is then the work of the border.
 // Without inlining, the function is compiled once per model, in this crate.
 #[inline(never)]
 pub fn measure<M: Model>(problem: &StepProblem<M>) -> Measures {

@@ -66,8 +66,9 @@ pub struct StepProblem<M: Model> {
     /// The friction model, and for each contact the number, m/s, that the model keeps fixed during a solve: a friction
     /// bound, or an opening speed that is added to the normal velocity.
     pub(crate) friction: LaggedFriction,
-    /// Scale of velocity errors, m/s: √(g d), the speed after a fall by half a mean diameter d. Without gravity the
-    /// acceleration by cohesion, C₀/m_ij (cohesion force divided by effective mass), replaces g.
+    /// Speed to which velocity errors are compared, m/s: √(g d), the speed after a fall by half a mean diameter d in
+    /// the gravity g. Without gravity the acceleration by cohesion, C₀/m_ij (cohesion force divided by effective mass),
+    /// replaces g.
     pub(crate) fall_speed: f64,
     /// True for each grain that has contacts; empty if all grains have contacts.
     pub(super) touches: Vec<bool>,

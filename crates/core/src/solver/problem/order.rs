@@ -65,9 +65,9 @@ pub(crate) struct RowOrder {
     detected: Vec<u32>,
     keys: Vec<(f64, u32)>,
     tiles: Tiles,
-    /// A pair for each contact that has a colour (group of contacts of one tile that share no grain): the group number
-    /// tile · [`COLOURS`] + colour, from the numbers of its tile (square region of the plane) and colour, and the
-    /// number of the contact.
+    /// For each contact that has a colour (group of contacts of one tile that share no grain), two numbers: the number
+    /// of its group and the number of the contact. The number of a group is tile · [`COLOURS`] + colour, with the
+    /// number of the tile (square region of the plane) and the number of the colour.
     coloured: Vec<(u32, u32)>,
     /// Numbers of the contacts whose two grains are in different tiles (square regions of the plane).
     between: Vec<u32>,
@@ -133,8 +133,9 @@ impl RowOrder {
         rows
     }
 
-    /// Stores the numbers of the contacts that are to be sorted next, and clears the groups of their kind. All of them
-    /// are of one kind (0: with fixed bodies, 1: between grains).
+    /// Stores the numbers of the contacts that are to be sorted next, and removes the previous groups of the same kind
+    /// of contact. All these contacts are of the kind `kind`: 0 for contacts with fixed bodies, 1 for contacts between
+    /// grains.
     fn take(&mut self, numbers: impl Iterator<Item = u32>, kind: usize) {
         self.detected.clear();
         self.detected.extend(numbers);
@@ -148,8 +149,8 @@ impl RowOrder {
         }
     }
 
-    /// Sorts contacts by the potential of gravity at the contact points, which is g times the height if gravity is
-    /// uniform.
+    /// Sorts contacts by increasing potential of gravity (J/kg) at the contact points. If gravity is uniform, the
+    /// potential is g times the height, so the lowest contact comes first.
     fn sort_by_height(&mut self, world: &World, contacts: &[Contact], rows: &mut Vec<u32>) {
         let potential = |&number: &u32| {
             let contact = &contacts[number as usize];
@@ -243,9 +244,10 @@ impl RowOrder {
 }
 
 /// Number of grains per tile (square region whose contacts one thread solves) in a dense pile: the velocities of 512
-/// grains take 16 KB, a third of the first-level cache of a current processor. With fewer grains, more contacts lie
-/// between tiles. With more grains, the data of the contacts push velocities out of the cache, and a small pile has too
-/// few tiles for several threads.
+/// grains take 16 KB, a third of the first-level cache of a current processor. With fewer grains, more contacts are
+/// between grains of different tiles, and a single thread has to solve these contacts after all tiles. With more
+/// grains, the data of the contacts push velocities out of the cache, and a small pile has too few tiles for several
+/// threads.
 const GRAINS_IN_TILE: usize = 512;
 /// Maximum number of grains of a scene that is not divided into tiles (regions whose contacts one thread solves): the
 /// data of the contacts of this number of grains fit in the second-level cache, and waking a second thread would cost
@@ -253,7 +255,8 @@ const GRAINS_IN_TILE: usize = 512;
 const GRAINS_IN_ONE: usize = 2048;
 /// Minimum number of grains per tile (square region whose contacts one thread solves), on average, in a scene with
 /// large gaps between grains: an eighth of the number in a dense pile. With a smaller number, more tiles may be empty;
-/// with a larger number, tiles are larger and contain more of the dense regions.
+/// with a larger number, tiles are larger, and a tile in a dense region contains more grains, whose velocities may not
+/// fit in the cache.
 const LEAST_GRAINS_A_TILE: usize = 64;
 
 /// The tile of each grain. Tiles are squares of the plane, so small that the velocities of one tile's grains stay in

@@ -31,8 +31,8 @@ pub fn residual<M: Model>(problem: &StepProblem<M>) -> f64 {
     common_map(problem).residual::<M>(problem)
 }
 
-/// Computes the squared numerator and denominator of [`residual`], the relative error of the impulses under Coulomb's
-/// law, as sums over all contacts.
+/// Computes the squared numerator and denominator, (N·s)², of [`residual`], the relative error of the impulses under
+/// Coulomb's law, as sums over all contacts.
 fn common_map<M: Model>(problem: &StepProblem<M>) -> Sums {
     let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
         sums.add_error(problem, number, row, &motion);
@@ -40,9 +40,9 @@ fn common_map<M: Model>(problem: &StepProblem<M>) -> Sums {
     sum_of_rows(problem, add_error, Sums::add_all)
 }
 
-/// Computes the squared numerator and denominator of the residual under the convex friction model that a problem is
-/// solved under (`problem::friction`). The denominator is the denominator of [`residual`], so that both residuals can
-/// be compared.
+/// Computes the squared numerator and denominator, (N·s)², of the residual under the convex friction model that a
+/// problem is solved under (`problem::friction`). The denominator is the denominator of [`residual`], so that both
+/// residuals can be compared.
 fn projection_map<M: Model, P: FrictionProjection>(problem: &StepProblem<M>) -> Sums {
     let compliance = 1.0 / M::TANGENTIAL_COMPLIANCE;
     let add_error = |sums: &mut Sums, (number, row): (usize, &Row<_>), motion: RowVelocities| {
@@ -71,8 +71,8 @@ pub(crate) fn projection_residual<M: Model, P: FrictionProjection>(
     map_of::<M, P>(problem).residual(problem)
 }
 
-/// Computes the squared numerator and denominator of the residual under the friction model that a problem is solved
-/// under, which may be Coulomb's law.
+/// Computes the squared numerator and denominator, (N·s)², of the residual under the friction model that a problem is
+/// solved under, which may be Coulomb's law.
 pub(super) fn natural_map_sums<M: Model>(problem: &StepProblem<M>) -> Sums {
     with_projection!(problem, M, P => map_of::<M, P>(problem))
 }
@@ -102,7 +102,8 @@ pub(crate) fn errors<M: Model, T: Lanes>(
     [error, tangential - law::coulomb(tangential - compliance * tangential_velocity, bound)]
 }
 
-/// Returns the squared denominator of [`residual`], (N·s)², which is constant during a solve.
+/// Returns the squared denominator of [`residual`], (N·s)²: the sum of the squared impulses that would stop the motion
+/// of every contact by itself. It is constant during a solve.
 pub(crate) fn squared_residual_scale<M: Model>(problem: &StepProblem<M>) -> f64 {
     let add_scale = |sums: &mut Sums, (_, row): (usize, &Row<_>), motion: RowVelocities| {
         sums.add_scale::<M>(row, motion.free);

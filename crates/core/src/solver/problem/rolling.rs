@@ -90,8 +90,8 @@ impl Rolling {
     }
 
     /// Returns the derivatives, dimensionless, of the rolling velocity (reduced radius times relative angular velocity
-    /// of the two bodies, m/s) by the velocity of body j if `on_j` is true, else of body i. The velocity has three
-    /// components, all in m/s: x, y and spin (radius times angular velocity).
+    /// of the two bodies, m/s) with respect to the velocity of body j if `on_j` is true, else of body i. The velocity
+    /// of a body has three components, all in m/s: x, y and spin (radius times angular velocity).
     #[inline(always)]
     pub(crate) fn gradient(&self, on_j: bool) -> [f64; 3] {
         [0.0, 0.0, if on_j { self.lever - 1.0 } else { self.lever }]
@@ -105,8 +105,8 @@ impl Rolling {
     }
 
     /// Applies a reduced rolling impulse (rolling moment times time step, divided by reduced radius and effective mass,
-    /// m/s) to body j, which gets the opposite moment of body i. `share` is the effective mass of the contact divided
-    /// by the mass of body i.
+    /// m/s) to body j of the contact. The moment on body j is opposite to the moment on body i. `share` is the
+    /// effective mass of the contact divided by the mass of body i.
     #[inline(always)]
     pub(crate) fn turn_j<M: Model>(&self, j: &mut M::Body<f64>, share: f64, impulse: f64) {
         turn::<M>(j, -2.0 * (1.0 - share) * (1.0 - self.lever) * impulse);

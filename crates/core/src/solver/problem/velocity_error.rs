@@ -17,8 +17,9 @@
 //! p*)·H(V − V*) = ‖V − V*‖²_M, ‖V − V*‖²_M is at most the difference of the energies plus Σ m_ij z(σ* − σ). σ* is not
 //! known. It is assumed to be at most 2σ + z: twice the present impulse plus the impulse that would end the contact's
 //! shortfall by itself. With this assumption the bound is the duality gap S (J), for a model with fixed friction bounds
+//! (first sum) or with a friction cone (second sum):
 //!
-//! > S = Σ m_ij (σ(w + 2z) + z² + g|v| + λv)
+//! > S = Σ m_ij (σ(w + 2z) + z² + g|v| + λv),  S = Σ m_ij (σ(w + s + 2z) + z² + λv).
 //!
 //! √S divided by the root of the mass of the grains with contacts is an error in m/s.
 //!
@@ -57,10 +58,11 @@ use crate::number::Parts;
 use crate::solver::kinematics::Model;
 use crate::solver::settings::FrictionModel;
 
-/// Minimum cosine between the normal of a contact with a fixed body and the mean normal of all such contacts, for
-/// contacts that a motion of all grains along the mean normal is assumed to open. To open a contact with a smaller
-/// cosine, which lacks some normal velocity, the motion might have to be more than ten times as fast as the lacking
-/// velocity, and the estimated error would be too large.
+/// The estimate of the velocity error assumes a motion of all grains along the mean normal of the contacts with fixed
+/// bodies, which gives these contacts the normal velocity that they lack to satisfy their law. Contacts with a cosine
+/// below this value, between their own normal and the mean normal, are treated like contacts between grains instead.
+/// For such a contact the motion would have to be more than ten times as fast as the lacking velocity, and the estimate
+/// would be too large.
 const LEAST_ALONG: f64 = 0.1;
 
 /// Estimated error of the velocities of a step, and the speed by which it is divided for the comparison with the
@@ -199,8 +201,10 @@ impl ErrorSums {
     /// Adds a contact's contribution to the sums from which the velocity error is computed. The sum S, which is 0 at
     /// the solution, increases by the effective mass times `of_contact`, (m/s)². The sums of squared shortfalls
     /// increase by the square of `lacking`, m/s: the increase of normal velocity that the contact needs to satisfy its
-    /// law. For a contact that a motion of all grains away from the fixed bodies, along `way_out`, opens, `lacking` is
-    /// first divided by the cosine between this direction and the normal.
+    /// law. A motion of all grains along `way_out`, the mean direction away from the fixed bodies, can open a contact
+    /// with a fixed body. `lacking` of such a contact is first divided by the cosine between `way_out` and the
+    /// contact's normal, which gives the speed of the motion. If the cosine is below [`LEAST_ALONG`], and for contacts
+    /// between grains, `lacking` is not divided.
     #[inline(always)]
     fn add<M: Model>(
         &mut self,

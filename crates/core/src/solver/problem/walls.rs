@@ -111,8 +111,8 @@ pub struct DrivenBy {
 }
 
 impl DrivenBy {
-    /// Returns P·b, the part of a contact impulse with the given normal and tangential components that acts on the wall
-    /// along its direction of motion, in the unit of the given impulse.
+    /// Returns the component of a contact impulse along the wall's direction of motion, in the unit of the given
+    /// impulse. The impulse is given by its normal and tangential components.
     #[inline(always)]
     pub(crate) fn part_along(&self, [normal, tangential]: [f64; 2]) -> f64 {
         self.along[0] * normal + self.along[1] * tangential
@@ -177,10 +177,10 @@ impl MovingWalls {
         self.driven_rows.get(*self.driven_row_of.get(number)? as usize)
     }
 
-    /// Records the next contact with a body that is not a grain. `by` is the wall of the contact if a force moves it,
-    /// or `None`. The other arguments, m/s, are values for the wall's speed at the beginning of the step: `wall_speed`,
-    /// the speed of the wall along the contact's normal, and `added` and `slide`, the fields `restitution_velocity` and
-    /// `surface_speed` of the contact's data.
+    /// Records the next contact with a body that is not a grain; does nothing if no force drives any wall. `by` is the
+    /// wall of the contact if a force moves it, or `None`. The other arguments, m/s, contain the speed that the
+    /// force-driven wall has at the beginning of the step: `wall_speed` is the speed of the wall along the contact's
+    /// normal, and `added` and `slide` are the fields `restitution_velocity` and `surface_speed` of the contact's data.
     fn add_row(&mut self, by: Option<DrivenBy>, wall_speed: f64, [added, slide]: [f64; 2]) {
         if self.driven.is_empty() {
             return;
@@ -250,7 +250,9 @@ impl<M: Model> StepProblem<M> {
     }
 
     /// Returns the speed along the normal, m/s, at the beginning of the step, of the wall (or other body that is not a
-    /// grain) at the contact in row `number`. For a wall that a force moves the result is its present speed.
+    /// grain) at the contact in row `number`. For a wall that a force moves, the result is instead its speed under the
+    /// present contact impulses; [`Self::wall_speed_and_gain`] returns the speed at the beginning of the step for such
+    /// a wall, too.
     pub(crate) fn wall_speed_before(&self, number: usize) -> f64 {
         if self.gives_way(number) {
             return self.wall_speed(number);
@@ -308,8 +310,9 @@ impl<M: Model> StepProblem<M> {
 
     /// Returns the work of moving surfaces and its tangential part, J, for the contacts of `part`, a problem with a
     /// subset of the contacts of this problem. `number_here` translates the row numbers of `part` to row numbers of
-    /// this problem. In contrast to [`Self::surface_works`], the work of a wall that a force moves is computed with the
-    /// wall's speed at the end of the step.
+    /// this problem. The work of a wall that a force moves is computed with the wall's speed at the end of the step,
+    /// although the wall does work at the mean of its speeds at the beginning and the end of the step.
+    /// [`Self::surface_works`] corrects this.
     pub(crate) fn surface_works_of(
         &self,
         part: &Self,
@@ -379,7 +382,7 @@ impl<M: Model> StepProblem<M> {
     ///
     /// A contact with a driven wall has larger compliances than a contact with a fixed wall, because the wall gives
     /// way. v_n, with its restitution term, is divided by the ratio of these compliances 1 + κ b_n², and v_t by 1 + κ
-    /// b_t² m_t/m_n (κ is the product of the contact's effective mass and the response of the wall's speed to an
+    /// b_t² m_t/m_n (κ is the product of the contact's effective mass, kg, and the response of the wall's speed to an
     /// impulse, 1/kg; m_n and m_t are the effective masses along normal and tangent; b_n and b_t are the components of
     /// the wall's direction of motion along the normal and the tangent). So an impulse changes the scaled velocity as
     /// much as it would change the velocity at a fixed wall.
@@ -398,10 +401,11 @@ impl<M: Model> StepProblem<M> {
         Some([(normal + added) / of_normal - added, tangential / of_tangential])
     }
 
-    /// Computes the normal and tangential relative velocity, m/s, of a contact with a driven wall (a wall that a force
-    /// moves), as it would be if the wall had the speed that it has without contact impulses. The given velocity is
-    /// relative to the wall's present speed. The result is divided by ratios of compliances, as [`Self::own_part`]
-    /// does; it is `None` if the contact is not with a driven wall.
+    /// Converts the normal and tangential velocity of a contact relative to the present speed of a driven wall (a wall
+    /// that a force moves) to the velocity relative to the speed that the wall has without contact impulses, m/s. The
+    /// normal and the tangential result are scaled for the residual like the result of [`Self::own_part`]: each is
+    /// divided by the ratio of its compliance (velocity per impulse) at the driven wall to its compliance at a fixed
+    /// wall. Returns `None` if the contact is not with a driven wall.
     #[inline(always)]
     pub(super) fn free_part(
         &self,
@@ -454,9 +458,9 @@ impl<M: Model> StepProblem<M> {
     /// Iterates over the contacts with bodies that are not grains. Returns for each contact an upper bound for the
     /// compliance of its driven wall (a wall that a force moves), dimensionless, or `None` if no force moves the body.
     /// Methods that update all contacts at once need this bound. It is κ (b_n² + b_t² m_t/m_n) times the number of
-    /// contacts of the wall. κ is the product of the contact's effective mass and the response of the wall's speed to
-    /// an impulse, 1/kg; m_n and m_t are the effective masses along normal and tangent; b_n and b_t are the components
-    /// of the wall's direction of motion along the normal and the tangent.
+    /// contacts of the wall. κ is the product of the contact's effective mass, kg, and the response of the wall's speed
+    /// to an impulse, 1/kg; m_n and m_t are the effective masses along normal and tangent; b_n and b_t are the
+    /// components of the wall's direction of motion along the normal and the tangent.
     pub(crate) fn wall_compliances(&self) -> impl Iterator<Item = Option<f64>> {
         let MovingWalls { driven, driven_rows, .. } = &self.walls;
         let mut counts = vec![0.0; driven.len()];

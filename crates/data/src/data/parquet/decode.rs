@@ -17,7 +17,8 @@ use crate::input::open;
 
 /// Description of a valid Parquet file, for error messages.
 const FORM: &str = "a Parquet file whose columns are flat, not compressed or by snappy";
-/// Largest number of rows that a file may have. A file with more rows is damaged or does not contain discs.
+/// Largest number of rows that a file may have: about 268 million, for which the eight numbers of each disc need 16 GiB
+/// of memory. A file with more rows is damaged or does not contain discs.
 const MOST_ROWS: i64 = 1 << 28;
 /// Length of the last section of a Parquet file, bytes: the length of the footer (four bytes) and the mark `PAR1`.
 const MARK: u64 = 8;
@@ -153,8 +154,8 @@ fn check_whole(file: &File) -> std::result::Result<(), String> {
     check_footer(&footer, bytes)
 }
 
-/// Returns the message of an error of the crate `parquet`. The name of the kind of error is omitted if the kind is
-/// general, not implemented or end of file, because the message then says enough.
+/// Returns the message of an error of the crate `parquet`. Messages of the kinds `General`, `NYI` (not implemented) and
+/// `EOF` (end of file) are returned without the name of the kind, because they say enough.
 fn said(error: &ParquetError) -> String {
     match error {
         ParquetError::General(said) | ParquetError::NYI(said) | ParquetError::EOF(said) => {

@@ -170,7 +170,7 @@ const PAGE_HEADER: FieldShape = Fields(&[
 
 impl FieldShape {
     /// True if a value in a header has this type. A structure fits if each of its fields occurs only once, and if each
-    /// field that the decoder knows has its type. Other fields may have any type.
+    /// field that the decoder knows has the type that the decoder expects. Other fields may have any type.
     fn fits(&self, value: &FieldValue) -> bool {
         match (self, value) {
             (Whole, FieldValue::Whole(_))

@@ -31,8 +31,9 @@ use crate::sim::Observables;
 const SIZE_OF_PART: usize = 256 << 10;
 /// Key of the entry in a file's metadata that describes the units and meanings of the columns, as JSON.
 const COLUMNS_KEY: &str = "columns";
-/// A column of numbers is written as a dictionary (list of its different values) with an index for each row if its
-/// value changes less often than once in this number of rows, on average. Such a column then takes almost no space.
+/// Least number of rows per change of value, on average over a column of numbers, with which the column is written as a
+/// dictionary (list of its different values) and an index for each row. A column that changes so rarely then takes
+/// almost no space.
 const FEW_CHANGES: usize = 8;
 
 /// Writer of a recording as Parquet files.

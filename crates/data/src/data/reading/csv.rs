@@ -19,7 +19,8 @@ use crate::input::{BoundedLines, open};
 const FORM: &str = "a CSV of discs: a header line x,y,radius, with vx,vy,omega where they move, and as \
                     many numbers in each line below";
 
-/// Largest number of characters of a header line that an error message shows.
+/// Largest number of characters of a header line that an error message shows, so that the message remains short even if
+/// the line is long.
 const MOST_SHOWN: usize = 80;
 
 /// Reads discs from the text of a CSV file; `path` is for error messages.

@@ -8,9 +8,8 @@ use super::rows::{
 use crate::data::parquet::{Decoded, ParquetFile};
 use crate::error::{Error, Result};
 
-/// Distance between the row numbers of the first rows of two successive files of a table: the number of a row is the
-/// index of its file times this distance, plus the index of the row in its file. No file has as many rows, so each row
-/// has its own number.
+/// Multiplier that gives the rows of all files of a table different numbers: row k of file n has the number n times
+/// this multiplier plus k (n and k count from 0). No file has as many rows as this multiplier.
 const MOST_ROWS: u64 = 1 << 32;
 
 /// Reads the discs of step number `step`, or of the last step if `step` is `None`, from the Parquet files of a table,

@@ -22,7 +22,8 @@ pub(super) const OF_GRAINS: [&str; 2] = ["mass", DENSITY];
 /// given.
 pub(super) const LEFT_OUT: [f64; NUMBERS.len()] =
     [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, f64::NAN, f64::NAN];
-/// Largest number of steps that an error message lists one by one.
+/// Largest number of steps that an error message lists one by one. If a file has more steps, the message states their
+/// number, the first step and the last step.
 const MOST_LISTED: usize = 8;
 
 /// Grains and fixed discs of one step, read from a file.

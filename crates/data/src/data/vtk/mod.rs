@@ -251,7 +251,8 @@ fn is_whole(path: &Path) -> bool {
 }
 
 /// Returns the two ends of the line that represents a contact, m. These are the present centres of the two discs, or
-/// the centre of the grain and the touched point of a boundary. The branch vector leads from this point to the centre.
+/// the centre of the grain and the touched point of a boundary. This point is the centre of the grain minus the branch
+/// vector of the contact.
 fn line(moment: &Moment, contact: &ContactState) -> [DVec2; 2] {
     let from = moment.grains[contact.grain as usize].position;
     let periodic = moment.surroundings.periodic;

@@ -14,11 +14,12 @@
 //!    starting from the present solution, until no bound decreases any more. Bounds never increase, so this process
 //!    ends.
 //!
-//! **Restless bonds.** A broken bond loads the next bond, but a step transmits a load by one bond only, and a long step
-//! only gives the mean of a load. So a step looks for bonds that would break at half their strength. Such bonds are
-//! called restless, and a long step with restless bonds is rejected (`range`). Bonds between resting grains are not
-//! restless, whatever load they carry: if no grain moves by more than a small fraction of δ_c, loads are constant and
-//! equal their means.
+//! **Restless bonds.** If a bond breaks, the neighbouring bonds have to bear its load. But a step passes this load on
+//! only to the neighbouring bonds and no farther, and a long step computes only the mean of a load. So a step looks for
+//! bonds that would break if their cohesion force were half as large. Such bonds are called restless. A long step with
+//! restless bonds is rejected, and solved again in substeps (`range`). Bonds between resting grains are not restless,
+//! whatever load they carry: if no grain moves by more than a small fraction of δ_c, loads are constant and equal their
+//! means.
 
 use serde::{Deserialize, Serialize};
 
@@ -101,15 +102,17 @@ pub(super) fn solve_range<M: Model>(
     Ok(result)
 }
 
-/// Opening (change of the gap) of a bonded pair in a step or, if a shock (collision) closed the bond, in the rest of
-/// the step after that shock.
+/// Opening (change of the gap) of a bonded pair in a step. If a shock (collision) in the step has formed the bond, or
+/// has made a stretched bond close, it is the opening in the rest of the step after that shock.
 struct BondOpening {
-    /// Fraction of the step that this opening covers: 1, or less if a shock (collision) closed the bond within the
-    /// step.
+    /// Fraction of the step that this opening covers: 1, or less if a shock (collision) within the step has formed the
+    /// bond or has made its gap close; then it is the fraction after that shock.
     part: f64,
-    /// True if a shock (collision) closed the bond in this step.
+    /// True if a shock (collision) in this step has formed the bond, or has made its gap close. The stretch of the bond
+    /// is then 0 after the shock.
     is_closed: bool,
-    /// Opening speed v at the beginning of the step, or just after the shock (collision) that closed the bond, m/s.
+    /// Opening speed v at the beginning of the step, m/s, or just after a shock (collision) in the step that has formed
+    /// the bond or has made its gap close.
     speed: f64,
     /// Load J: change of the opening speed by all forces except the force of the bond itself, m/s.
     load: f64,

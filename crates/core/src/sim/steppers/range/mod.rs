@@ -6,10 +6,11 @@
 //!
 //! * The step is long compared with the time √(2δ_c m_ij/C₀) in which the pull of a bond alone would open or close it
 //!   by the debonding distance δ_c (cohesion force C₀, effective mass m_ij), and bonds are restless, that is about to
-//!   break (`range::bonds`). A pile at rest, or without restless bonds, is solved in one full step. The next step is
-//!   divided without first trying a full step if bonds were restless in the previous step, undivided or in any of its
-//!   substeps, or if the two grains of a bond circle each other fast ([`circling_looks_like_a_shock`]). If even sixteen
-//!   substeps are too long for a break, the step reports this with the longest step that would suffice (`sim::alarm`).
+//!   break (`range::bonds`). A pile at rest, or without restless bonds, is solved in one full step. Usually a full step
+//!   is tried first, and is solved again in substeps if it finds restless bonds. It is not tried if bonds were restless
+//!   in the previous step (or in a substep of that step), or if the two grains of a bond circle each other fast
+//!   ([`circling_looks_like_a_shock`]). If even sixteen substeps are too long for a break, the step reports this with
+//!   the longest step that would suffice (`sim::alarm`).
 //! * Grains move far. A contact keeps its normal from the beginning of the step, so the constraint v_n + gap/Δt ≥ 0
 //!   (normal velocity v_n, time step Δt) also stops a grain that would have passed another grain. In piles without
 //!   cohesion, this is the only reason for substeps; without them such a pile would slump too little at a large Δt.
@@ -32,8 +33,10 @@ use crate::sim::steppers::range::bonds::solve_range;
 use crate::sim::stepping::{BondEnergies, Stage, StepResult};
 use crate::solver::{Approach, Model, SolveReport};
 
-/// Upper limits of two search distances, in mean diameters. A pair becomes a contact if its gap would fall below the
-/// first distance within the step and is now below the second distance.
+/// Upper limits of the two search distances `distance` and `reach` of [`LookAhead`], in mean diameters. A pair becomes
+/// a contact if its gap would fall below `distance` within the step, and is below `reach` at the beginning of the step.
+/// Both distances increase with the speed of the fastest body, up to these limits. With larger limits, more pairs that
+/// do not meet become contacts.
 const AHEAD_IN_DIAMETERS: [f64; 2] = [0.25, 2.0];
 
 /// Longest substep (part of a step) while bonds are restless (about to break), in units of the time in which the pull
@@ -195,9 +198,10 @@ pub(super) fn separate<M: Model>(state: &mut State) {
     }
 }
 
-/// Largest opening speed that the rotation of a bonded pair may cause in a step, divided by the escape speed of the
-/// bond (the smallest opening speed after a collision at which the bond breaks). With a larger value, grains that
-/// circle each other separate too early; with a smaller value, steps are divided without need.
+/// Opening speed that the rotation of a bonded pair causes in a step, divided by the escape speed of the bond (the
+/// smallest opening speed after a collision at which the bond breaks), above which the step is divided into substeps.
+/// With a larger value, grains that circle each other separate too early; with a smaller value, steps are divided
+/// without need.
 const MOST_OF_ESCAPE_SPEED: f64 = 0.5;
 
 /// True if the two grains of a bond circle each other so fast that a step of this length would treat the rotation of

@@ -99,7 +99,8 @@ impl Shape for Leaning {
     const END: usize = 3;
     const CONE: bool = false;
     const LEANS: bool = true;
-    // ε is larger because the unsymmetric factorisation inverts its diagonal blocks, which loses digits.
+    // ε is larger than for the other sets: the matrix is unsymmetric, so its factorisation inverts the diagonal
+    // blocks, which loses digits.
     const COMPLIANCE: f64 = 1e-8;
 }
 
@@ -126,10 +127,12 @@ pub(super) struct PathContact {
     pub velocity: [f64; 2],
     /// Regularisation ε of this contact, relative to the compliance of a contact whose bodies touch nothing else.
     pub compliance: f64,
-    /// Mobility of each variable of the Newton step: its change per change of the contact's velocity, dimensionless. It
-    /// is the inverse of a diagonal entry of the matrix that maps changes of the variables to changes of velocities.
-    /// The variables are the normal and tangential impulse, or on the friction cone the slacks of the two friction
-    /// bounds (distances from the bounds).
+    /// Mobility of each variable of the Newton step, dimensionless: its decrease per increase of the contact's velocity
+    /// in the direction of the variable, if the other variables do not change. The variables are the normal and
+    /// tangential impulse, whose directions are the normal and the tangent, or on the friction cone the slacks of the
+    /// two friction bounds (distances from the bounds), whose directions combine normal and tangent. The mobility is
+    /// the inverse of a diagonal entry of the matrix that maps changes of the variables to the negative changes of the
+    /// velocities.
     pub mobility: [f64; PAIRS],
 }
 
@@ -151,15 +154,17 @@ pub(super) struct ContactNumbers {
 }
 
 impl ContactNumbers {
-    /// Returns the compliance, dimensionless, of a contact whose bodies touch nothing else, to impulses that change
-    /// only one of the two slacks κσ ± λ of the friction cone |λ| ≤ κσ (slope κ, normal impulse σ, tangential impulse
-    /// λ). Such impulses (σ, λ) have the direction (1/κ, ±1)/2.
+    /// Returns the compliance of a contact along one slack of its friction cone |λ| ≤ κσ, (1/κ² + m_n/m_t)/4,
+    /// dimensionless, with the normal impulse σ, the tangential impulse λ, the slope κ, and the effective masses m_n
+    /// and m_t along normal and tangent. The bodies of the contact touch nothing else. The slacks are κσ + λ and κσ −
+    /// λ. If one slack grows by 1 and the other does not change, (σ, λ) changes by (1/κ, ±1)/2.
     fn along_slack(&self) -> f64 {
         0.25 * (1.0 / (self.slope * self.slope) + self.tangential_compliance)
     }
 
-    /// Returns the component of the normal and tangential velocity (v_n, v_t) along the variable of the Newton step
-    /// with the index `pair`. If the allowed impulses form a cone, variables 1 and 2 are the slacks of the two friction
+    /// Returns the velocity that belongs to the variable with index `pair` of the Newton step, m/s: the scalar product
+    /// of the normal and tangential velocity (v_n, v_t) and the change of the normal and tangential impulse per change
+    /// of the variable. If the allowed impulses form a cone, variables 1 and 2 are the slacks of the two friction
     /// bounds; otherwise variable 0 is the normal and variable 1 the tangential impulse.
     #[inline(always)]
     fn along<S: Shape>(&self, pair: usize, [normal, tangential]: [f64; 2]) -> f64 {
@@ -214,9 +219,10 @@ impl PathContact {
         }
     }
 
-    /// Returns μ (y₁/x₁ − y₂/x₂), with the friction coefficient μ, and the slacks x and multipliers y of the two bounds
-    /// of friction. Under Coulomb's law this number is the off-diagonal entry of the contact's matrix S in the Newton
-    /// step, which couples a change of the normal impulse to the tangential velocity.
+    /// Returns μ (y₁/x₁ − y₂/x₂), dimensionless, with the friction coefficient μ, and the slacks x (m/s) and
+    /// multipliers y (m/s) of the two bounds of friction. Under Coulomb's law this is an off-diagonal entry of the
+    /// contact's matrix S in the Newton step, which maps changes of impulses to the negative changes of velocities: it
+    /// couples the tangential velocity to the normal impulse.
     #[inline(always)]
     fn lean(&self, numbers: ContactNumbers) -> f64 {
         let ratio = |pair: usize| self.multiplier[pair] / self.slack[pair];
@@ -322,14 +328,17 @@ impl PathContact {
 
     /// Moves the contact's impulses, slacks and multipliers to the central path of the interior point method: every
     /// product of a slack and its multiplier becomes `centre`, (m/s)². The chosen point of the path is near the
-    /// impulses to which the friction model would project `trial`, the normal and tangential trial impulses (present
-    /// impulses divided by the effective mass, minus velocities), m/s.
+    /// impulses to which the friction model would project `trial`, the normal and tangential trial impulses, m/s. A
+    /// trial impulse is the present impulse divided by the effective mass, minus the velocity; along the tangent this
+    /// velocity is multiplied by m_t/m_n, with the effective masses m_n and m_t along normal and tangent.
     ///
     /// Let τ = `centre`. The new normal impulse plus cohesion impulse σ and its multiplier u must have the product τ,
-    /// and the difference σ − u must be the normal trial impulse. These two conditions give a quadratic equation. With
-    /// a fixed friction bound g, the smaller slack x of the tangential impulse and its larger slack 2g − x must result
-    /// in the velocity τ/x − τ/(2g − x). The second term is neglected, which again leaves a quadratic equation. If the
-    /// allowed impulses form a cone, the slacks at the point of the cone that is nearest to the trial impulses, and
+    /// and the difference σ − u must be the normal trial impulse. These two conditions give a quadratic equation. Let g
+    /// be the friction bound, which is fixed or, under Coulomb's law, follows from σ. The multipliers of the smaller
+    /// slack x of the tangential impulse and of its larger slack 2g − x must differ by the tangential velocity at the
+    /// new point: τ/x − τ/(2g − x) = (m_n/m_t) (t − (g − x)), with the magnitude t of the tangential trial impulse and
+    /// the magnitude g − x of the new one. The second term is neglected, which again leaves a quadratic equation. If
+    /// the allowed impulses form a cone, the slacks at the point of the cone that is nearest to the trial impulses, and
     /// their multipliers, are moved away from 0 by the same quadratic equation.
     pub(super) fn centre<S: Shape>(
         &mut self,

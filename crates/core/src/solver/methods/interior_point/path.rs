@@ -24,8 +24,9 @@ use crate::solver::problem::{natural_map, velocity_error};
 const AIMS: [f64; 2] = [1e-6, 1.0];
 /// Fraction of the longest feasible step that is taken, so that slacks and multipliers stay positive.
 const OFF_BORDER: f64 = 0.999;
-/// Limit of the second-order term of the corrector, the product of the predicted changes of a slack and its multiplier,
-/// relative to the mean product of slacks and multipliers.
+/// Limit of the second-order term of the corrector, relative to the mean product of slacks and multipliers. This term
+/// is the product of the predicted changes of a slack and its multiplier; a term of larger magnitude is replaced by the
+/// limit.
 const MOST_SECOND_ORDER: f64 = 1e3;
 /// Maximum number of corrections of a step after its corrector. Only steps shorter than [`LONG_ENOUGH`] are corrected.
 const CORRECTIONS: u32 = 3;
@@ -352,8 +353,8 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
     }
 }
 
-/// Iterates over the target products (slack times multiplier) of a contact, each with the index of its slack and
-/// multiplier.
+/// Iterates over the constraints that a contact uses. Yields for each the index of its slack and multiplier, and the
+/// target for the product of the two.
 #[inline(always)]
 fn pairs<'a, S: Shape>(
     contact: &PathContact,

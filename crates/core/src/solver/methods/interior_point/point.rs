@@ -29,10 +29,10 @@ const LARGEST_IMPULSE: f64 = 1e7;
 /// Number of sweeps that try to finish a solve when the central path is near its end.
 const SWEEPS_LAST: u32 = 2;
 
-/// Product of slack and multiplier at the first start on the central path, divided by the mean square of the change
-/// that one simultaneous update of all contacts by their laws would make to the impulses. With a smaller product,
-/// contacts would change between open, stick and slip only slowly; with a larger product, good initial impulses (warm
-/// start) would have no advantage.
+/// Determines how far from its end a solve starts on the central path: the product of slack and multiplier at the first
+/// start, divided by a mean square. This is the mean square of the change of the impulses that one simultaneous update
+/// of all contacts by their laws would make. With a smaller number, contacts would change between open, stick and slip
+/// only slowly; with a larger number, good initial impulses (warm start) would have no advantage.
 const CENTRE: f64 = 1e3;
 /// Factor by which the product of slack and multiplier is larger at each further start on the central path.
 const FURTHER_UP: f64 = 1e3;

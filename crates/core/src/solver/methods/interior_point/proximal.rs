@@ -2,12 +2,12 @@
 //! interior point method become short, and are tried if the path of that method does not lead to a solution.
 //!
 //! A contact has the present impulses p (normal impulse plus cohesion impulse, and tangential impulse, divided by the
-//! effective mass, m/s), the velocities (w, v), m/s (w: normal velocity plus restitution term, v: tangential velocity),
-//! and the effective mass m, kg; m_n and m_t are its effective masses along normal and tangent. Let ε be a compliance
-//! relative to the compliance 1/m_ij of a contact (effective mass m_ij), R the diagonal matrix diag(1, m_n/m_t), ‖y‖²_R
-//! = y·Ry, Π the projection on the allowed impulses in the metric R, and y = p − R⁻¹(w, v)/ε the trial impulses. The
-//! bodies have the velocities V, the inertias M, and the velocities V_free without contacts; H maps V to contact
-//! velocities. The function
+//! effective mass, m/s), the velocities (w, v), m/s (w: normal velocity plus restitution term and, under `desaxce`,
+//! plus a fixed opening speed; v: tangential velocity), and the effective mass m, kg; m_n = m and m_t are its effective
+//! masses along normal and tangent. Let ε be a dimensionless compliance, relative to the compliance 1/m of the contact,
+//! R the diagonal matrix diag(1, m_n/m_t), ‖y‖²_R = y·Ry, Π the projection on the allowed impulses in the metric R, and
+//! y = p − R⁻¹(w, v)/ε the trial impulses. The bodies have the velocities V, the inertias M, and the velocities V_free
+//! without contacts; H maps V to contact velocities, and ‖V‖²_M = V·MV. The function
 //!
 //! > F(V) = ½‖V − V_free‖²_M + Σ (m ε/2) (‖y‖²_R − ‖y − Π(y)‖²_R)
 //!
@@ -156,9 +156,11 @@ impl<M: Model, S: Shape, const D: usize> InteriorPoint<'_, M, S, D> {
         problem.write_impulses(workspace.near.iter().map(impulse));
     }
 
-    /// Sets the impulses of the problem to the trial impulses (the present impulses, minus the contact velocities
-    /// divided by the dimensionless compliance `compliance`), projected on the allowed impulses. Returns the residual
-    /// of the new impulses under the friction model of the solve, dimensionless.
+    /// Sets the impulses of the problem to the trial impulses, projected on the allowed impulses. A trial impulse, m/s,
+    /// is the present impulse divided by the effective mass, minus the contact velocity (m/s) divided by the
+    /// dimensionless compliance `compliance`. Along the tangent this quotient is multiplied by m_t/m_n, with the
+    /// effective masses m_n and m_t along normal and tangent. Returns the residual of the new impulses under the
+    /// friction model of the solve, dimensionless.
     fn take_allowed(&mut self, compliance: f64) -> f64 {
         let numbers = self.numbers;
         self.take_near(|contact| {

@@ -1,5 +1,5 @@
-//! Data of a contact in the proximal multiplier method, and the projection of its impulses on the impulses that its
-//! friction model allows. The module `proximal` explains the symbols.
+//! A contact in the proximal multiplier method: its impulses and velocities, and the projection of its impulses on the
+//! impulses that its friction model allows. The method is described in the module `proximal`.
 
 use super::contact::{ContactNumbers, Shape};
 use crate::contact::law;
@@ -34,9 +34,11 @@ pub(super) enum ProjectionPiece {
 }
 
 impl ProjectionPiece {
-    /// Returns the dimensionless stiffness J R⁻¹/ε of a contact, with the derivative J of the projection, the metric R
-    /// = diag(1, m_n/m_t) (effective masses m_n and m_t along normal and tangent) and the compliance ε (`compliance`).
-    /// On an edge of the cone with the direction d the stiffness is d dᵀ/(ε dᵀR d).
+    /// Returns the stiffness J R⁻¹/ε of a contact, dimensionless: with a minus sign it maps a change of the contact's
+    /// velocity to the change of the impulses divided by the effective mass. J is the derivative of the projection of
+    /// the trial impulses, R = diag(1, m_n/m_t) contains the ratio of the effective masses m_n and m_t along normal and
+    /// tangent, and ε is the compliance (`compliance`). On an edge of the cone, whose direction is d, the stiffness is
+    /// d dᵀ/(ε dᵀR d).
     pub(super) fn stiffness(self, numbers: ContactNumbers, compliance: f64) -> Block<2> {
         let soft = numbers.tangential_compliance;
         match self {

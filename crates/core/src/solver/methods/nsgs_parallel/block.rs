@@ -91,8 +91,9 @@ impl ContactBlock {
         }
     }
 
-    /// Returns the sum of the squared impulses of the block's contacts, (N·s)², given the capture speeds of the
-    /// contacts (the opening speed that cohesion cancels in one step), m/s.
+    /// Returns the sum of the squared impulses of the block's contacts, (N·s)². The cohesion impulse, which the block
+    /// stores as part of the normal impulse, is subtracted: `captures` contains the capture speeds of the contacts, m/s
+    /// (cohesion impulse divided by effective mass, the opening speed that cohesion cancels in one step).
     #[inline(always)]
     pub(super) fn squared_impulses(&self, captures: [f64; LANES]) -> f64 {
         sum(std::array::from_fn(|lane| {

@@ -161,7 +161,7 @@ impl<'a, M: Model> Tiled<'a, M> {
             *self.squared_scale.get_or_insert_with(|| squared_residual_scale(self.problem));
         let squared_error = self.squared_error();
         if squared_scale == 0.0 {
-            // The rows need the present impulses, to recognise an error that is only rounding.
+            // `residual_of` reads the impulses from the problem to recognise an error that is only rounding.
             self.store();
         }
         residual_of(self.problem, [squared_error, squared_scale])
@@ -244,8 +244,8 @@ const NOBODY: u32 = u32::MAX;
 struct ContactTile {
     /// Number of blocks (of four contacts each) in the tile (a group of contacts that one thread solves).
     blocks: usize,
-    /// Number of the blocks (of four contacts each) of the tile (a group of contacts that one thread solves) whose
-    /// contacts are with fixed bodies; these blocks come first.
+    /// Number of blocks in the tile (a group of contacts that one thread solves) that contain contacts with fixed
+    /// bodies. These blocks, of four contacts each, come first in the tile.
     fixed: usize,
     /// Number of memory slots for velocities: one per grain of the tile (a group of contacts that one thread solves),
     /// and one for idle SIMD lanes.
@@ -291,8 +291,8 @@ struct TileLayout {
     /// from the first slot of its tile. The blocks of the contacts between tiles come last; their slot indices are
     /// counted from the first of all slots.
     blocks: Vec<ContactBlock>,
-    /// Number of blocks of contacts between grains and fixed bodies that belong to no tile (no group of contacts that
-    /// one thread solves).
+    /// Number of blocks of contacts with fixed bodies among the blocks that belong to no tile. A tile is a group of
+    /// contacts that one thread solves.
     fixed_between: usize,
     /// Velocities of the bodies, sorted by tile (a group of contacts that shares no grain with another tile), and
     /// within a tile in the order in which its blocks of contacts first use them. The first memory slot of a tile is a

@@ -10,13 +10,15 @@ use crate::sim::steppers::range::step_numbers::StepNumbers;
 use crate::solver::{Model, StepProblem};
 use crate::world::World;
 
-/// Bond that was formed within the step by a shock (a collision that is solved in zero time).
+/// Bond that a shock (a collision that is solved in zero time) within the step has formed, or whose gap a shock has
+/// made close.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct ClosedBond {
-    /// Time from the shock (collision) that closed the bond to the end of the step, divided by the time step.
+    /// Fraction of the time step that is left after the shock (collision) that has formed the bond or has made its gap
+    /// close.
     pub part: f64,
-    /// Normal velocity that gravity had added, between the beginning of the step and the shock (collision), to a grain
-    /// that falls on a fixed body, m/s; 0 for other pairs.
+    /// Normal velocity that gravity and other external forces had added, between the beginning of the step and the
+    /// shock (collision), to a grain that falls on a fixed body, m/s; 0 for other pairs.
     pub gained: f64,
 }
 
@@ -29,14 +31,14 @@ impl Shocks {
     /// **Grains that pass by.** The constraint on a gap uses the contact normal at the beginning of the step, so it
     /// stops a grain that would have passed another grain. If the constraint would act although the two grains do not
     /// meet, the code replaces it by a constraint with the normal and the gap that the pair will have at the end of the
-    /// step. Then v⁺ itself satisfies every contact.
+    /// step. Then the velocities v⁺ satisfy the constraints of all contacts.
     ///
     /// **No contact has to open.** A pair that was struck at the time t has the normal velocity v_n⁺ from then on, as
     /// if it had opened from a gap of −t v_n⁺ since the beginning of the step. To end the step without any overlap, its
     /// normal velocity v_n at the end of the step would have to be above 0, but other contacts that confine the pair
-    /// may not allow that. Then velocities of 0 would no longer satisfy every contact, and a cluster with many struck
-    /// contacts would often have no solution. So only v_n ≥ 0 is required, and the remaining overlap of at most t v_n⁺
-    /// is removed by moving the grains apart (`range::separate`).
+    /// may not allow that. Then velocities of 0 would no longer satisfy the constraints of all contacts, and a cluster
+    /// with many struck contacts would often have no solution. So only v_n ≥ 0 is required, and the remaining overlap
+    /// of at most t v_n⁺ is removed by moving the grains apart (`range::separate`).
     ///
     /// **Gaps below `TOUCH_IN_DIAMETERS` mean diameters count as zero**, after a shock as before it. Otherwise gaps of
     /// the size of rounding between touching grains would require contacts to open or close by less than the tolerance
@@ -114,18 +116,18 @@ impl Shocks {
         (changes || normal.is_some()).then_some((allowed, normal))
     }
 
-    /// Returns two capture speeds (opening speeds that the bond of a contact can stop), m/s: the value before the
-    /// shocks (collisions) of the step, and the value for the rest of the step after a shock has closed the bond.
-    /// Returns `None` if no shock has closed the bond.
+    /// Returns two capture speeds (opening speeds that the bond of a contact can stop), m/s: the value in the contact
+    /// problem before the shocks (collisions) of the step, and the value for the rest of the step after a shock that
+    /// has formed the bond or has made its gap close. Returns `None` if there was no such shock.
     fn capture_left<M: Model>(&self, problem: &StepProblem<M>, number: usize) -> Option<[f64; 2]> {
         let before = *problem.rows.captures.get(number)?;
         let ClosedBond { part, .. } = self.closed(number)?;
         Some([before, part * problem.law.capture_speed()])
     }
 
-    /// Returns the bond of contact `number` if a shock (collision) of this step closed the bond; otherwise `None`. A
-    /// pair that touched and was bonded before the shock keeps its bond unchanged, so for this pair the result is
-    /// `None`.
+    /// Returns the bond of contact `number` if a shock (collision) of this step has formed the bond, or has made its
+    /// gap close; otherwise `None`. A pair that touched and was bonded before the shock keeps its bond unchanged, so
+    /// for this pair the result is `None`.
     pub(in super::super) fn closed(&self, number: usize) -> Option<ClosedBond> {
         let pair = self.pairs.get(number)?;
         let closes = pair.impulse > 0.0 && (pair.touch == Touch::Met || !pair.is_bonded);
@@ -145,10 +147,10 @@ impl Shocks {
         pair.touch == Touch::Met && pair.impulse > 0.0 && self.since(i, j) <= pair.struck_at
     }
 
-    /// Records the results of a solved step. If a pair met at the time t, the impulse λ of the step on it moves its
-    /// grains only for the rest of the step: by (Δt − t)·λ, and not by Δt·λ, with the time step Δt (λ is divided by the
-    /// effective mass, m/s). Also adds the impulses of shocks (collisions) and step to the contacts' impulse sums of
-    /// the step.
+    /// Records the results of a solved step. If a pair met at the time t and its grains were not struck afterwards, the
+    /// impulse λ (divided by the effective mass, m/s) that the solution of the step gives the pair moves its bodies
+    /// apart only for the rest of the step Δt: by (Δt − t)·λ, and not by Δt·λ. Also adds the impulses of shocks
+    /// (collisions) and step to the contacts' impulse sums of the step.
     pub(in super::super) fn finish<M: Model>(
         &mut self,
         problem: &StepProblem<M>,
@@ -183,8 +185,9 @@ impl Shocks {
         }
     }
 
-    /// Corrects the positions of the grains, which have moved by Δt times their velocities at the end of the step. Adds
-    /// the difference to the true displacement, which is due to shocks (collisions) within the step and to free fall.
+    /// Corrects the positions of the grains, which have moved by Δt times their velocities at the end of the step. The
+    /// true displacements are different, because of shocks (collisions) within the step and of free fall; adds the
+    /// differences.
     pub(in super::super) fn shift(&self, world: &mut World) {
         let grains = &mut world.grains;
         for (index, body) in self.bodies.iter().enumerate() {

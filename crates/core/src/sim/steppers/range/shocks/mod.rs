@@ -34,17 +34,17 @@
 //! a fixed body at the time t, the closing velocity is u = v_n + a_n t, with the components v_n and a_n of v and a
 //! along the normal. The step adds the gravity of the whole step to v⁺, but only gravity after the meeting should
 //! count. So v⁺ is chosen such that along the normal v⁺ + a_n t = −ρu. Works are computed with the speeds at the
-//! meeting. A grain that is known to be supported before the step is solved does not fall, so u = v_n.
+//! meeting. A grain that rests on a body or is bonded when the step begins does not fall, so u = v_n.
 //!
 //! **Bonds.** A bond with the cohesion force C₀ that is stretched by s gives the energy C₀s back before its pair meets:
 //! u² = v_n² + 2C₀s/m_ij, with the effective mass m_ij.
 //!
 //! **Why shocks are separate from the step.** If a single problem required bounces of closing contacts and v_n ≥ 0 of
 //! opening contacts (normal velocity v_n), it might have no solution: two grains that rattle between other grains may
-//! both have to separate, but have no room. In separate problems, the velocities −ρ v⁻ of all grains (v⁻: velocities
-//! before the shocks) satisfy every contact of the shocks, and velocities of 0 every contact of the step. For this,
-//! opening contacts have a term in the shocks, too: they may close by ρ v_n⁻, and are struck by the next pass if they
-//! do.
+//! both have to separate, but have no room. Separate problems have a solution: the velocities −ρ v⁻ of all grains (v⁻:
+//! velocities before the shocks) satisfy the conditions of all contacts in the shocks, and velocities of 0 satisfy
+//! those in the step. This requires that a contact that opens with v_n⁻ > 0 before a shock may close after it at a
+//! speed of up to ρ v_n⁻. If it does, the next pass strikes it.
 //!
 //! **Walls driven by a force** take part in no shock, because an impact would change the speed of the wall, and so the
 //! times of all its later meetings. Instead the step itself stops grains that reach such a wall, and the wall's unknown
@@ -80,9 +80,9 @@ use crate::world::World;
 /// grains that bounce to and fro in a narrowing gap, ever more often, cost much time.
 const MOST_PASSES: u32 = 24;
 
-/// Closing speed, divided by the closing speed of the fastest shock (collision) of the step, above which a contact of a
-/// grain that was struck before in the step counts as another shock. With a smaller value, clusters of touching grains
-/// need more passes; with a larger value, some of their contacts do not bounce.
+/// Closing speed above which a touching contact is struck in a further shock (collision) if one of its grains has
+/// already been struck in the step, divided by the closing speed of the fastest shock of the step. With a smaller
+/// value, clusters of touching grains need more passes; with a larger value, some of their contacts do not bounce.
 const LEAST_AGAIN: f64 = 1e-3;
 
 /// Speed of approach below which a grain rests on a body that it touches, in units of the speed that gravity adds in a
@@ -162,8 +162,8 @@ struct ShockPair {
     impulse: f64,
     /// Time of the pair's last shock (collision), counted from the beginning of the step, s; 0 before its first shock.
     struck_at: f64,
-    /// Normal velocity that gravity had added, between the beginning of the step and the pair's last shock (collision),
-    /// to a grain that falls on a fixed body, m/s; 0 for other pairs.
+    /// Normal velocity that gravity and other external forces had added, between the beginning of the step and the
+    /// pair's last shock (collision), to a grain that falls on a fixed body, m/s; 0 for other pairs.
     gained: f64,
 }
 
@@ -206,11 +206,12 @@ enum Role {
 /// State of a grain in the calculation of a step's shocks (collisions).
 #[derive(Clone, Copy, Debug)]
 struct ShockBody {
-    /// Change of the grain's path by its shocks (collisions), extrapolated back to the beginning of the step, one entry
-    /// per degree of freedom, m: −Σ t Δv, where Δv (m/s) is the change of velocity by a shock at the time t (s).
+    /// Change of the grain's path by its shocks (collisions), extrapolated back to the beginning of the step, m: −Σ t
+    /// Δv, where Δv (m/s) is the change of velocity by a shock at the time t (s). The entries are for x, y and rotation
+    /// (arc length: angle times radius).
     offset: [f64; 3],
-    /// Change of the grain's `offset` along x and y by the last pass (group of shocks, which are collisions) that
-    /// struck the grain, m.
+    /// Change of the grain's `offset` along x and y by the last pass (group of collisions that are computed together)
+    /// that struck the grain, m.
     shift: DVec2,
     /// Time of the grain's last shock (collision), counted from the beginning of the step, s; 0 before its first shock.
     since: f64,
@@ -219,14 +220,16 @@ struct ShockBody {
     next: f64,
     struck_in_step: bool,
     struck_in_pass: bool,
-    /// Change of the grain's velocity by gravity in the whole step, m/s.
+    /// Change of the grain's velocity by gravity and other external forces in the whole step, m/s. The entries are for
+    /// x, y and rotation (angular velocity times radius).
     gain: [f64; 3],
     /// True if the grain does not fall freely, because it rests on a body or is bonded.
     is_supported: bool,
     /// Displacement of the grain in the step minus the time step Δt times its velocity at the end of the step, m,
     /// without the part `offset` that is due to shocks (collisions). For a grain that falls freely with the
-    /// acceleration a it is −½aΔt². A grain of pairs that met within the step has in addition −Σ tλ, where λ (m/s) is
-    /// the change of its velocity by the solution of the step at a pair that met at the time t (s).
+    /// acceleration a it is −½aΔt². For each of the grain's pairs that met within the step, at the time t (s), and
+    /// whose grains were not struck afterwards, −t Δv is added. Here Δv (m/s) is the change of the grain's velocity by
+    /// the impulse that the solution of the step gives this pair: it acts only after t.
     rest_of_way: DVec2,
     /// Parent of this grain in a union–find structure: following `root` from grain to grain leads to the representative
     /// grain of the cluster. A cluster is a set of grains that are struck together.
@@ -302,7 +305,8 @@ fn along_axes<M: Model>(body: &M::Body<f64>) -> DVec2 {
 
 impl ShockBody {
     /// Creates the state of a grain that no shock (collision) has struck yet. `before` is its velocity at the beginning
-    /// of the step, and `free` its velocity after the gravity of the whole step.
+    /// of the step, and `free` its velocity at the end of the step if only gravity and other external forces, but no
+    /// contacts, acted on it.
     fn untouched<M: Model>(before: &M::Body<f64>, free: &M::Body<f64>) -> Self {
         let [before, free] = [before, free].map(M::coordinates);
         Self {

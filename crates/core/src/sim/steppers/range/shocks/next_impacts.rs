@@ -39,13 +39,16 @@ impl Shocks {
         pair.normal.dot(self.fall::<M>(i)) / self.numbers.time_step_secs
     }
 
-    /// Returns the change of the velocity of grain `grain` along x and y by gravity in the whole step, m/s.
+    /// Returns the change of the velocity of grain `grain` along x and y by gravity and other external forces in the
+    /// whole step, m/s.
     fn fall<M: Model>(&self, grain: usize) -> DVec2 {
         along_axes::<M>(&M::from_coordinates(self.bodies[grain].gain))
     }
 
     /// Returns the motion of the first body of contact `number`, a grain, relative to the second body, after the shocks
-    /// (collisions) that have been computed so far: offset, velocity and acceleration.
+    /// (collisions) that have been computed so far, extrapolated back to the beginning of the step: its velocity, its
+    /// acceleration, and the offset (m) of the extrapolated position from the actual position at the beginning of the
+    /// step.
     pub(super) fn course<M: Model>(
         &self,
         problem: &StepProblem<M>,
@@ -78,9 +81,10 @@ impl Shocks {
     }
 
     /// True if the pair of contact `number` touches at the time of the last shock (collision) that changed the velocity
-    /// of one of its grains, or at the beginning of the step without such a shock. The gap is computed along the stored
-    /// normal of the pair. If the last shock was a shock with other bodies, after the pair itself was struck, the
-    /// normal has changed; then the gap along the new normal must be closed, too.
+    /// of one of its grains, or at the beginning of the step if there was no such shock. To touch, its gap at this time
+    /// must be closed along the normal of its own last meeting, or of the beginning of the step if it has not met. If
+    /// another body struck one of its grains after the pair's own last shock, the pair has moved on in the meantime, so
+    /// the actual gap at this time must be closed, too.
     pub(super) fn is_in_touch<M: Model>(&self, at: &ShockInputs<'_, M>, number: usize) -> bool {
         let pair = &self.pairs[number];
         let (i, j) = grains(at.problem, number);
@@ -92,8 +96,9 @@ impl Shocks {
         end.flatten().is_none_or(|(_, gap)| gap <= touch)
     }
 
-    /// Returns the normal and the gap (m) of the pair of contact `number` at the time `secs` (s). `None` if the nearest
-    /// point of the boundary is a corner at which another part of the boundary reports the contact.
+    /// Returns the normal and the gap (m) of the pair of contact `number` at the time `secs` (s). `None` if the second
+    /// body is a part of a boundary, the point of it that is nearest to the grain is a corner which it shares with
+    /// another part, and a contact at this corner counts for the other part.
     pub(super) fn approach<M: Model>(
         &self,
         at: &ShockInputs<'_, M>,
@@ -142,9 +147,10 @@ impl Shocks {
         Some(NextImpact::Meets { secs, normal })
     }
 
-    /// Computes the exact meeting times of struck pairs that count as touching because their gaps are small, and
-    /// replaces the assumed times. Leaves out pairs that are struck together with other contacts, because such contacts
-    /// share the time of their cluster.
+    /// Computes the exact meeting times of struck pairs that count as touching although they have a small gap. Until
+    /// now the impact time of such a pair is the time from which its two bodies approach each other, as if its gap were
+    /// closed. Leaves out pairs that are struck together with other contacts, because such contacts share the time of
+    /// their cluster.
     pub(super) fn refine<M: Model>(&mut self, at: &ShockInputs<'_, M>) {
         for (number, row) in at.problem.rows() {
             let root = self.root(row.i as usize);

@@ -1,5 +1,5 @@
-//! Solution of one pass (a group of shocks, which are collisions, that are computed together): the struck pairs form a
-//! separate contact problem.
+//! Solution of one pass (a group of shocks, or collisions, that are computed together): the struck pairs form a contact
+//! problem of their own, without the other contacts of the step.
 
 use glam::DVec2;
 
@@ -20,14 +20,15 @@ const FEW: usize = 16;
 /// `nsgs`, residual 1e-13, at most 500 sweeps.
 const TIGHTLY: SolverSettings = SolverSettings::to_residual(Method::Nsgs, 1e-13, 500);
 
-/// Largest residual to which shocks (collisions) are solved, unless the tolerance of the step is larger. Shocks are
-/// solved such that the error of a contact's impulse is at most that of the step. If the impulses of the shocks are
-/// small compared with those of the step, the residual for this error would be too large; then this bound is used
-/// instead.
+/// Upper limit for the residual (relative error) to which shocks (collisions) are solved, unless the tolerance of the
+/// step is larger. The residual is chosen such that a contact's impulse has at most the same absolute error in the
+/// shocks as in the step. If the impulses of the shocks are much smaller than those of the step, this residual would
+/// allow errors as large as the impulses themselves; this limit prevents that.
 const LOOSEST: f64 = 1e-3;
 
-/// Solves the contact problem `part` of shocks (collisions) that share grains, to the tolerance of the step. `least` is
-/// the largest error that the impulse of a contact of the step may have, N·s.
+/// Solves the contact problem `part` of shocks (collisions) that share grains: to a smaller tolerance than the step if
+/// it has few contacts and this succeeds, otherwise to the tolerance of the step. `least` is the largest error that the
+/// impulse of a contact of the step may have, N·s.
 fn solve_together<M: Model>(
     part: &mut StepProblem<M>,
     memory: &mut Memory,
@@ -56,9 +57,9 @@ fn solve_together<M: Model>(
 }
 
 impl Shocks {
-    /// Fills the contact problem `part` with pairs that are struck in this pass (a group of shocks, which are
-    /// collisions, that are computed together). If `alone` is true, takes the pairs that share no grain with another
-    /// struck pair, otherwise all other struck pairs. Returns true if there are such pairs.
+    /// Fills the contact problem `part` with pairs that are struck in this pass (a group of collisions that are
+    /// computed together). If `alone` is true, takes the pairs that share no grain with another struck pair, otherwise
+    /// all other struck pairs. Returns true if there are such pairs.
     pub(super) fn set_up<M: Model>(
         &mut self,
         problem: &mut StepProblem<M>,
@@ -152,7 +153,8 @@ impl Shocks {
         let [wall_work, of_surfaces] =
             problem.surface_works_of(part, |number| part.rows.contacts[number] as usize);
         tangential_work += of_surfaces;
-        // The residual is made relative to the scale of the whole step.
+        // The residual of the shocks has the scale (denominator) of their own problem. This makes it relative to the
+        // scale of the step if that is larger.
         let residual = residual * (settings.tolerance * scale(part) / self.least).min(1.0);
         if alone && settings.stop == StopTest::Residual {
             // A single sweep is exact except for rounding, which may exceed the tolerance.
@@ -197,7 +199,7 @@ impl Shocks {
     }
 
     /// Updates the gaps and normal velocities of all pairs with a grain that was struck in this pass (the group of
-    /// shocks, which are collisions, computed last), and marks their next impacts as unknown.
+    /// collisions computed last), and marks their next impacts as unknown.
     pub(super) fn move_on<M: Model>(&mut self, problem: &StepProblem<M>) {
         let bodies = &self.bodies;
         let shift = |grain: usize| {
