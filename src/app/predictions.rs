@@ -112,8 +112,9 @@ pub(super) fn two_laws(rows: &[Observables]) -> Option<(usize, String)> {
     Some((usize::from(range.abs() < 0.5 * rigid.abs()), text))
 }
 
-/// Evaluates the question of lesson 5: does a pile with a large Bond number slump more if the bound on friction is the
-/// shifted cone or the compressive cone?
+/// Evaluates the question of lesson 5: does a pile with a large Bond number slump more under the shifted friction cone
+/// (friction bounded by the normal force plus the cohesion force) or under the compressive one (friction bounded by the
+/// pushing part of the normal force only)?
 pub(super) fn two_cones(rows: &[Observables]) -> Option<(usize, String)> {
     let [shifted, compressive] = rows else { return None };
     let [left, right] = [shifted.slump, compressive.slump];

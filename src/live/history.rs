@@ -310,7 +310,7 @@ impl RunHistory {
         true
     }
 
-    /// Keeps a copy of the present run if later steps are recorded and the next step does not repeat them.
+    /// Keeps a copy of the present run if the next step, with changed settings, will replace recorded later steps.
     pub(super) fn keep_before_tick(&mut self) {
         if self.present.branches() {
             let mut before = self.present.clone();

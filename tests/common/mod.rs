@@ -29,7 +29,7 @@ pub const SMOOTH: Physics = Physics { axes: 2, friction: false, rotation: false,
 pub const UNTURNING: Physics = Physics { axes: 2, friction: true, rotation: false, cohesion: true };
 
 /// Returns parameters with this Bond number, time step (s), restitution and friction coefficient, and the default
-/// friction cone, which is the shifted cone.
+/// friction cone, which is the shifted cone (friction bounded by the normal force plus the cohesion force).
 pub fn parameters(bond: f64, time_step_secs: f64, restitution: f64, friction: f64) -> Parameters {
     Parameters { bond, time_step_secs, restitution, friction, ..Parameters::default() }
 }
@@ -362,7 +362,8 @@ pub fn farthest(one: &[DVec2], other: &[DVec2]) -> f64 {
 /// Steppers that move grains by impulses only, but do not solve one contact problem for the whole step.
 pub const SCHEMES: [Stepper; 2] = [Stepper::TgsSoft, Stepper::Dem];
 
-/// The steppers [`SCHEMES`] and `avbd`, which moves grains slightly further than the impulses would.
+/// The steppers [`SCHEMES`], which move grains by impulses only, and `avbd`, which also moves overlapping grains apart
+/// without changing their velocities. None of them solves one contact problem for the whole step.
 pub const ALL_SCHEMES: [Stepper; 3] = [Stepper::TgsSoft, Stepper::Avbd, Stepper::Dem];
 
 pub fn by(stepper: Stepper, substeps: u32, mut scene: Scene) -> Scene {

@@ -102,9 +102,10 @@ pub fn judge(simulation: &Simulation, before: &Grains) -> Vec<Judged> {
     .collect()
 }
 
-/// Returns three numbers, all in N·s: the norm of the natural map, the norm by which it is divided to give the
-/// residual, and the largest distance of an impulse outside its friction cone. `before` contains the grains before the
-/// step.
+/// Returns three numbers, all in N·s: the norm of the natural map (the differences between the impulses and those that
+/// an update of each contact by its law would give), the norm by which it is divided to give the residual, and the
+/// largest amount by which an impulse breaks the contact law: by which a tangential impulse exceeds its friction bound,
+/// or the sum of normal impulse and cohesion impulse is below 0. `before` contains the grains before the step.
 pub fn natural_map(simulation: &Simulation, before: &Grains) -> (f64, f64, f64) {
     let Parameters { friction, cone, .. } = *simulation.parameters();
     let (mut error, mut scale, mut outside) = (0.0, 0.0, 0f64);

@@ -170,9 +170,9 @@ impl Ensemble {
         self.released.len() > before
     }
 
-    /// Discards the settings and results of all started runs, and so clears the plot of slump against Δt. When the
-    /// window draws its next frame, the settings of the visible runs are stored again, so only the results of earlier
-    /// runs are lost.
+    /// Removes the settings and results of all started runs from `released`, and so clears the plot of slump against
+    /// Δt. When the window draws its next frame, it adds the visible runs again, with their results if the threads that
+    /// compute runs from other initial states still have them. All other runs are lost.
     pub(super) fn forget_released(&mut self) {
         self.released.clear();
     }

@@ -10,7 +10,8 @@ pub const CONVEX: [FrictionModel; 3] =
     [FrictionModel::Tresca, FrictionModel::Associated, FrictionModel::Desaxce];
 
 /// Returns piles of `count` grains under every convex friction model, with both friction cones if the model supports
-/// both.
+/// both (friction bounded by the normal force plus the cohesion force, or by the pushing part of the normal force
+/// only).
 fn piles(count: usize, bond: f64, speed: f64, dt: f64) -> Vec<Scene> {
     let mut all = Vec::new();
     for (model, restitution, cone) in triples(CONVEX, [0.0, 0.9], FrictionCone::ALL) {
@@ -265,7 +266,7 @@ proptest! {
         seed in 0u64..1000,
         bond in prop_oneof![Just(0.0), 0.0..50.0],
         restitution in 0.0..1.0,
-        // With friction cones this narrow, any pile of discs can come apart (see the next test).
+        // With friction coefficients this small, any pile of discs can come apart (see the next test).
         friction in 0.02..0.2,
         model in prop::sample::select(CONVEX.to_vec()),
     ) {

@@ -1,6 +1,6 @@
 //! Compares single steps of piles with LMGC90, an independent program, under its law `RST_WET_CLB` with thickness 0.
-//! This is the law of the stepper `moreau` with the shifted friction cone. `tests/lmgc90/README.md` describes how
-//! LMGC90 computed the reference velocities.
+//! This is the law of the stepper `moreau` with the shifted friction cone (friction bounded by the normal force plus
+//! the cohesion force). `tests/lmgc90/README.md` describes how LMGC90 computed the reference velocities.
 
 use crate::common::*;
 

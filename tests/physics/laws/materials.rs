@@ -43,7 +43,9 @@ fn each_disc_holds_on_a_slope_up_to_the_friction_of_its_own_pair() {
         let pair =
             |(name, friction)| MaterialPair { friction: Some(friction), ..between(name, "ground") };
         scene.pairs = FRICTIONS.map(pair).to_vec();
-        // These two materials never touch. Their cohesion only makes the choice of friction cone matter.
+        // These two materials never touch. Without cohesion the two friction cones are the same law. The cohesion of
+        // these materials makes them different: friction is bounded by the normal force plus the cohesion force, or by
+        // the pushing part of the normal force only.
         scene.pairs.push(MaterialPair { cohesion_force: Some(1.0), ..between("rough", "smooth") });
         let run = after(&scene, 100);
         let contacts = run.moment().contacts;

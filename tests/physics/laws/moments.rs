@@ -38,8 +38,9 @@ fn only_contact(moment: &Moment) -> ContactState {
 
 #[test]
 fn a_disc_on_a_slope_sticks_or_slips_by_coulombs_law_in_either_cone() {
-    // Without slip the disc needs the friction force T = ⅓ m g sin α. It slips if T is more than μ times the normal
-    // force in the friction cone.
+    // Without slip the disc needs the friction force T = ⅓ m g sin α. It slips if T is more than μ times the force that
+    // bounds friction: the normal force plus the cohesion force in the shifted cone, only the pushing part of the
+    // normal force in the compressive cone.
     let (angle, friction) = (0.5f64, 0.1);
     let needed = angle.sin() / 3.0;
     let cases = [

@@ -10,7 +10,8 @@ const ROWS_OF_LOGS: u32 = 6;
 /// 1.7. Random errors of up to `scatter` (in diameters) are added to each coordinate. The rows also overlap by a
 /// distance of this order, so that some gaps are positive and some negative.
 ///
-/// An equilibrium exists: linear programming finds forces within Coulomb's cones that carry all logs.
+/// An equilibrium exists: linear programming finds forces that carry all logs and in which no friction force is larger
+/// than the friction coefficient times the normal force.
 fn pyramid(seed: u64, scatter: f64) -> Scene {
     let mut random = random(seed);
     let mut grains = Vec::new();

@@ -169,7 +169,8 @@ fn the_relative_spin_of_a_cohesive_pair_dies_and_its_angular_momentum_stays() {
         }
         assert_eq!(run.observables().contacts, 1);
     }
-    // With the compressive cone a contact resists rolling only under pressure.
+    // With the compressive cone only the pushing part of the normal force bounds friction and rolling resistance, so a
+    // contact resists rolling only under pressure.
     let run = after(&spinning_pair(Method::Auto, FrictionCone::Compressive), 100);
     assert_close(spins(&run).0, 13.0, 1e-14, "the relative spin");
 }

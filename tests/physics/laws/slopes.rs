@@ -204,7 +204,9 @@ fn friction_keeps_to_coulombs_cone() {
         let slope: f64 = 1.0;
         let (_, found) = slides(&on_slope(method, Physics::FULL, slope, 0.0, shifted));
         assert_close(found, G / slope.hypot(1.0) * (slope - mu), 1e-6, "how it slides and turns");
-        // With the shifted cone only, cohesion holds the disc if sinθ ≤ μ (cosθ + Bond).
+        // Cohesion holds the disc if sinθ ≤ μ (cosθ + Bond), but only with the shifted friction cone (friction bounded
+        // by the normal force plus the cohesion force). In the other cone only the pushing part of the normal force
+        // bounds friction.
         for (bond, sticks) in [(1.01, true), (0.99, false)] {
             let slope: f64 = 0.75;
             let bond = bond * (slope / mu - 1.0) / slope.hypot(1.0);

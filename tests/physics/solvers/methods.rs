@@ -112,8 +112,8 @@ impl ProblemVisitor for SolveTwice {
     }
 }
 
-/// Returns piles that begin to fall, with both friction cones, with and without rotation. The last pile has no
-/// cohesion.
+/// Returns piles that begin to fall, with both friction cones (friction bounded by the normal force plus the cohesion
+/// force, or by the pushing part of the normal force only), with and without rotation. The last pile has no cohesion.
 fn moving_piles() -> [(FrictionCone, bool, Scene); 4] {
     let (shifted, compressive) = (FrictionCone::Shifted, FrictionCone::Compressive);
     let kinds = [

@@ -20,8 +20,9 @@ fn for_random_piles(cases: u32, property: impl Fn(Scene) -> Result<(), TestCaseE
 
 /// Returns a pile of `count` grains, made from the random seed `seed`. The first tuple has the Bond number, the
 /// friction coefficient μ, the restitution ρ, the time step Δt (s) and the size of the velocities (m/s). In the second
-/// tuple, `shifted` selects the shifted friction cone instead of the compressive one, `warm_start` makes each solve
-/// start from the impulses of the previous step, and `turning` lets grains rotate.
+/// tuple, `shifted` selects the shifted friction cone (friction bounded by the normal force plus the cohesion force)
+/// instead of the compressive one (friction bounded by the pushing part of the normal force only), `warm_start` makes
+/// each solve start from the impulses of the previous step, and `turning` lets grains rotate.
 fn pile(
     (bond, friction, restitution, dt, speed): (f64, f64, f64, f64, f64),
     (count, seed, shifted, warm_start, turning): (usize, u64, bool, bool, bool),
@@ -233,8 +234,9 @@ fn overlap_grows_by_no_more_than_one_steps_travel() {
     assert!(old.get() > 1000 && new.get() > 100, "{} old, {} new contacts", old.get(), new.get());
 }
 
-/// Returns scenes in the plane with both friction cones (without friction and rotation, with friction only, and with
-/// friction and rotation), and a scene in one dimension. Each has the smallest number of contacts that its first
+/// Returns scenes in the plane (without friction and rotation, with friction only, and with friction and rotation),
+/// each with both friction cones (friction bounded by the normal force plus the cohesion force, or by the pushing part
+/// of the normal force only), and a scene in one dimension. Each has the smallest number of contacts that its first
 /// contact problem must have.
 fn scenes() -> Vec<(Scene, usize)> {
     let mut scenes = Vec::new();

@@ -32,7 +32,8 @@ fn settings(method: Method, tolerance: f64) -> SolverSettings {
 }
 
 /// Returns scenes with every kind of motion (one or two axes, with or without friction and rotation) and both friction
-/// cones, each with a name and the time at which its contact problem is written (s).
+/// cones (friction bounded by the normal force plus the cohesion force, or by the pushing part of the normal force
+/// only), each with a name and the time at which its contact problem is written (s).
 fn scenes() -> Vec<(&'static str, Scene, f64)> {
     let pile = |physics: Physics, bond: f64, cone: FrictionCone| {
         let parameters = parameters(bond, 1e-3, 0.1, 0.5);

@@ -7,7 +7,8 @@
 //! normal and the tangential component. Over one step N = P/Δt, with the impulse P (N·s) and the time step Δt (s). A
 //! positive factor does not change a complementarity condition, so the law can be divided by the effective mass m_ij.
 //! The reduced impulse is λ = P/m_ij (m/s), with a normal component λ_n and a tangential component λ_t. The shifted
-//! normal impulse is σ = λ_n + C₀Δt/m_ij (m/s). With u = v_n^n + ρ v_n^{n−1} (m/s) the law is
+//! normal impulse is σ = λ_n + C₀Δt/m_ij (m/s): it includes the largest impulse of cohesion, so that it is never
+//! negative. With u = v_n^n + ρ v_n^{n−1} (m/s) the law is
 //!
 //! > 0 ≤ σ ⟂ u ≥ 0   ⇔   σ = max(σ − u, 0).
 //!
@@ -16,9 +17,10 @@
 //! cohesion for pairs of materials. The law for σ is the law of a contact without cohesion, so cohesion only adds a
 //! constant pulling impulse to the impulses that act on the two bodies. Without cohesion the capture speed is 0.
 //!
-//! Coulomb's law with the friction coefficient μ is |λ_t| ≤ μσ in the shifted cone and |λ_t| ≤ μ max(σ − capture
-//! speed, 0) in the compressive cone. Both have the form |λ_t| ≤ μ max(σ − c, 0), with the tip of the cone at c. In
-//! the shifted cone c is 0, and every σ that Signorini's law allows is at least 0.
+//! Coulomb's law with the friction coefficient μ is |λ_t| ≤ μσ in the shifted cone and |λ_t| ≤ μ max(σ − capture speed,
+//! 0) in the compressive cone, in which only the pushing part of the normal impulse bounds friction. Both have the form
+//! |λ_t| ≤ μ max(σ − c, 0), with the tip of the cone at c. In the shifted cone c is 0, and every σ that Signorini's law
+//! allows is at least 0.
 
 use super::lanes::Lanes;
 use crate::world::FrictionCone;
@@ -29,8 +31,8 @@ pub struct ContactLaw {
     /// Friction coefficient μ.
     pub friction: f64,
     capture_speed: f64,
-    /// Position c of the tip of the friction cone on the axis of the shifted normal impulse σ, m/s: friction is
-    /// possible for σ > c.
+    /// Position c of the tip of the friction cone on the axis of the shifted normal impulse σ (normal impulse plus the
+    /// largest impulse of cohesion, divided by the effective mass), m/s. Friction is possible for σ > c.
     tip: f64,
     cone: FrictionCone,
 }
@@ -69,8 +71,9 @@ impl ContactLaw {
         self.cone
     }
 
-    /// True if the friction coefficient times the shifted normal impulse (normal impulse plus cohesion) bounds
-    /// friction. The tip of the friction cone is then at a shifted normal impulse of 0.
+    /// True if the friction coefficient times the shifted normal impulse (normal impulse plus the largest impulse of
+    /// cohesion, so that it is never negative) bounds friction. The tip of the friction cone is then at a shifted
+    /// normal impulse of 0.
     #[inline(always)]
     pub(crate) fn all_rubs(&self) -> bool {
         self.tip == 0.0
@@ -113,10 +116,11 @@ pub(crate) fn coulomb<T: Lanes>(tangential_impulse: T, bound: T) -> T {
 }
 
 /// Returns the point (σ, λ_t) of the friction cone |λ_t| ≤ μσ that is nearest to the trial point `trial` = (a, b). Both
-/// points consist of a shifted normal and a tangential impulse, per effective mass, m/s. μ is the friction coefficient.
-/// Distances are measured in the metric diag(1, c) with the tangential compliance c = m_n/m_t: the effective mass m_n
-/// along the normal, divided by the effective mass m_t along the tangent. The result is the trial point itself if |b| ≤
-/// μa, the apex (0, 0) of the cone if a + μc|b| ≤ 0, and otherwise the point of the nearer edge that
+/// points consist of a shifted normal impulse (normal impulse plus the largest impulse of cohesion) and a tangential
+/// impulse, per effective mass, m/s. μ is the friction coefficient. Distances are measured in the metric diag(1, c)
+/// with the tangential compliance c = m_n/m_t: the effective mass m_n along the normal, divided by the effective mass
+/// m_t along the tangent. The result is the trial point itself if |b| ≤ μa, the apex (0, 0) of the cone if a + μc|b| ≤
+/// 0, and otherwise the point of the nearer edge that
 ///
 /// > minimises ½(σ − a)² + ½c(μσ − |b|)²:  σ = (a + μc|b|)/(1 + μ²c),  λ_t = ±μσ.
 #[inline(always)]

@@ -64,10 +64,11 @@ impl ProblemVisitor for Certified {
 ///
 /// > m_ij (σ(w + 2z) + z² + g|v| + λv),
 ///
-/// with the effective mass m_ij (kg), the shifted normal impulse σ and the tangential impulse λ (both per effective
-/// mass, m/s), the normal velocity w after the step plus its restitution term (restitution times the normal velocity
-/// before the step), the tangential velocity v, the amount z by which w is below 0 (all in m/s), and the friction bound
-/// g (largest allowed |λ|, m/s).
+/// with the effective mass m_ij (kg), the shifted normal impulse σ (normal impulse plus the largest impulse of
+/// cohesion, so that it is never negative) and the tangential impulse λ (both per effective mass, m/s), the normal
+/// velocity w after the step plus its restitution term (restitution times the normal velocity before the step), the
+/// tangential velocity v, the amount z by which w is below 0 (all in m/s), and the friction bound g (largest allowed
+/// |λ|, m/s).
 fn gap<M: Model>(problem: &StepProblem<M>) -> (f64, f64) {
     let spins = f64::from(u8::from(M::ROTATION));
     let coordinates = |grain: u32| M::coordinates(&problem.bodies.now[grain as usize]);

@@ -345,8 +345,9 @@ struct TouchedPlace<'a> {
 }
 
 impl Wall {
-    /// Returns the rate at which the contact normal turns for a grain at rest relative to the surface, rad/s. Around a
-    /// fixed disc of radius `round_disc` (m) this rate includes the surface speed.
+    /// Returns the rate at which the contact normal turns for a grain at rest relative to the surface, rad/s. It is the
+    /// angular velocity of the wall. At a fixed disc of radius `round_disc` (m), the surface speed divided by this
+    /// radius is added.
     fn spin_of_normal(&self, round_disc: Option<f64>) -> f64 {
         match round_disc {
             Some(radius) if self.surface_speed != 0.0 => {

@@ -67,8 +67,9 @@ macro_rules! with_model {
     };
 }
 
-/// Returns the friction cone of a scene: shifted (cohesion adds to the normal force that bounds friction) or
-/// compressive. Without cohesion both cones are the same, and the shifted cone is returned.
+/// Returns the friction cone of a scene: shifted (the normal force plus the cohesion force bounds friction) or
+/// compressive (only the pushing part of the normal force bounds friction). Without cohesion both cones are the same,
+/// and the shifted cone is returned.
 pub(crate) fn cone_of(physics: Physics, parameters: &Parameters) -> FrictionCone {
     if physics.cohesion && parameters.bond > 0.0 { parameters.cone } else { FrictionCone::Shifted }
 }

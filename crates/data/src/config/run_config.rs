@@ -222,10 +222,11 @@ impl Config {
         parameters.set(name, value) || solver.set(name, value) || remedies.set(name, value)
     }
 
-    /// Makes the scene of this configuration with all changes and checks it, but does not let the grains of a new pile
-    /// settle. If a scene file describes the new pile, the scene has the new grains at their initial positions. If the
-    /// options of the configuration describe the new pile, the scene has the grains of the built-in pile instead of the
-    /// new grains. This takes little time, so that a wrong value is reported before long work begins.
+    /// Makes the scene that this configuration names, applies the configuration's changes to it, and checks the result,
+    /// but does not simulate how the grains of a new pile come to rest. If a scene file describes the new pile, its
+    /// grains are at the positions from which they would fall. If options of the configuration describe the new pile
+    /// (such as its number of grains), the scene has instead the grains of the pile that is shipped with Slump. This
+    /// takes little time, so that a wrong value is reported before long work begins.
     ///
     /// # Errors
     /// The error names the first field that is unknown or outside its range, or the file that cannot be read.
@@ -233,8 +234,9 @@ impl Config {
         self.change(&self.base_scene()?)
     }
 
-    /// Makes the scene of this configuration with all changes and checks it. If the grains of a new pile must settle,
-    /// this takes a while: `progress` is called repeatedly and stops the work by returning false.
+    /// Makes the scene that this configuration names, applies the configuration's changes to it, and checks the result.
+    /// If the grains of a new pile must settle, this takes a while: `progress` is called repeatedly and stops the work
+    /// by returning false.
     ///
     /// # Errors
     /// The error names the first field that is unknown or outside its range, or the file that cannot be read. Making
@@ -243,9 +245,9 @@ impl Config {
         self.scene_on(self.base_scene()?, progress)
     }
 
-    /// Applies all changes of this configuration to the scene `base`, which replaces the scene that the configuration
-    /// names, and checks the result. If the grains of a new pile must settle, this takes a while: `progress` is called
-    /// repeatedly and stops the work by returning false.
+    /// Applies the changes of this configuration to the scene `base`, which is used instead of the scene that the
+    /// configuration names, and checks the result. If the grains of a new pile must settle, this takes a while:
+    /// `progress` is called repeatedly and stops the work by returning false.
     ///
     /// # Errors
     /// The error names the first field that is unknown or outside its range. Also fails if the grains do not come to
@@ -262,8 +264,9 @@ impl Config {
         }
     }
 
-    /// Makes the scene of this configuration with all changes and checks it. `settled` are the grains of its new pile,
-    /// which have already settled.
+    /// Makes the scene that this configuration names, applies the configuration's changes to it, and checks the result.
+    /// The grains of the scene are `settled`: the grains of the new pile that the configuration describes, after they
+    /// have come to rest.
     ///
     /// # Errors
     /// The error names the first field that is unknown or outside its range, or the file that cannot be read.
@@ -271,8 +274,8 @@ impl Config {
         self.settled_on(self.base_scene()?, settled)
     }
 
-    /// Makes a pile from `discs` with all changes of this configuration and checks it. The result is the same as if the
-    /// option `initial` named a file with these discs.
+    /// Makes a pile from `discs`, applies this configuration's changes to it, and checks the result. The result is the
+    /// same as if the option `initial` named a file with these discs.
     ///
     /// # Errors
     /// The error names the first field that is unknown or outside its range, or the file that cannot be read.

@@ -69,19 +69,19 @@ impl Fields {
     /// Computes the fields of all grains that are still in the scene, with the smoothing width `width`, m.
     ///
     /// # Errors
-    /// If the width is not a finite length > 0 or would need too many grid cells, or if a number of the snapshot is not
-    /// finite.
+    /// If the smoothing width is not a finite length > 0 or is so small that the grid would have too many cells, or if
+    /// the mass, position or velocity of a grain is not finite.
     pub fn of(moment: &Moment, width: f64) -> Result<Self> {
         Self::in_box(moment, width, [DVec2::MIN, DVec2::MAX])
     }
 
-    /// Computes the fields on a grid that covers the grains in a box, given by its lower left and upper right corner
-    /// (m), and the region over which smoothing spreads these grains. Grains outside the box count only as far as they
-    /// are spread into this grid.
+    /// Computes the fields, with the smoothing width `width` (m), on a grid for the grains in a box. The box is given
+    /// by its lower left and upper right corner (m). The grid extends beyond these grains as far as smoothing spreads
+    /// them. Grains outside the box count only as far as they are spread into this grid.
     ///
     /// # Errors
-    /// If the width is not a finite length > 0 or would need too many grid cells, or if a number of the snapshot is not
-    /// finite.
+    /// If the smoothing width is not a finite length > 0 or is so small that the grid would have too many cells, or if
+    /// the mass, position or velocity of a grain is not finite.
     pub fn in_box(moment: &Moment, width: f64, [least, most]: [DVec2; 2]) -> Result<Self> {
         if !(width > 0.0 && width.is_finite()) {
             return Err(Error::value("width", width, "a finite length > 0 in m"));

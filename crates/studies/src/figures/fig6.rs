@@ -1,6 +1,6 @@
 //! Draws Fig. 6 of Abramian & Staron (2020): slump against the cohesive time Bond·Δt/√(d/g), with mean diameter d and
-//! gravity g. Tests whether the slump falls with increasing cohesive time up to a cohesive time of 1, and rises beyond
-//! it.
+//! gravity g. Tests the guess of the paper that the slump falls with increasing cohesive time up to a cohesive time of
+//! 1, and rises beyond it. At 1, cohesion cancels in one step an opening speed of √(g d).
 
 use rand::{RngExt, SeedableRng};
 
@@ -14,9 +14,10 @@ use crate::statistics::{mean, p_of_either, p_value, slope, turning_point};
 
 const RESAMPLINGS: usize = 400;
 /// Number of resamplings of the initial states after each shuffle of Δt among the runs. They give the confidence
-/// interval of the turning point, the cohesive time at which the slump turns from falling to rising. The number is
-/// smaller than [`RESAMPLINGS`] to save time. With fewer resamplings the interval is narrower, so it excludes a turning
-/// point of 1 more often.
+/// interval of the turning point, the cohesive time at which the slump turns from falling to rising. The cohesive time
+/// is Bond·Δt/√(d/g), dimensionless, with the Bond number, the time step Δt (s), the mean diameter d (m) and gravity g
+/// (m/s²). The number is smaller than [`RESAMPLINGS`] to save time. With fewer resamplings the interval is narrower, so
+/// it more often excludes 1, the turning point that Abramian & Staron (2020) presume.
 const FEWER_RESAMPLINGS: usize = 20;
 
 /// Mean diameter d of the grains of the piles, m.
@@ -124,8 +125,8 @@ fn regimes(groups: &[Alike], count: usize) -> Claim {
     )
 }
 
-/// Cohesive time at which the slump turns from falling to rising, with its 95 % confidence interval, which is computed
-/// by resampling the initial states.
+/// Cohesive time Bond·Δt/√(d/g) (mean diameter d, gravity g; dimensionless) at which the slump turns from falling to
+/// rising, with its 95 % confidence interval, which is computed by resampling the initial states.
 #[derive(Clone, Copy)]
 struct Turn {
     place: f64,

@@ -16,8 +16,8 @@ use crate::statistics::{Mean, mean, p_value};
 const MOST: f64 = 0.55;
 const CONTOURS: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 10.0];
 const WHITE: Rgb = (255, 255, 255);
-/// Limit of the cohesive times Bond·Δt/√(d/g) that count as near 1, with mean diameter d and gravity g: these are the
-/// times from 1/`NEAR` to `NEAR`.
+/// Limit of the cohesive times Bond·Δt/√(d/g) that count as near 1, the value at which the slump should be lowest by
+/// Fig. 6 of Abramian & Staron (2020), with mean diameter d and gravity g: these are the times from 1/`NEAR` to `NEAR`.
 const NEAR: f64 = 3.0;
 const SHADES: u32 = 64;
 
@@ -120,8 +120,9 @@ fn scale() -> Chart {
 }
 
 /// Returns one difference of slumps per initial state: the mean slump of runs whose cohesive time Bond·Δt/√(d/g) (mean
-/// diameter d, gravity g) is not near 1, minus the mean slump of runs whose cohesive time is near 1. The difference is
-/// computed for each Bond number that has runs of both kinds, and then averaged over these Bond numbers.
+/// diameter d, gravity g) is not near 1 (the value at which the slump should be lowest by Fig. 6 of Abramian & Staron
+/// 2020), minus the mean slump of runs whose cohesive time is near 1. The difference is computed for each Bond number
+/// that has runs of both kinds, and then averaged over these Bond numbers.
 fn depths(groups: &[Alike], states: usize) -> Vec<f64> {
     let of_group = |runs: &Alike| {
         let (near, away): (Vec<_>, Vec<_>) =
@@ -141,8 +142,8 @@ fn depths(groups: &[Alike], states: usize) -> Vec<f64> {
 }
 
 /// Tests whether the slump is lower at cohesive times Bond·Δt/√(d/g) (mean diameter d, gravity g) near 1 than at other
-/// cohesive times. The test does not look for the time step with the lowest slump at each Bond number, because such a
-/// time step exists even without any effect of Δt.
+/// cohesive times. By Fig. 6 of Abramian & Staron (2020) it should be lowest at 1. The test does not look for the time
+/// step with the lowest slump at each Bond number, because such a time step exists even without any effect of Δt.
 fn claim(groups: &[Alike], states: usize) -> Claim {
     let depth = |groups: &[Alike]| mean(&depths(groups, states));
     let verdict = |depth: Mean| Verdict::of(depth.p_above(0.0), depth.p_below(0.0));
@@ -169,7 +170,7 @@ mod tests {
     use super::*;
 
     /// Returns made-up slumps of eight initial states at four Bond numbers, for tests. The slump is lower by `depth`
-    /// near the cohesive time `at`.
+    /// near the cohesive time `at`, which is Bond·Δt/√(d/g) with mean diameter d and gravity g.
     fn plane(depth: f64, at: f64) -> Vec<Alike> {
         let of_group = |group: usize| {
             let run = |step: usize| {

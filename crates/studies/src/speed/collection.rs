@@ -31,7 +31,7 @@ const ADVANCE: SolverSettings = SolverSettings {
 };
 
 /// Width of the box in which a pile is made, in diameters, divided by the square root of the number of grains. For 138
-/// grains the box is 16 diameters wide.
+/// grains, the number in Abramian & Staron (2020), the box is 16 diameters wide.
 const WIDTH_BY_ROOT: f64 = 1.35;
 
 /// Description of a collection of steps on which solver methods are compared. One pile is simulated for every Bond
@@ -61,8 +61,8 @@ pub(super) struct CollectionPlan {
 
 impl CollectionPlan {
     /// Returns the description of a collection of 48 steps (24 in a quick pass, a pass with fewer runs) of piles of 138
-    /// grains. In the full pass, the steps are from the first motion, from the collapse (which takes about 0.3 s), from
-    /// its end, and from the state of rest.
+    /// grains, the number in Abramian & Staron (2020). In the full pass, the steps are from the first motion, from the
+    /// collapse (which takes about 0.3 s), from its end, and from the state of rest.
     pub(super) fn piles(restitution_threshold: f64, effort: Effort) -> Self {
         let rain = NewPile::default();
         Self {
@@ -82,9 +82,9 @@ impl CollectionPlan {
 
     /// Returns the description of a collection of steps with Δt = 1e-3 s, from piles of `grains` grains with and
     /// without cohesion. The initial states are made by the quick method drop-and-roll and are as steep as the pile of
-    /// 138 grains. The piles begin to slump or, with `in_a_box`, are at rest in their box. The steps before a collected
-    /// step are solved with bounded friction (Tresca), so that the impulses of the warm start contain no error of a
-    /// compared method.
+    /// Abramian & Staron (2020), which has 138 grains. The piles begin to slump or, with `in_a_box`, are at rest in
+    /// their box. The steps before a collected step are solved with bounded friction (Tresca), so that the impulses of
+    /// the warm start contain no error of a compared method.
     pub(super) fn of_size(grains: usize, in_a_box: bool, effort: Effort) -> Self {
         let times_secs = match in_a_box {
             true => effort.pick(vec![5e-3], vec![1e-2, 2e-2]),

@@ -49,7 +49,8 @@ struct TimedCollection {
     steps: Vec<TimedStep>,
 }
 
-/// Measures the time and the error of all solver variants on steps of piles of 138 grains, and charts the results.
+/// Measures the time and the error of all solver variants on steps of piles of 138 grains (the number in Abramian &
+/// Staron 2020), and charts the results.
 pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     let effort = bench.effort;
     let timer =
@@ -71,8 +72,8 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     Ok(vec![timer.section(bench, "chart-step", &all)])
 }
 
-/// Measures the time and the error of all solver variants on steps of piles with 138 to 10,000 grains, and charts the
-/// results. The piles begin to slump, or are at rest in a box.
+/// Measures the time and the error of all solver variants on steps of piles with 138 grains (the number in Abramian &
+/// Staron 2020) to 10,000 grains, and charts the results. The piles begin to slump, or are at rest in a box.
 pub(super) fn make_sizes(bench: &Bench) -> Result<Vec<ChartSection>> {
     let effort = bench.effort;
     let timer = CollectionTimer { variants: with_bounds(variants::of_problems(false)) };

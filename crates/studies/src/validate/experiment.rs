@@ -98,10 +98,11 @@ impl SourceKind {
 pub(super) enum Agreement {
     Agrees,
     Differs,
-    /// The confidence interval of the measured value is partly inside and partly outside the published band, or there
-    /// is no measured value.
+    /// The confidence interval of the measured value is partly inside and partly outside the published band, there is
+    /// no measured value, or a run failed.
     NotDecided,
-    /// The published number was written down from memory and has not been looked up.
+    /// The measured value is not judged, because the published number was written down from memory and nobody has
+    /// looked it up.
     NoVerdict,
 }
 

@@ -97,7 +97,8 @@ pub(super) struct LayerKind {
     /// Prescribed work that slowly breaks a bond, in m (γ̇ d)², with mass m and diameter d of a grain and shear rate
     /// γ̇; `None` to leave the stepper's parameters unchanged.
     pub breaking_energy: Option<f64>,
-    /// Friction cone, and touch tolerance (the gap up to which contacts pull) in diameters d; `None` for the defaults.
+    /// Friction cone (bound of friction by the normal force with or without the cohesion force), and touch tolerance
+    /// (the gap up to which contacts pull) in diameters d; `None` for the defaults.
     pub bounds: Option<(FrictionCone, f64)>,
 }
 

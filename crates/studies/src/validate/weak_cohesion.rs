@@ -1,11 +1,12 @@
-//! Validates the friction of a sheared layer of grains with weak cohesion, η = C₀/(P d) = 1, for different friction
-//! cones and touch tolerances (gaps up to which contacts pull). C₀ is the cohesion force, P the pressure and d the
+//! Validates the friction of a sheared layer of grains with weak cohesion, η = C₀/(P d) = 1, for both friction cones
+//! and different touch tolerances (gaps up to which contacts pull). C₀ is the cohesion force, P the pressure and d the
 //! diameter.
 //!
 //! `validate::cohesive_shear` finds more friction at η = 1 than without cohesion. Three causes are possible. First, the
-//! shifted cone bounds friction by μ(N + C₀) with the normal force N, so that sliding contacts bear up to μC₀ more.
-//! Second, at touch tolerance 0 cohesion acts within one step only, so its effect depends on Δt. Third, with a larger
-//! touch tolerance, contacts that are slightly open pull, and in the shifted cone they also bear friction.
+//! shifted cone bounds friction by μ(N + C₀) with the friction coefficient μ and the normal force N (the compressive
+//! cone by μ max(N, 0)), so that sliding contacts bear up to μC₀ more. Second, at touch tolerance 0 cohesion acts
+//! within one step only, so its effect depends on Δt. Third, with a larger touch tolerance, contacts that are slightly
+//! open pull, and in the shifted cone they also bear friction.
 
 use super::cohesive_shear::{INERTIAL, WEAK};
 use super::experiment::*;
@@ -25,7 +26,8 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
     judge,
 };
 
-/// Compared friction cones, each with a touch tolerance (the gap up to which contacts pull) in diameters d.
+/// Compared friction cones (bounds of friction by the normal force with or without the cohesion force), each with a
+/// touch tolerance (the gap up to which contacts pull) in diameters d.
 const BOUNDS: [(FrictionCone, f64); 4] = [
     (FrictionCone::Shifted, 0.0),
     (FrictionCone::Compressive, 0.0),

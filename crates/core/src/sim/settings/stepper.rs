@@ -126,8 +126,8 @@ const RANGE: StepperInfo = StepperInfo {
     settings: "bond bond-acceleration dt tilt rho mu cone restitution-threshold debonding-distance solver \
         ordering stop tolerance max-sweeps warm-start friction-model model-solves",
     observables: &["bond_work", "bond_energy", "broken_bond_energy"],
-    // The compressive cone is refused: the sweep would need one capture speed (C₀·Δt/m_ij, m/s), but here contacts have
-    // different capture speeds.
+    // The compressive cone (only the pushing part of the normal force bounds friction) is refused: the sweep would need
+    // one capture speed (C₀·Δt/m_ij, m/s), but here contacts have different capture speeds.
     check: |parameters| match parameters.cone {
         FrictionCone::Shifted => without_rolling(parameters),
         cone => Err(Error::value("cone", cone, "shifted where stepper is range")),

@@ -3,10 +3,11 @@
 //!
 //! At a contact of a grain that is not a disc, a normal impulse also changes the tangential velocity (W_nt ≠ 0). So the
 //! two separate projections, of normal and tangential impulse, that solve a contact between discs become an enumeration
-//! of cases. Let p = P_n + c₀ be the normal impulse P_n shifted by the cohesion impulse c₀, P_t the tangential impulse
-//! (all in N·s), μ the friction coefficient, W_kk the contact's own 2×2 block of W with the entries W_nn, W_nt and
-//! W_tt, u = (u_n, u_t) its velocity, and b = (b_n, b_t) its velocity at p = P_t = 0 (m/s). The law in the shifted cone
-//! is
+//! of cases. Let p = P_n + c₀ be the shifted normal impulse: the normal impulse P_n plus the largest impulse c₀ of
+//! cohesion, so that it is never negative. Let P_t be the tangential impulse (all three in N·s), μ the friction
+//! coefficient, W_kk the contact's own 2×2 block of W with the entries W_nn, W_nt and W_tt, u = (u_n, u_t) its
+//! velocity, and b = (b_n, b_t) its velocity at p = P_t = 0 (m/s). The law in the shifted friction cone, in which the
+//! whole p bounds friction, is
 //!
 //! > u = W_kk (p, P_t) + b,  0 ≤ p ⟂ u_n ≥ 0,  |P_t| ≤ μp, sliding opposes u_t,
 //!
@@ -17,8 +18,9 @@
 //! > slip: P_t = sμp with s = ±1, so that p = −b_n / (W_nn + sμW_nt), if s·u_t ≤ 0.
 //!
 //! If μ|W_nt| < W_nn, there is exactly one solution; otherwise the first case that satisfies its condition is taken. In
-//! the compressive cone the friction bound is μ max(p − c₀, 0), so a contact with p ≤ c₀ has no friction. A contact
-//! with p > c₀ is solved in a shifted cone with p − c₀ instead of p and b + c₀(W_nn, W_nt) instead of b.
+//! the compressive cone, in which only the pushing part of the normal impulse bounds friction, the bound is μ max(p −
+//! c₀, 0), so a contact with p ≤ c₀ has no friction. A contact with p > c₀ is solved in a shifted cone with p − c₀
+//! instead of p and b + c₀(W_nn, W_nt) instead of b.
 
 /// Data of one contact that its update in a sweep reads: its own block of the Delassus operator, quantities derived
 /// from this block, friction coefficient and cohesion impulse. They are computed once before the sweeps.
@@ -38,8 +40,9 @@ pub(super) struct LocalBlock {
     inverse: [f64; 3],
     /// Effective masses, kg, of slip in the direction s = −1 and s = +1: 1/(W_nn + sμW_nt), with the friction
     /// coefficient μ and the entries W_nn and W_nt of the contact's own block of the Delassus operator. A mass times
-    /// the closing speed is the shifted normal impulse p. If a mass is not positive, slip in that direction would give
-    /// a closing contact an impulse p < 0, which the law forbids.
+    /// the closing speed is the shifted normal impulse p (normal impulse plus the largest impulse of cohesion, so that
+    /// it is never negative). If a mass is not positive, slip in that direction would give a closing contact an impulse
+    /// p < 0, which the law forbids.
     slip_masses: [f64; 2],
     /// Friction coefficient μ.
     pub friction: f64,
@@ -64,9 +67,9 @@ impl LocalBlock {
         }
     }
 
-    /// Returns the shifted normal impulse (normal impulse plus cohesion impulse) and the tangential impulse, N·s, that
-    /// satisfy the contact's law. The arguments (`normal`, `tangential`) are the velocity that the contact would have
-    /// if both results were 0, m/s.
+    /// Returns the shifted normal impulse (normal impulse plus the largest impulse of cohesion, so that it is never
+    /// negative) and the tangential impulse, N·s, that satisfy the contact's law. The arguments (`normal`,
+    /// `tangential`) are the velocity that the contact would have if both results were 0, m/s.
     #[inline(always)]
     pub(super) fn solve(&self, [normal, tangential]: [f64; 2], compressive_cone: bool) -> [f64; 2] {
         if normal >= 0.0 {
@@ -84,8 +87,9 @@ impl LocalBlock {
         [pressure + cohesion, rubbing]
     }
 
-    /// Returns the shifted normal and the tangential impulse, N·s, of a contact that would close if its impulses were
-    /// 0: the impulses of stick if the friction cone allows them, otherwise the impulses of slip.
+    /// Returns the shifted normal impulse (normal impulse plus the largest impulse of cohesion, so that it is never
+    /// negative) and the tangential impulse, N·s, of a contact that would close if its impulses were 0: the impulses of
+    /// stick if the friction cone allows them, otherwise the impulses of slip.
     #[inline(always)]
     fn pressed(&self, free @ [normal, tangential]: [f64; 2]) -> [f64; 2] {
         let [inverse_normal, inverse_mixed, inverse_tangential] = self.inverse;
@@ -106,10 +110,10 @@ impl LocalBlock {
         if pushed_along_other < pushed_along { other } else { impulse }
     }
 
-    /// Returns the shifted normal impulse p and the tangential impulse P_t, N·s, if the contact slips with P_t = sμp
-    /// (μ: friction coefficient), and the velocity s·u_t, m/s (u_t: tangential velocity). The sign s is +1 if
-    /// `positive`, otherwise −1. The impulses satisfy the law if s·u_t ≤ 0. Instead of s·u_t returns infinity if p is
-    /// not positive.
+    /// Returns the shifted normal impulse p (normal impulse plus the largest impulse of cohesion, so that it is never
+    /// negative) and the tangential impulse P_t, N·s, if the contact slips with P_t = sμp (μ: friction coefficient),
+    /// and the velocity s·u_t, m/s (u_t: tangential velocity). The sign s is +1 if `positive`, otherwise −1. The
+    /// impulses satisfy the law if s·u_t ≤ 0. Instead of s·u_t returns infinity if p is not positive.
     #[inline(always)]
     fn slip(&self, [normal, tangential]: [f64; 2], positive: bool) -> ([f64; 2], f64) {
         let side = if positive { 1.0 } else { -1.0 };
@@ -127,8 +131,8 @@ mod tests {
 
     /// Returns the relative error of the impulses that `solve` computes for a contact, dimensionless. It is the largest
     /// violation of the contact's law, as a velocity, divided by the sum of the magnitudes of the normal and tangential
-    /// velocity that the contact has at zero impulses. Under the compressive cone, this sum also contains the velocity
-    /// that the cohesion impulse causes.
+    /// velocity that the contact has at zero impulses. Under the compressive friction cone (only the pushing part of
+    /// the normal force bounds friction), this sum also contains the velocity that the cohesion impulse causes.
     fn fault(block: &LocalBlock, compressive: bool, free: [f64; 2]) -> f64 {
         let [p, t] = block.solve(free, compressive);
         let u = [

@@ -4,13 +4,14 @@
 //! the normal and tangential impulses in N·s, u the relative velocities at the end of the step, and q the relative
 //! velocities without contact impulses, restitution term included, in m/s. Rows and columns are ordered as N0, T0, N1,
 //! T1, … (N normal, T tangential, with the number of the contact). The contact law is the law of `contact::law`; each
-//! contact has its own cohesion impulse c₀ = C₀Δt (cohesion force times time step) and its own friction coefficient μ:
+//! contact has its own largest impulse of cohesion c₀ = C₀Δt (cohesion force times time step) and its own friction
+//! coefficient μ. The law requires
 //!
 //! > 0 ≤ p ⟂ u_n ≥ 0,  |P_t| ≤ μp (shifted cone) or ≤ μ max(p − c₀, 0) (compressive), p = P_n + c₀.
 //!
 //! W is stored as 2×2 blocks in compressed sparse rows; each contact's own block is stored separately. A problem stores
-//! the shifted impulses (p, P_t) instead of (P_n, P_t). Cohesion is then part of the free velocity and costs nothing:
-//! u = W (p, P_t) + q', q' = q − W (c₀, 0).
+//! (p, P_t) instead of (P_n, P_t): p is the shifted normal impulse, which is never negative because it includes c₀.
+//! Cohesion is then part of the free velocity and costs nothing: u = W (p, P_t) + q', q' = q − W (c₀, 0).
 //!
 //! Gauss–Seidel on W (M. Jean, 1999) solves one contact after the other, each exactly for the present impulses of all
 //! other contacts. Methods that treat all impulses as one vector use scaled impulses s = P/√m_n with m_n = 1/W_nn, and
@@ -55,8 +56,9 @@ struct DelassusBlock {
 #[derive(Clone, Copy, Debug)]
 struct DelassusRow {
     local: LocalBlock,
-    /// Velocity q' of the contact if the shifted normal impulses (normal impulse plus cohesion impulse) and the
-    /// tangential impulses of all contacts are 0, m/s. So the effect of the cohesion impulses is a part of q'.
+    /// Velocity q' of the contact if the shifted normal impulses (normal impulse plus the largest impulse of cohesion,
+    /// so that they are never negative) and the tangential impulses of all contacts are 0, m/s. So the effect of the
+    /// cohesion impulses is a part of q'.
     free: [f64; 2],
     /// Index of the contact's first block in `DelassusProblem::neighbours`. Its blocks end where the blocks of the next
     /// contact begin.
@@ -68,7 +70,8 @@ struct DelassusRow {
 pub struct DelassusProblem {
     rows: Vec<DelassusRow>,
     neighbours: Vec<DelassusBlock>,
-    /// Shifted normal impulse (normal impulse plus cohesion impulse) and tangential impulse of each contact, N·s.
+    /// Shifted normal impulse (normal impulse plus the largest impulse of cohesion, so that it is never negative) and
+    /// tangential impulse of each contact, N·s.
     impulses: Vec<[f64; 2]>,
     compressive_cone: bool,
     /// Denominator of the residual, ‖(m_n q_n, m_t q_t)‖₂, N·s, with the effective masses m_n and m_t and the
@@ -214,10 +217,11 @@ impl DelassusProblem {
 
 impl DelassusRow {
     /// Returns the contact's part of the squared natural map, (N·s)²: the sum of the squared errors of the shifted
-    /// normal impulse `p` and the tangential impulse `rubbing` (N·s) at the relative velocity `u` (m/s). For each
-    /// impulse, the impulse minus effective mass times velocity is limited to the range that the contact law allows;
-    /// the error is the difference between the impulse and this value. If `compressive` is true, the cohesion impulse
-    /// does not count in the friction bound.
+    /// normal impulse `p` (normal impulse plus the largest impulse of cohesion, so that it is never negative) and the
+    /// tangential impulse `rubbing` (N·s) at the relative velocity `u` (m/s). For each impulse, the impulse minus
+    /// effective mass times velocity is limited to the range that the contact law allows; the error is the difference
+    /// between the impulse and this value. If `compressive` is true, the cohesion impulse does not count in the
+    /// friction bound.
     fn squared_error(&self, [p, rubbing]: [f64; 2], u: [f64; 2], compressive: bool) -> f64 {
         let LocalBlock { normal, tangential, friction, cohesion_impulse, .. } = self.local;
         let rubs =

@@ -4,11 +4,11 @@
 //! Body velocities V and contact velocities z, m/s, are separate unknowns. They are coupled by the condition HV = z,
 //! with H the map from V to contact velocities, the impulses as multipliers, and a penalty m_ij/ε (effective mass m_ij,
 //! kg; compliance ε, dimensionless). The impulses are reduced impulses (divided by the effective mass, m/s;
-//! `contact::law`): the shifted normal impulse σ (normal impulse plus cohesion impulse) and the tangential impulse λ_t.
-//! A contact has the normal n, the tangent t, the velocities v_n and v_t along them, the effective masses m_n and m_t
-//! along them, and the friction bound bound(σ). With the normal velocity plus the restitution term, u = v_n + ρ
-//! v_n^{n−1} (restitution ρ times v_n^{n−1}, the normal velocity before the step), computed from V, one iteration
-//! computes the impulses σ' and λ_t' by the law,
+//! `contact::law`): the shifted normal impulse σ (normal impulse plus the largest impulse of cohesion, so that it is
+//! never negative) and the tangential impulse λ_t. A contact has the normal n, the tangent t, the velocities v_n and
+//! v_t along them, the effective masses m_n and m_t along them, and the friction bound bound(σ). With the normal
+//! velocity plus the restitution term, u = v_n + ρ v_n^{n−1} (restitution ρ times v_n^{n−1}, the normal velocity before
+//! the step), computed from V, one iteration computes the impulses σ' and λ_t' by the law,
 //!
 //! > σ' = max(σ − u/ε, 0),  λ_t' = clamp(λ_t − v_t m_t/(m_n ε), ±bound(σ')),
 //!

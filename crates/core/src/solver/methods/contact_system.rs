@@ -1,10 +1,11 @@
 //! A contact problem whose impulses form one vector, for methods that update all contacts at once.
 //!
 //! **Scaled variables.** A contact has the effective masses m_n and m_t along its normal and tangent, kg, the shifted
-//! normal impulse p = P_n + C₀Δt (normal impulse plus cohesion force times time step, N·s), the tangential impulse P_t,
-//! N·s, the tangential velocity v_t, m/s, and the normal velocity plus the restitution term, u_n = v_n + ρ v_n^{n−1},
-//! m/s (restitution ρ times v_n^{n−1}, the normal velocity before the step). A step's problem is to find impulses, and
-//! velocities that are affine in the impulses, with
+//! normal impulse p = P_n + C₀Δt (normal impulse plus cohesion force times time step, which is the largest impulse of
+//! cohesion, so that p is never negative, N·s), the tangential impulse P_t, N·s, the tangential velocity v_t, m/s, and
+//! the normal velocity plus the restitution term, u_n = v_n + ρ v_n^{n−1}, m/s (restitution ρ times v_n^{n−1}, the
+//! normal velocity before the step). A step's problem is to find impulses, and velocities that are affine in the
+//! impulses, with
 //!
 //! > p = max(0, p − m_n u_n),  P_t = clamp(P_t − m_t v_t, ±bound(p)),
 //!

@@ -18,8 +18,9 @@ pub(super) enum Guess {
 
 impl Guess {
     /// Predicts the state of a contact from trial impulses, which are not yet projected on the contact law: `shifted`
-    /// is the normal impulse plus cohesion impulse, `trial` is the tangential or the rolling impulse, and `bound` is
-    /// the largest |`trial`| that `shifted` allows. All are divided by the effective mass, m/s.
+    /// is the normal impulse plus the largest impulse of cohesion, which is never negative under the contact law,
+    /// although the trial impulse can be; `trial` is the tangential or the rolling impulse, and `bound` is the largest
+    /// |`trial`| that `shifted` allows. All are divided by the effective mass, m/s.
     fn new(shifted: f64, trial: f64, bound: f64) -> Self {
         if shifted <= 0.0 {
             return Self::Open;

@@ -1,9 +1,10 @@
 //! The update of one contact in a Gauss–Seidel sweep, or of several contacts that share no grain.
 //!
-//! Let σ be the shifted normal impulse of the contact and λ_t its tangential impulse, both reduced impulses (impulse
-//! divided by effective mass, m/s: `contact::law`, `solver::kinematics`), v_n and v_t its normal and tangential
-//! velocity, ρ v_n^{n−1} its restitution term (restitution times normal velocity before the step), m_n and m_t its
-//! effective masses along normal and tangent, and bound(σ) the largest |λ_t| that friction allows. The update is
+//! Let σ be the shifted normal impulse of the contact (the normal impulse plus the largest impulse of cohesion, so that
+//! it is never negative) and λ_t its tangential impulse, both reduced impulses (impulse divided by effective mass, m/s:
+//! `contact::law`, `solver::kinematics`), v_n and v_t its normal and tangential velocity, ρ v_n^{n−1} its restitution
+//! term (restitution times normal velocity before the step), m_n and m_t its effective masses along normal and tangent,
+//! and bound(σ) the largest |λ_t| that friction allows. The update is
 //!
 //! > σ ← max(σ − (v_n + ρ v_n^{n−1}), 0),  λ_t ← clamp(λ_t − v_t · m_t/m_n, ±bound(σ)).
 //!

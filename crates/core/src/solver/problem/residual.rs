@@ -84,8 +84,8 @@ pub(crate) fn natural_map<M: Model>(problem: &StepProblem<M>) -> f64 {
 
 /// Returns the normal and tangential errors of contacts, divided by the effective masses, m/s: the differences between
 /// the present impulses and the impulses that an update of each contact by its law would give. The arguments, in m/s,
-/// are the contacts' shifted normal impulses (normal impulse plus cohesion) and tangential impulses, restitution terms,
-/// and normal and tangential relative velocities.
+/// are the contacts' shifted normal impulses (normal impulse plus the largest impulse of cohesion, so that they are
+/// never negative) and tangential impulses, restitution terms, and normal and tangential relative velocities.
 #[inline(always)]
 pub(crate) fn errors<M: Model, T: Lanes>(
     law: &ContactLaw,

@@ -12,10 +12,11 @@
 //!
 //! > |ψ| ≤ μ_r σ',  ψ = −μ_r σ' sign(v_r) unless v_r = 0,
 //!
-//! with μ_r the coefficient of rolling friction, σ' (m/s) the part of the shifted normal impulse σ that bounds friction
-//! (`contact::law`), and v_r at the end of the step. So M does no work while it prevents rolling, and dissipates energy
-//! otherwise. J. Ai, J.-F. Chen, J. M. Rotter and J. Y. Ooi (2011) call this a directional constant torque; in this
-//! program the moment also acts at v_r = 0.
+//! with μ_r the coefficient of rolling friction, σ' (m/s) the part that bounds friction (`contact::law`) of the shifted
+//! normal impulse σ (normal impulse plus the largest impulse of cohesion, so that it is never negative), and v_r at the
+//! end of the step. So M does no work while it prevents rolling, and dissipates energy otherwise. J. Ai, J.-F. Chen, J.
+//! M. Rotter and J. Y. Ooi (2011) call this a directional constant torque; in this program the moment also acts at v_r
+//! = 0.
 //!
 //! **Response.** With the moment of inertia I = ½mr² of a disc and the mass ratio g_i = m_ij/m_i
 //! (`solver::kinematics`), MΔt = R m_ij ψ changes the spins and the rolling velocity by
@@ -57,8 +58,8 @@ pub struct Rolling {
 
 impl Rolling {
     /// Returns the largest reduced rolling impulse (rolling moment times time step, divided by reduced radius and
-    /// effective mass, m/s) that the contact's shifted normal impulse allows. `shifted_impulse` is the normal impulse
-    /// plus cohesion, divided by the effective mass, m/s.
+    /// effective mass, m/s) that the contact's shifted normal impulse `shifted_impulse` allows: the normal impulse plus
+    /// the largest impulse of cohesion, so that it is never negative, divided by the effective mass, m/s.
     #[inline(always)]
     pub(crate) fn bound(&self, law: &ContactLaw, shifted_impulse: f64) -> f64 {
         self.friction * law::signorini(law.rubbing(shifted_impulse))

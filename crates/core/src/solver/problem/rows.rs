@@ -51,7 +51,8 @@ pub struct Row<M: Model> {
     /// than the threshold of restitution.
     pub restitution_velocity: f64,
     /// Shifted normal impulse σ of the contact, m/s: normal impulse divided by effective mass, plus the capture speed
-    /// (the opening speed that cohesion cancels in one step).
+    /// (the largest impulse of cohesion divided by effective mass, which is the opening speed that cohesion cancels in
+    /// one step). So it is never negative.
     pub shifted_impulse: f64,
     /// Tangential impulse λ_t of the contact, divided by the effective mass, m/s.
     pub tangential_impulse: f64,
@@ -107,8 +108,8 @@ is_a_row!(FixedRow);
 is_a_row!(PairRow);
 
 impl<M: Model> Row<M> {
-    /// Returns the shifted normal impulse (normal impulse plus cohesion) and the tangential impulse, both divided by
-    /// the effective mass, m/s.
+    /// Returns the shifted normal impulse (normal impulse plus the largest impulse of cohesion, so that it is never
+    /// negative) and the tangential impulse, both divided by the effective mass, m/s.
     #[inline(always)]
     pub fn impulse(&self) -> [f64; 2] {
         [self.shifted_impulse, self.tangential_impulse]
@@ -146,8 +147,8 @@ pub struct ContactRows<M: Model> {
     pub contacts: Vec<u32>,
     /// Capture speed of each contact (the opening speed that cohesion cancels in one step: cohesion force times time
     /// step, divided by effective mass), m/s, if contacts have different capture speeds (contact law `range`, pairs of
-    /// materials); else empty. Sweeps with the shifted friction cone do not need it, because the sum of normal impulse
-    /// and cohesion impulse is stored and bounds friction.
+    /// materials); else empty. Sweeps with the shifted friction cone do not need it, because in this cone the sum of
+    /// normal impulse and cohesion impulse bounds friction, and this sum is stored.
     pub captures: Vec<f64>,
     /// Friction coefficient μ of each contact, if pairs of materials have their own coefficients; else empty.
     pub frictions: Vec<f64>,
@@ -264,9 +265,10 @@ impl<M: Model> ContactRows<M> {
     }
 
     /// Copies the impulses of all contacts, m/s, to `impulses`, which is cleared first: a pair per contact with the
-    /// shifted normal impulse (normal impulse plus cohesion) and the tangential impulse, both divided by the effective
-    /// mass. If the problem has rolling resistance, a second pair (ψ, 0) per contact follows, with the reduced rolling
-    /// impulse ψ (rolling moment times time step, divided by reduced radius and effective mass).
+    /// shifted normal impulse (normal impulse plus the largest impulse of cohesion, so that it is never negative) and
+    /// the tangential impulse, both divided by the effective mass. If the problem has rolling resistance, a second pair
+    /// (ψ, 0) per contact follows, with the reduced rolling impulse ψ (rolling moment times time step, divided by
+    /// reduced radius and effective mass).
     pub(crate) fn read_impulses(&self, impulses: &mut Vec<[f64; 2]>) {
         impulses.clear();
         impulses.extend(self.iter().map(Row::impulse));

@@ -3,12 +3,13 @@
 //! **The duality gap.** Let p be impulses of all contacts (N·s) that the friction model allows, and V the velocities of
 //! the bodies that these impulses cause. The matrix H maps velocities of bodies to velocities w (normal, with
 //! restitution term) and v (tangential) of contacts (m/s), as in `problem::friction`. σ and λ are the shifted normal
-//! impulse (normal impulse plus cohesion) and the tangential impulse of a contact, divided by its effective mass m_ij
-//! (m/s). The shortfall z of a contact (m/s) is the increase of w that it needs to satisfy its law: the least z ≥ 0
-//! with w + z ≥ 0 for a friction model with fixed friction bounds g (m/s), or with w + s + z ≥ μ|v| for a model with a
-//! friction cone (μ: friction coefficient, s: opening speed, m/s). A step of a convex model is a minimisation over
-//! impulses, which has a dual problem for velocities. In the problem in which z is added to w, p and V satisfy all
-//! constraints, and its energy at p and the energy of its dual at V differ by
+//! impulse (normal impulse plus the largest impulse of cohesion, so that it is never negative) and the tangential
+//! impulse of a contact, divided by its effective mass m_ij (m/s). The shortfall z of a contact (m/s) is the increase
+//! of w that it needs to satisfy its law: the least z ≥ 0 with w + z ≥ 0 for a friction model with fixed friction
+//! bounds g (m/s), or with w + s + z ≥ μ|v| for a model with a friction cone (μ: friction coefficient, s: opening
+//! speed, m/s). A step of a convex model is a minimisation over impulses, which has a dual problem for velocities. In
+//! the problem in which z is added to w, p and V satisfy all constraints, and its energy at p and the energy of its
+//! dual at V differ by
 //!
 //! > Σ m_ij (σ (w + z) + g|v| + λv) within bounds,  Σ m_ij (σ (w + s + z) + λv) on the cone,
 //!
@@ -41,8 +42,9 @@
 //! of velocities: for a pile at rest the estimate can be 1e-4 √(g d) if the true error is 1e-6 √(g d).
 //!
 //! **Coulomb's law** has no dual problem, because it is not convex. S is then computed with the friction bound of the
-//! present impulses as g, which is μσ in the shifted cone, and is 0 if and only if the law is satisfied. An impulse λ
-//! outside the friction cone counts as the nearest allowed impulse λ_c, and adds |λ − λ_c||v| + (λ − λ_c)² to the sum.
+//! present impulses as g, which is μσ in the shifted friction cone (the whole σ bounds friction). S is 0 if and only if
+//! the law is satisfied. An impulse λ outside the friction cone counts as the nearest allowed impulse λ_c, and adds |λ
+//! − λ_c||v| + (λ − λ_c)² to the sum.
 //!
 //! A wall that a force drives is one more body. Its mass counts in ‖V − V*‖²_M but not in the mass by which S is
 //! divided. At its contacts, w and v are relative to the wall's present velocity, without the division by ratios of

@@ -402,10 +402,12 @@ impl<M: Model> StepProblem<M> {
     }
 
     /// Converts the normal and tangential velocity of a contact relative to the present speed of a driven wall (a wall
-    /// that a force moves) to the velocity relative to the speed that the wall has without contact impulses, m/s. The
-    /// normal and the tangential result are scaled for the residual like the result of [`Self::own_part`]: each is
-    /// divided by the ratio of its compliance (velocity per impulse) at the driven wall to its compliance at a fixed
-    /// wall. Returns `None` if the contact is not with a driven wall.
+    /// that a force moves) to the velocity relative to the speed that the wall has without contact impulses, m/s. Then
+    /// divides the normal velocity, with its restitution term, and the tangential velocity by a ratio, as
+    /// [`Self::own_part`] does for the residual (relative error of the impulses in the contact laws): the compliance
+    /// (velocity per impulse) of the contact in this direction at the driven wall, divided by its compliance at a fixed
+    /// wall. An impulse then changes the result as much as it would change the velocity at a fixed wall. Returns `None`
+    /// if the contact is not with a driven wall.
     #[inline(always)]
     pub(super) fn free_part(
         &self,

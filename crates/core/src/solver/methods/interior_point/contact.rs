@@ -1,10 +1,11 @@
 //! A contact in the interior point method, and its contribution to a Newton step.
 //!
 //! A friction model allows the impulses p = (σ, λ) with G p + h ≥ 0: σ is the shifted normal impulse (normal impulse
-//! plus cohesion impulse) and λ the tangential impulse, both divided by the effective mass, m/s. The matrix G has the
-//! row (1, 0) for σ ≥ 0, and the rows (κ, ±1) for the two bounds of friction. If the friction bound grows with σ, the
-//! slope κ is the friction coefficient μ and h = 0; if the bound g stays fixed during the solve, κ = 0 and h is g in
-//! the rows of friction. With slacks x = G p + h and multipliers y, one of each per row k of G, the solution satisfies
+//! plus the largest impulse of cohesion, so that it is never negative) and λ the tangential impulse, both divided by
+//! the effective mass, m/s. The matrix G has the row (1, 0) for σ ≥ 0, and the rows (κ, ±1) for the two bounds of
+//! friction. If the friction bound grows with σ, the slope κ is the friction coefficient μ and h = 0; if the bound g
+//! stays fixed during the solve, κ = 0 and h is g in the rows of friction. With slacks x = G p + h and multipliers y,
+//! one of each per row k of G, the solution satisfies
 //!
 //! > (w, v) = Aᵀy,  x ≥ 0, y ≥ 0, x_k y_k = 0,
 //!
@@ -33,8 +34,8 @@ use crate::contact::law;
 pub(super) const PAIRS: usize = 3;
 
 /// The set of impulses that a friction model allows at a contact, as constraints with slacks (distances from the bounds
-/// of the constraints). The impulses are the shifted normal impulse σ (normal impulse plus cohesion impulse) and the
-/// tangential impulse λ, both divided by the effective mass, m/s.
+/// of the constraints). The impulses are the shifted normal impulse σ (normal impulse plus the largest impulse of
+/// cohesion, so that it is never negative) and the tangential impulse λ, both divided by the effective mass, m/s.
 pub(super) trait Shape {
     /// Index of the first slack that a contact with this set of impulses uses. There are three slacks: slack 0 is the
     /// distance of the normal impulse plus cohesion impulse from 0, and slacks 1 and 2 are the distances of the
@@ -56,8 +57,8 @@ pub(super) trait Shape {
     const COMPLIANCE: f64 = 1e-11;
 }
 
-/// Allowed impulses of a contact without friction: the shifted normal impulse σ (normal impulse plus cohesion impulse)
-/// is at least 0.
+/// Allowed impulses of a contact without friction: the shifted normal impulse σ (normal impulse plus the largest
+/// impulse of cohesion) is at least 0.
 pub(super) enum HalfLine {}
 
 impl Shape for HalfLine {
@@ -66,9 +67,9 @@ impl Shape for HalfLine {
     const CONE: bool = false;
 }
 
-/// Allowed impulses of the friction model `tresca`: σ ≥ 0 for the shifted normal impulse σ (normal impulse plus
-/// cohesion impulse), and |λ| ≤ g for the tangential impulse λ, with a friction bound g that stays fixed during a
-/// solve.
+/// Allowed impulses of the friction model `tresca`: σ ≥ 0 for the shifted normal impulse σ (normal impulse plus the
+/// largest impulse of cohesion), and |λ| ≤ g for the tangential impulse λ, with a friction bound g that stays fixed
+/// during a solve.
 pub(super) enum Strip {}
 
 impl Shape for Strip {
@@ -78,9 +79,9 @@ impl Shape for Strip {
 }
 
 /// Allowed impulses of the friction models `associated` and `desaxce`: |λ| ≤ μσ, with the tangential impulse λ, the
-/// friction coefficient μ and the shifted normal impulse σ (normal impulse plus cohesion impulse). `desaxce` also adds
-/// an opening speed, which is estimated before a solve and stays fixed during it, to the normal velocity of the
-/// contact.
+/// friction coefficient μ and the shifted normal impulse σ (normal impulse plus the largest impulse of cohesion, so
+/// that it is never negative). `desaxce` also adds an opening speed, which is estimated before a solve and stays fixed
+/// during it, to the normal velocity of the contact.
 pub(super) enum Cone {}
 
 impl Shape for Cone {
@@ -89,9 +90,9 @@ impl Shape for Cone {
     const CONE: bool = true;
 }
 
-/// Allowed impulses of Coulomb's law: σ ≥ 0 for the shifted normal impulse σ (normal impulse plus cohesion impulse),
-/// and |λ| ≤ μσ for the tangential impulse λ, with the friction coefficient μ. The multipliers of the two bounds of λ
-/// are velocities along the tangent only, so that a sliding contact does not open.
+/// Allowed impulses of Coulomb's law: σ ≥ 0 for the shifted normal impulse σ (normal impulse plus the largest impulse
+/// of cohesion), and |λ| ≤ μσ for the tangential impulse λ, with the friction coefficient μ. The multipliers of the two
+/// bounds of λ are velocities along the tangent only, so that a sliding contact does not open.
 pub(super) enum Leaning {}
 
 impl Shape for Leaning {
@@ -106,8 +107,8 @@ impl Shape for Leaning {
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PathContact {
-    /// Shifted normal impulse σ (normal impulse plus cohesion impulse) and tangential impulse λ, both divided by the
-    /// effective mass, m/s.
+    /// Shifted normal impulse σ (normal impulse plus the largest impulse of cohesion, so that it is never negative) and
+    /// tangential impulse λ, both divided by the effective mass, m/s.
     pub impulse: [f64; 2],
     /// Slacks of the constraints, m/s, in the unit of impulses divided by the effective mass: the distance of the
     /// normal impulse plus cohesion impulse from 0, and the distances of the tangential impulse from its two bounds.

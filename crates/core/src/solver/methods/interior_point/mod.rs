@@ -113,9 +113,9 @@ fn convex<M: Model, S: Shape>(
 }
 
 /// Follows the central path of Coulomb's law as far as possible, and then lets `go_on` continue with another method.
-/// The path is not used in two cases. In the compressive cone, cohesion does not raise the friction bound, so the bound
-/// has a corner at a normal force of 0, which the path cannot pass. In the other case, contacts have different friction
-/// coefficients.
+/// The path is not used in two cases. In the compressive cone, in which only the pushing part of the normal force
+/// bounds friction, cohesion does not raise the bound, so the bound has a corner at a normal force of 0, which the path
+/// cannot pass. In the other case, contacts have different friction coefficients.
 fn coulomb<M: Model>(
     problem: &mut StepProblem<M>,
     memory: &mut InteriorMemory,

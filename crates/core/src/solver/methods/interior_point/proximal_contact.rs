@@ -8,8 +8,8 @@ use crate::solver::linear::Block;
 /// Impulses, velocities and friction bound of a contact in the proximal multiplier method.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ProximalContact {
-    /// Impulses p = (σ, λ) divided by the effective mass, m/s: shifted normal impulse σ (normal impulse plus cohesion
-    /// impulse) and tangential impulse λ.
+    /// Impulses p = (σ, λ) divided by the effective mass, m/s: shifted normal impulse σ (normal impulse plus the
+    /// largest impulse of cohesion, so that it is never negative) and tangential impulse λ.
     pub impulse: [f64; 2],
     /// Velocities (w, v), m/s: w is the normal velocity plus the restitution term (restitution times the normal
     /// velocity before the step) and the opening speed that `desaxce` adds, v is the tangential velocity.
@@ -29,7 +29,7 @@ pub(super) enum ProjectionPiece {
     /// impulse, false if it is at a bound.
     Free([bool; 2]),
     /// The projected impulse is on an edge of the friction cone, λ = ±μσ with the given sign (tangential impulse λ,
-    /// friction coefficient μ, normal impulse plus cohesion impulse σ).
+    /// friction coefficient μ, and σ, the normal impulse plus the largest impulse of cohesion).
     Edge(f64),
 }
 

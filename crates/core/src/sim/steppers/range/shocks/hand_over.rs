@@ -137,20 +137,19 @@ impl Shocks {
         })
     }
 
-    /// True if the pair of contact `number` met within the step and none of its grains was struck after this meeting.
-    /// Then the impulse that the solution of the step gives the pair acts only after the meeting, at the time t: at t
-    /// the gap is 0, and at the end of the step it is (Δt − t) v^n, with the time step Δt and the normal velocity v^n
-    /// at the end of the step. If the grain falls freely with the acceleration a, ½a(Δt − t)² is subtracted from this
-    /// gap.
+    /// True if the gap of the pair of contact `number` closed within the step, at the time t, and none of its grains
+    /// was struck afterwards. Then the impulse that the solution of the step gives the pair acts only after t: at t the
+    /// gap is 0, and at the end of the step it is (Δt − t) v^n, with the time step Δt and the normal velocity v^n at
+    /// the end of the step. If the grain falls freely with the acceleration a, ½a(Δt − t)² is subtracted from this gap.
     fn acts_late(&self, number: usize, i: usize, j: Option<usize>) -> bool {
         let pair = &self.pairs[number];
         pair.touch == Touch::Met && pair.impulse > 0.0 && self.since(i, j) <= pair.struck_at
     }
 
-    /// Records the results of a solved step. If a pair met at the time t and its grains were not struck afterwards, the
-    /// impulse λ (divided by the effective mass, m/s) that the solution of the step gives the pair moves its bodies
-    /// apart only for the rest of the step Δt: by (Δt − t)·λ, and not by Δt·λ. Also adds the impulses of shocks
-    /// (collisions) and step to the contacts' impulse sums of the step.
+    /// Records the results of a solved step. If the gap of a pair closed at the time t and its grains were not struck
+    /// afterwards, the impulse λ (divided by the effective mass, m/s) that the solution of the step gives the pair
+    /// moves its bodies apart only for the rest of the step Δt: by (Δt − t)·λ, and not by Δt·λ. Also adds the impulses
+    /// of shocks (collisions) and step to the contacts' impulse sums of the step.
     pub(in super::super) fn finish<M: Model>(
         &mut self,
         problem: &StepProblem<M>,

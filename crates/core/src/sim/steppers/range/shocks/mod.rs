@@ -9,11 +9,11 @@
 //!
 //! The step then continues from the bodies' velocities v⁺ after the shocks, without bounces.
 //!
-//! **A pair that meets within the step** bounces within this step, with its full speed u at the meeting, along its
-//! normal at the meeting (`contact::approach`). The alternative would be to slow the pair down so that it closes its
-//! gap in this step and bounces in the next step. Its restitution would then be φρ, where φ is the fraction of the step
-//! in which the gap closes: any value from 0 to ρ. An impulse at the time t changes the velocity of a grain by Δv and
-//! moves the grain only for the rest of the step Δt. So the grain moves from x to
+//! **A pair that meets within the step** bounces within this step, with its full speed u at the meeting (the time when
+//! its gap closes), along its normal at the meeting (`contact::approach`). The alternative would be to slow the pair
+//! down so that it closes its gap in this step and bounces in the next step. Its restitution would then be φρ, where φ
+//! is the fraction of the step in which the gap closes: any value from 0 to ρ. An impulse at the time t changes the
+//! velocity of a grain by Δv and moves the grain only for the rest of the step Δt. So the grain moves from x to
 //!
 //! > x^n = x + Δt v^n − Σ t Δv,
 //!
@@ -140,10 +140,10 @@ struct ShockPair {
     /// Stretch of the pair's bond, m.
     stretch: f64,
     /// Unit normal from the second body of the pair to the first body, which is a grain: at the beginning of the step,
-    /// or at the last meeting of the pair.
+    /// or, if a gap of the pair has closed within the step, at the last time when it closed.
     normal: DVec2,
-    /// Gap along `normal` at the beginning of the step, m. After a meeting of the pair: the value for which
-    /// [`ShockPair::gap_at`] is 0 at the time of the meeting.
+    /// Gap along `normal` at the beginning of the step, m. If the gap has closed within the step, instead the value for
+    /// which [`ShockPair::gap_at`] is 0 at the time when it closed.
     gap: f64,
     /// Change of the gap because shocks (collisions) have changed the paths of the two bodies, m.
     shift: f64,
@@ -167,13 +167,13 @@ struct ShockPair {
     gained: f64,
 }
 
-/// Contact state of a pair: apart, touching since the beginning of the step, or touching since a meeting within the
-/// step.
+/// Contact state of a pair: apart, touching since the beginning of the step, or touching since its gap closed within
+/// the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Touch {
     Apart,
     FromStart,
-    /// The pair had a gap, and met within the step.
+    /// The pair had a gap, which closed within the step.
     Met,
 }
 

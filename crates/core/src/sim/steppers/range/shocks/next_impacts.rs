@@ -82,9 +82,9 @@ impl Shocks {
 
     /// True if the pair of contact `number` touches at the time of the last shock (collision) that changed the velocity
     /// of one of its grains, or at the beginning of the step if there was no such shock. To touch, its gap at this time
-    /// must be closed along the normal of its own last meeting, or of the beginning of the step if it has not met. If
-    /// another body struck one of its grains after the pair's own last shock, the pair has moved on in the meantime, so
-    /// the actual gap at this time must be closed, too.
+    /// must be closed along its normal at the last time when its gap closed within the step, or along its normal at the
+    /// beginning of the step if no gap has closed. If another body struck one of its grains after the pair's own last
+    /// shock, the pair has moved on in the meantime, so the actual gap at this time must be closed, too.
     pub(super) fn is_in_touch<M: Model>(&self, at: &ShockInputs<'_, M>, number: usize) -> bool {
         let pair = &self.pairs[number];
         let (i, j) = grains(at.problem, number);
@@ -132,8 +132,8 @@ impl Shocks {
         self.meeting(at, number, from).unwrap_or(NextImpact::Never)
     }
 
-    /// Returns the meeting (time and normal) of the pair of contact `number` after the time `from` (s); `None` if the
-    /// gap of the pair does not close within the step.
+    /// Returns the next time after `from` (s) at which the gap of the pair of contact `number` closes, with the normal
+    /// at that time; `None` if it does not close within the step.
     fn meeting<M: Model>(
         &self,
         at: &ShockInputs<'_, M>,
@@ -147,10 +147,10 @@ impl Shocks {
         Some(NextImpact::Meets { secs, normal })
     }
 
-    /// Computes the exact meeting times of struck pairs that count as touching although they have a small gap. Until
-    /// now the impact time of such a pair is the time from which its two bodies approach each other, as if its gap were
-    /// closed. Leaves out pairs that are struck together with other contacts, because such contacts share the time of
-    /// their cluster.
+    /// Computes, for struck pairs that count as touching although they have a small gap, the exact times at which these
+    /// gaps close. Until now the impact time of such a pair is the time from which its two bodies approach each other,
+    /// as if its gap were closed. Leaves out pairs that are struck together with other contacts, because such contacts
+    /// share the time of their cluster.
     pub(super) fn refine<M: Model>(&mut self, at: &ShockInputs<'_, M>) {
         for (number, row) in at.problem.rows() {
             let root = self.root(row.i as usize);

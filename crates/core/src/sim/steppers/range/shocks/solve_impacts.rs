@@ -96,8 +96,9 @@ impl Shocks {
     }
 
     /// Returns the term, m/s, that the law of collisions adds to the normal velocity of contact `number` at the end of
-    /// the collision: for restitution, for gravity until the meeting, and for the velocity of a moving wall. If the
-    /// pair meets within the step, also sets the contact normal to the normal at the meeting.
+    /// the collision. It is the sum of the restitution term, the velocity that gravity adds until the gap of the pair
+    /// closes (0 for two grains, and for a pair that already touches), and minus the velocity of a moving wall. If the
+    /// gap closes within the step, also sets the contact normal to the normal at the time when it closes.
     fn strike_row<M: Model>(&mut self, problem: &mut StepProblem<M>, number: usize) -> f64 {
         let numbers = self.numbers;
         let mut wall_speed = problem.wall_speed(number);
