@@ -23,7 +23,7 @@ const SLOWEST: Duration = Duration::from_secs(180);
 const REFUSED: &str = "-1 nan inf -inf 1e300 -1e-300 much 0x10";
 
 /// Options of the program, each with meaningful values.
-const OPTIONS: [&str; 23] = [
+const OPTIONS: [&str; 24] = [
     "--stepper moreau range tgs-soft avbd dem",
     "--bond 0 1 20 1000",
     "--rho 0 0.1 0.9 1",

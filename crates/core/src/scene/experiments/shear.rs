@@ -165,7 +165,7 @@ const COMPRESSION_SECS: f64 = 2.0;
 /// strength of the grains is the ratio σ_yy/σ_xx of their vertical to their horizontal stress, which is in the table
 /// `measures` of a recording. Flowing grains reach (1 + sin φ_f)/(1 − sin φ_f), with their friction angle φ_f (Mohr,
 /// Coulomb). The force on a side wall is constant, so its pressure increases while the lid moves down slowly: from 0.94
-/// to 1.27 times [`CONFINING_PRESSURE`], because the height of the box decreases from 19.2 to 14.2 diameters.
+/// to 1.27 times `CONFINING_PRESSURE`, because the height of the box decreases from 19.2 to 14.2 diameters.
 pub fn biaxial() -> Scene {
     let mut scene = of_loose_grains("biaxial", lattice(GRAINS, WIDTH, ROOM));
     scene.grains.iter_mut().for_each(|grain| grain.feels_gravity = false);
