@@ -122,8 +122,9 @@ fn in_cone(mut settings: Settings, cone: FrictionCone) -> Settings {
 pub const LESSONS: [Lesson; 7] = [
     Lesson {
         title: "Two time steps",
-        watch: "One pile twice, with the same cohesion. Only the time step Δt of the solver differs: 0.1 ms and 5 ms. The \
-                slump Δy is the drop of the mean height, divided by that height.",
+        watch: "One pile twice, with the same cohesion: Bond 20, so that a contact can pull with the weight of ten grains. Only \
+                the time step Δt of the solver differs: 0.1 ms and 5 ms. The slump Δy is the drop of the mean height, divided \
+                by that height.",
         question: Some(Question {
             text: "Will both piles slump alike?",
             answers: ["alike", "not alike"],
@@ -131,7 +132,8 @@ pub const LESSONS: [Lesson; 7] = [
             result: predictions::two_time_steps,
         }),
         learnt: "Long steps act like glue: in each step cohesion stops grains that separate at up to Bond·g·Δt, 0.02 m/s at \
-                 0.1 ms and 1 m/s at 5 ms. Lesson 4 has a law under which Δt hardly matters.",
+                 0.1 ms and 1 m/s at 5 ms. A bond ends at a gap of 1e-5 diameters (touch tolerance). Lesson 4 has a law under \
+                 which Δt hardly matters.",
         worlds: |base| two_time_steps(base, 20.0),
         ..PILE
     },
@@ -164,10 +166,10 @@ pub const LESSONS: [Lesson; 7] = [
     },
     Lesson {
         title: "The solver's part",
-        watch: "The same step of 5 ms, solved in three ways: by 5 sweeps of nsgs over all contacts, by 40 sweeps, and to a tolerance. \
-                The second plot shows the error of the velocities.",
+        watch: "The same step of 5 ms, computed in three ways: by 5 sweeps of nsgs over all contacts, by 40 sweeps, and by the \
+                default solver, whose error is small. The second plot shows the error of the velocities.",
         question: Some(Question {
-            text: "Five sweeps leave steps unsolved. Will that pile hold better or worse than the solved one?",
+            text: "Five sweeps leave steps unsolved. Will that pile hold better or worse than the one of the default solver?",
             answers: ["better", "worse"],
             rows: predictions::last_rows,
             result: predictions::unsolved_steps,

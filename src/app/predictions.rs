@@ -93,7 +93,7 @@ pub(super) fn shorter_at_rest(rows: &[Observables]) -> Option<(usize, String)> {
 pub(super) fn unsolved_steps(rows: &[Observables]) -> Option<(usize, String)> {
     let [few, some, solved] = rows else { return None };
     let text = format!(
-        "The slump was {:.2} with 5 sweeps per step, {:.2} with 40 sweeps, and {:.2} with solved steps.",
+        "The slump was {:.2} with 5 sweeps per step, {:.2} with 40 sweeps, and {:.2} with the default solver.",
         few.slump, some.slump, solved.slump
     );
     Some((usize::from(few.slump > solved.slump), text))

@@ -227,7 +227,7 @@ fn an_earlier_recording_is_refused_or_removed_and_nothing_else_is() {
     let before = files(folder.path());
     let again = Recording::start(folder.path(), &[FormatName::Csv], &about, false);
     let said = again.err().expect("a refusal").to_string();
-    assert!(said.starts_with("data is ") && said.contains("--overwrite"), "{said}");
+    assert!(said.starts_with("data is ") && said.contains("the option overwrite"), "{said}");
     assert_eq!(files(folder.path()), before);
     // Slump recognises a folder as a recording even if the manifest is missing.
     std::fs::remove_file(folder.path().join("data.json")).expect("gone");

@@ -6,7 +6,7 @@ use crate::fracture_work::{fracture_work, with_fracture_work};
 use crate::scene::{Deposition, NewPile, Scene};
 use crate::sim::{Settings, Stepper};
 use crate::solver::{FrictionModel, Method, SolverSettings};
-use crate::world::FrictionCone;
+use crate::world::{FrictionCone, MaterialPair};
 
 /// Group of causes in an error budget: grains, contact law, or numerical method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -157,8 +157,12 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
             add(Cause::ContactLaw, stepper.name(), 4.0, at_equal_work(scene, stepper));
         }
     }
-    let rubs = scene.physics.friction && parameters.friction > 0.0;
-    let coheres = scene.physics.cohesion && parameters.bond > 0.0;
+    let is_any = |scene_wide: f64, of: fn(&MaterialPair) -> Option<f64>| {
+        scene_wide > 0.0 || scene.pairs.iter().filter_map(of).any(|value| value > 0.0)
+    };
+    let rubs = scene.physics.friction && is_any(parameters.friction, |pair| pair.friction);
+    let coheres =
+        scene.physics.cohesion && is_any(parameters.bond, |pair| pair.cohesion_force.or(pair.bond));
     if rubs && coheres && base.stepper.reads("cone") {
         let cone = match parameters.cone {
             FrictionCone::Shifted => FrictionCone::Compressive,
@@ -182,7 +186,8 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
             by(&|it| (it.solver.method, it.solver.friction_model) = (Method::Auto, model));
         add(Cause::FrictionModel, label, 2.0, settings);
     }
-    if parameters.restitution > 0.0 && base.stepper.reads("restitution-threshold") {
+    let bounces = is_any(parameters.restitution, |pair| pair.restitution);
+    if bounces && base.stepper.reads("restitution-threshold") {
         let (threshold, label) = match parameters.restitution_threshold > 0.0 {
             true => (0.0, "Restitution at every speed".to_owned()),
             false => (THRESHOLD, format!("No restitution below {THRESHOLD} g·Δt")),
@@ -262,6 +267,7 @@ pub(crate) fn short(number: f64) -> String {
 mod tests {
     use super::*;
     use crate::scene::built_in;
+    use crate::world::Material;
 
     fn causes(scene: &Scene, pile: Option<&NewPile>) -> Vec<Cause> {
         let mut causes: Vec<Cause> =
@@ -297,6 +303,18 @@ mod tests {
         pile.parameters.restitution = 0.0;
         let left = [Cause::Unsolved, Cause::Start, Cause::TimeStep, Cause::ContactLaw];
         assert_eq!(causes(&pile, None), left);
+        // The same coefficients of a pair of materials count as those of the scene. Only `moreau` supports pairs.
+        pile.materials = vec![Material { name: "glass".to_owned(), ..Material::default() }];
+        pile.pairs = vec![MaterialPair {
+            between: ["glass", "glass"].map(str::to_owned),
+            friction: Some(0.5),
+            restitution: Some(0.1),
+            cohesion_force: Some(1e-4),
+            ..MaterialPair::default()
+        }];
+        let of_pairs = causes(&pile, None);
+        let counted = [Cause::Cone, Cause::TouchTolerance, Cause::RestitutionThreshold];
+        assert!(counted.iter().all(|cause| of_pairs.contains(cause)), "{of_pairs:?}");
         let drum = built_in("drum").unwrap();
         assert!(!causes(&drum, None).contains(&Cause::NumberOfGrains));
         // Few steppers support walls that a force drives, so the stepper `avbd` must not be a variant of this scene.
