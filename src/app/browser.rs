@@ -35,6 +35,8 @@ pub fn prepare(resources: &mut CallbackResources, format: wgpu::TextureFormat) {
 pub fn begin(live: Live, stored: &str, address: &str, context: &Context) -> AppState {
     let stored: StoredWindow = ron::from_str(stored).unwrap_or_default();
     context.memory_mut(|memory| *memory = stored.layout);
+    // The browser itself enlarges the page by these keys. Otherwise the page would become larger twice.
+    context.options_mut(|options| options.zoom_with_keyboard = false);
     theme::install(context);
     let (start, query) = address.split_once('?').unwrap_or((address, ""));
     set_link_start(format!("{start}?"));

@@ -41,9 +41,9 @@ impl Budget {
 /// Preset of a fast solver: at most 40 parallel Gauss-Seidel sweeps per step, even if the step is then unsolved.
 pub(super) const FAST: Budget = Budget {
     name: "Fast",
-    hint: "40 sweeps per step on all cores, solved or not. Without cohesion, large piles slump nearly as in \
-           solved steps. With cohesion, piles can slump although they would not in solved steps, and small piles \
-           are off by a tenth.",
+    hint: "40 sweeps per step, solved or not; the program uses all cores. Without cohesion, large piles slump \
+           nearly as in solved steps. With cohesion, piles can slump although they would not in solved steps, and \
+           small piles are off by a tenth.",
     settings: SolverSettings::to_residual(Method::NsgsParallel, 1e-6, 40),
 };
 

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::Receiver;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::IN_BROWSER;
 use super::canvas::Canvas;
 use super::data_export::DataPanel;
 use super::file_names::is_saved_run;
@@ -42,7 +43,11 @@ impl Drop for Exports {
 }
 
 /// Message after copying a link that describes the whole run.
-const COPIED: &str = "The link is copied: paste it into a window, or pass it to slump --open.";
+const COPIED: &str = if IN_BROWSER {
+    "The link is copied: open it in a browser."
+} else {
+    "The link is copied: paste it into a window, or pass it to slump --open."
+};
 /// Message after copying a link of a run with edits by the user, which the link does not contain.
 const PULLED: &str = "The link is copied. It lacks changes by hand (grains that were pulled by hand, added or \
                       removed, walls that were moved), so it makes another run. A session keeps these changes.";

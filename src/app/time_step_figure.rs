@@ -1,5 +1,6 @@
 //! The plot of mean slump against the time step Δt, as in Fig. 5a of Abramian & Staron (2020). For each run that the
-//! user has started it has one point: the mean over runs with the same settings from other initial states.
+//! user has started it has one point: the mean over runs with the same settings from other initial states or, if such
+//! runs cannot be computed, the slump of the run itself.
 
 use egui::{Color32, Label, RichText, Ui};
 use egui_plot::{HoverPosition, Line, Points};
@@ -19,18 +20,21 @@ const TITLE: &str = "slump against Δt";
 /// Hover text of the title, which explains a point of the plot.
 const HINT: &str = "One point per released pile: the mean slump of its other piles at the end of the scene, with \
                     its 95 % interval.";
+/// Hover text of the title if no other piles are computed.
+const HINT_OF_ONE: &str = "One point per released pile: its slump at the end of the scene. No other piles are computed \
+                           here, so the points have no interval.";
 /// The Δt axis extends at least from the first to the second of these values of the time step Δt, ms.
 const LEAST_MILLIS: [f64; 2] = [0.1, 10.0];
 /// Half of the width of the horizontal caps of an error bar, in decades of the logarithmic Δt axis.
 const CAP: f64 = 0.03;
 
-/// A point of the plot: the mean slump of runs from other initial states at the end of the scene.
+/// A point of the plot: the slump at the end of the scene, as a mean over other initial states or of a single pile.
 #[derive(Clone, Debug, PartialEq)]
 struct FigurePoint {
     time_step_secs: f64,
     mean: f64,
-    /// Half-width of the 95 % confidence interval of the mean slump.
-    half: f64,
+    /// Half-width of the 95 % confidence interval of the mean slump; `None` for the slump of a single pile.
+    half: Option<f64>,
     /// Number of initial states over which the mean is taken.
     count: usize,
 }
@@ -40,6 +44,16 @@ impl FigurePoint {
     /// milliseconds.
     fn decades(&self) -> f64 {
         (1e3 * self.time_step_secs).log10()
+    }
+
+    /// Returns the text that is shown when the mouse is at the point. `series` is the name of its curve.
+    fn text(&self, series: &str) -> String {
+        let Self { time_step_secs, mean, half, count } = self;
+        let head = format!("{series}, Δt {}\nslump {mean:.3}", millis_text(*time_step_secs));
+        match half {
+            Some(half) => format!("{head} ± {half:.3}\n{count} piles"),
+            None => format!("{head}\none pile"),
+        }
     }
 }
 
@@ -57,8 +71,8 @@ struct FigureSeries {
 pub(super) struct TimeStepFigure(Vec<FigureSeries>);
 
 impl TimeStepFigure {
-    /// Makes the plot from `released`, the results of all runs that the user has started. `None` if no result has a
-    /// confidence interval yet. `worlds` are the settings of the visible simulations. If several simulations are
+    /// Makes the plot from `released`, the results of all runs that the user has started. `None` if there is no
+    /// result yet. `worlds` are the settings of the visible simulations. If several simulations are
     /// visible, and only one of them has the settings of a curve (apart from Δt), the curve has the colour of this
     /// simulation. A single simulation has no effect on the colours.
     pub(super) fn new<'a>(
@@ -71,11 +85,9 @@ impl TimeStepFigure {
             let (Some(&mean), Some(&high)) = (band.means.last(), band.highs.last()) else {
                 continue;
             };
-            if !high.is_finite() {
-                continue;
-            }
             let time_step_secs = settings.parameters.time_step_secs;
-            let point = FigurePoint { time_step_secs, mean, half: high - mean, count: band.count };
+            let half = Some(high - mean).filter(|half| half.is_finite());
+            let point = FigurePoint { time_step_secs, mean, half, count: band.count };
             let shared = without_time_step(settings);
             match all.iter_mut().find(|(own, _)| *own == shared) {
                 Some((_, points)) => points.push(point),
@@ -107,11 +119,14 @@ impl TimeStepFigure {
 
     /// Draws the plot into the remaining space. `head` adds controls to the title line of the plot.
     pub(super) fn draw(&self, ui: &mut Ui, head: impl FnOnce(&mut Ui)) {
+        let points = || self.0.iter().flat_map(|series| &series.points);
         ui.horizontal(|ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 head(ui);
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    let title = ui.label(RichText::new(TITLE).small()).on_hover_text(HINT);
+                    let hint =
+                        if points().any(|it| it.half.is_some()) { HINT } else { HINT_OF_ONE };
+                    let title = ui.label(RichText::new(TITLE).small()).on_hover_text(hint);
                     explained(title, TITLE);
                     for series in &self.0 {
                         ui.label(RichText::new("■").small().color(series.colour));
@@ -120,9 +135,11 @@ impl TimeStepFigure {
                 });
             });
         });
-        let points = || self.0.iter().flat_map(|series| &series.points);
         let along = points().map(FigurePoint::decades).chain(LEAST_MILLIS.map(f64::log10));
-        let ends = points().flat_map(|point| [point.mean - point.half, point.mean + point.half]);
+        let ends = points().flat_map(|point| {
+            let half = point.half.unwrap_or(0.0);
+            [point.mean - half, point.mean + half]
+        });
         let least = [with_room(along, true), with_room(ends.chain([0.0, LEAST_SLUMP]), false)];
         let height = (ui.available_height() - 2.0).max(40.0);
         let plot = plot_with_axes(ui, "slump against time step", height, [true, false], " ms");
@@ -132,16 +149,16 @@ impl TimeStepFigure {
                 let means = points.iter().map(|point| [point.decades(), point.mean]).collect();
                 plot.line(line(means).color(colour.gamma_multiply(0.4)).width(1.0));
                 for point in points {
-                    let FigurePoint { mean, half, count, .. } = point;
-                    let (x, low, high) = (point.decades(), mean - half, mean + half);
-                    let cap = |y: f64| vec![[x - CAP, y], [x + CAP, y]];
-                    for ends in [vec![[x, low], [x, high]], cap(low), cap(high)] {
-                        plot.line(line(ends).color(*colour).width(1.4));
+                    let (x, mean) = (point.decades(), point.mean);
+                    if let Some(half) = point.half {
+                        let (low, high) = (mean - half, mean + half);
+                        let cap = |y: f64| vec![[x - CAP, y], [x + CAP, y]];
+                        for ends in [vec![[x, low], [x, high]], cap(low), cap(high)] {
+                            plot.line(line(ends).color(*colour).width(1.4));
+                        }
                     }
-                    let step = millis_text(point.time_step_secs);
-                    let text =
-                        format!("{name}, Δt {step}\nslump {mean:.3} ± {half:.3}\n{count} piles");
-                    plot.points(Points::new(text, vec![[x, *mean]]).radius(3.5).color(*colour));
+                    let dot = Points::new(point.text(name), vec![[x, mean]]);
+                    plot.points(dot.radius(3.5).color(*colour));
                 }
             }
         });
@@ -152,6 +169,7 @@ impl TimeStepFigure {
         let mut text = "series,bond,time_step,slump,half_interval,piles\n".to_owned();
         for FigureSeries { name, bond, points, .. } in &self.0 {
             for FigurePoint { time_step_secs, mean, half, count } in points {
+                let half = half.map_or(String::new(), |half| half.to_string());
                 text += &format!("\"{name}\",{bond},{time_step_secs},{mean},{half},{count}\n");
             }
         }
@@ -196,7 +214,6 @@ mod tests {
             released(base.with_bond(20.0).over(5e-3), 0.25, 0.0625),
             released(base.with_bond(100.0).over(5e-3), 0.125, 0.03125),
             released(base.with_bond(20.0).over(1e-4), 0.5, 0.125),
-            released(base.with_bond(20.0).over(1e-3), 0.375, f64::INFINITY),
         ];
         let figure = TimeStepFigure::new(all.iter(), &[], false).unwrap();
         let names: Vec<_> = figure.0.iter().map(|series| series.name.as_str()).collect();
@@ -206,10 +223,20 @@ mod tests {
                         \"Bond 20\",20,0.0001,0.5,0.125,8\n\
                         \"Bond 20\",20,0.005,0.25,0.0625,8\n\
                         \"Bond 100\",100,0.005,0.125,0.03125,8\n";
-        assert_eq!(figure.table(), expected, "one pile has no interval and no point");
+        assert_eq!(figure.table(), expected);
         let alone = TimeStepFigure::new(all[..1].iter(), &[], false).unwrap();
         assert_eq!(alone.0[0].name, "Bond 20");
-        assert!(TimeStepFigure::new(all[3..].iter(), &[], false).is_none());
+        assert!(TimeStepFigure::new(std::iter::empty(), &[], false).is_none());
+    }
+
+    #[test]
+    fn a_single_pile_has_a_point_without_interval() {
+        let settings = Settings::default().with_bond(20.0).over(5e-3);
+        let band = Band::of(&[(0, &vec![[0.5, 0.25]])]);
+        let figure = TimeStepFigure::new([(settings, Arc::new(band))].iter(), &[], false).unwrap();
+        assert!(figure.table().ends_with("\"Bond 20\",20,0.005,0.25,,1\n"), "{}", figure.table());
+        let text = figure.0[0].points[0].text("Bond 20");
+        assert_eq!(text, "Bond 20, Δt 5 ms\nslump 0.250\none pile");
     }
 
     #[test]

@@ -153,6 +153,29 @@ fn released_piles_leave_a_point_each_though_the_next_is_released_before_their_ot
 }
 
 #[test]
+fn a_released_pile_leaves_its_own_point_if_no_other_piles_can_run() {
+    let folder = folder();
+    let mut robot = Robot::open(small_pile());
+    robot.state_mut().ensemble = slump::app::Ensemble::default();
+    robot.state_mut().preferences.folder = folder.path().to_owned();
+    robot.state_mut().preferences.starts_again = true;
+    robot.send(Command::SetPace(Pace::Max));
+    robot.send(Command::Play);
+    robot.until("the end", |state| !state.run.frame.playing && state.run.frame.time_secs() > 0.09);
+    robot.type_number("Δt, time step", "2");
+    robot.until("a step", |state| state.run.frame.recorded_secs() > 0.0);
+    robot.until("the end", |state| !state.run.frame.playing && state.run.frame.time_secs() > 0.09);
+    robot.harness.step();
+    assert_eq!(robot.state().ensemble.threads(), 0, "other piles run");
+    robot.click("CSV");
+    let table = read(robot.saved());
+    let slump = robot.state().run.frame.worlds[0].snapshot.observables.slump;
+    let rows: Vec<&str> = table.lines().skip(1).collect();
+    assert!(rows.len() == 2 && rows.iter().all(|row| row.ends_with(",,1")), "{table}");
+    assert!(rows[1].contains(&format!(",0.002,{slump},,1")), "{slump}: {table}");
+}
+
+#[test]
 fn compared_worlds_have_others_each() {
     let cache = folder();
     let mut robot = open(cache.path());

@@ -14,6 +14,7 @@ mod runs;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::IN_BROWSER;
 use super::titles::change_text;
 use super::user_folder::user_folder;
 use crate::live::{LiveFrame, LiveStart};
@@ -24,7 +25,7 @@ pub(crate) use pool::Released;
 pub(super) use pool::on_idle_cores;
 use pool::{EnsembleSummary, WorkerPool, idle_cores};
 pub(crate) use runs::Band;
-use runs::others_of;
+use runs::{others_of, pile_of};
 
 /// Hover text that explains the mean slump of runs from other initial states.
 const RULE: &str = "Idle cores run other piles with the present settings from their initial state on. They differ \
@@ -33,6 +34,10 @@ const RULE: &str = "Idle cores run other piles with the present settings from th
                     again when the settings change. A run whose settings changed on the way, or that was pulled by \
                     hand, has no other piles: reset it. The seed of the shipped pile, which was chosen, is never \
                     among them.";
+
+/// Hover text that replaces [`RULE`] in a browser.
+const RULE_IN_BROWSER: &str = "Other piles with the same settings show how far one pile is from their mean. In a \
+                               browser one thread computes, so only the program runs other piles.";
 
 /// The ensembles of the visible simulations (runs with the same settings from other initial states), with the threads
 /// that compute them.
@@ -61,6 +66,8 @@ struct PileKind {
     duration_secs: f64,
     base_width: Option<f64>,
     piles: Vec<NewPile>,
+    /// The open pile, if the results are those of this pile.
+    own: Option<NewPile>,
 }
 
 impl Ensemble {
@@ -115,11 +122,11 @@ impl Ensemble {
         });
         let all: Vec<_> = all.collect();
         let is_new = self.note_released(frame, &all);
+        if !self.is_possible() {
+            return self.note_own_slumps(frame, &all);
+        }
         if !is_wanted {
             return self.stop();
-        }
-        if !self.is_possible() {
-            return;
         }
         let Self {
             folder: Some(folder), opened: Some(opened), piles, pool, worlds, released, ..
@@ -146,6 +153,7 @@ impl Ensemble {
             duration_secs: opened.scene.duration_secs,
             base_width: opened.config.source.base_width,
             piles: self.piles.clone(),
+            own: if self.is_possible() { None } else { pile_of(opened) },
         });
         if self.kind != kind {
             self.released.clear();
@@ -170,6 +178,21 @@ impl Ensemble {
         self.released.len() > before
     }
 
+    /// Stores the slump of each visible run that has reached the end of the scene, because no other piles are computed.
+    fn note_own_slumps(&mut self, frame: &LiveFrame, all: &[Option<Settings>]) {
+        let end_secs = self.kind.as_ref().map_or(f64::INFINITY, |kind| kind.duration_secs);
+        for (world, settings) in frame.worlds.iter().zip(all) {
+            let Some(row) = world.curve.last() else { continue };
+            let mut released = self.released.iter_mut();
+            if row.time_secs + 0.5 * row.time_step_secs >= end_secs
+                && let Some((_, band)) = released.find(|(own, _)| Some(*own) == *settings)
+                && band.count == 0
+            {
+                *band = Arc::new(Band::of(&[(0, &vec![[row.time_secs, row.slump]])]));
+            }
+        }
+    }
+
     /// Removes the settings and results of all started runs from `released`, and so clears the plot of slump against
     /// Δt. When the window draws its next frame, it adds the visible runs again, with their results if the threads that
     /// compute runs from other initial states still have them. All other runs are lost.
@@ -179,7 +202,8 @@ impl Ensemble {
 
     /// Returns the settings of the runs that the user has started, each with the slumps of runs with these settings
     /// from other initial states. Settings of a visible run are omitted until this run has reached the end of the
-    /// scene.
+    /// scene, and all settings until two other runs have ended. If no other runs can be computed, the result is the
+    /// slump of the run itself.
     pub(crate) fn released(&self, frame: &LiveFrame) -> impl Iterator<Item = &Released> {
         let end_secs = self.kind.as_ref().map_or(f64::INFINITY, |kind| kind.duration_secs);
         let is_on_its_way = move |settings: &Settings| {
@@ -189,7 +213,11 @@ impl Ensemble {
             })
         };
         let is_open = !self.piles.is_empty();
-        self.released.iter().filter(move |(settings, _)| is_open && !is_on_its_way(settings))
+        let least = if self.is_possible() { 2 } else { 1 };
+        let is_shown = move |(settings, band): &&Released| {
+            is_open && band.count >= least && !is_on_its_way(settings)
+        };
+        self.released.iter().filter(is_shown)
     }
 
     /// Returns the slumps of runs with the given settings from other initial states; `None` if no started run has these
@@ -215,7 +243,9 @@ impl Ensemble {
     /// Returns a text that explains the ensemble of a simulation (runs with its settings from other initial states) and
     /// lists the seeds of these initial states.
     pub(crate) fn about(&self, world: usize) -> String {
-        let Some(summary) = self.summary(world) else { return RULE.into() };
+        let Some(summary) = self.summary(world) else {
+            return if IN_BROWSER { RULE_IN_BROWSER } else { RULE }.into();
+        };
         let EnsembleSummary { seeds, settling, failed, .. } = summary;
         let all: Vec<String> = seeds.iter().map(u64::to_string).collect();
         let mut text = format!("{RULE}\nSeeds {}.", all.join(", "));

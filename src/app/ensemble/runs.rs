@@ -30,7 +30,7 @@ pub(crate) struct Band {
 
 impl Band {
     /// Computes the mean slumps of runs that have the same settings and therefore the same times.
-    pub(super) fn of(runs: &[(usize, &SlumpSeries)]) -> Self {
+    pub(crate) fn of(runs: &[(usize, &SlumpSeries)]) -> Self {
         let all = runs.iter().map(|&(pile, run)| (pile, run.clone())).collect();
         let mut band = Self { count: runs.len(), runs: all, ..Self::default() };
         let shared = runs.iter().map(|(_, run)| run.len()).min().unwrap_or(0);
@@ -123,7 +123,7 @@ pub(super) fn others_of(opened: &LiveStart) -> Vec<NewPile> {
 
 /// Returns the description from which the pile of a scene was made (seed, number of grains, box); `None` if the grains
 /// were not made from a seed.
-fn pile_of(opened: &LiveStart) -> Option<NewPile> {
+pub(super) fn pile_of(opened: &LiveStart) -> Option<NewPile> {
     let LiveStart { config, scene, .. } = opened;
     if config.source.initial.is_some() {
         return None;

@@ -17,8 +17,8 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let is_ready = context.run.is_ready();
     ui.add_enabled_ui(is_ready, |ui| saved_runs(ui, context));
     if IN_BROWSER {
-        let text =
-            "Files are downloads. To open a scene, a saved run or a session, drop it on the page.";
+        let text = "Files are downloads. To open a scene, discs, a saved run or a session, drop the file on this page. \
+                    Videos and recordings for other programs need the program.";
         ui.label(RichText::new(text).weak());
         return;
     }
@@ -34,8 +34,8 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
 fn saved_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         let save = ui.button("Save state").on_hover_text(
-            "Saves the visible moment as a .slump file in the folder. The run can continue from it, bit for bit, \
-             here or with --restart.",
+            "Saves the visible moment as a .slump file. The run can continue from it, bit for bit, here or with \
+             --restart.",
         );
         context.note_control("Save state", save.rect);
         if save.clicked() {
@@ -43,7 +43,7 @@ fn saved_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
         }
         let save = ui.button("Save session").on_hover_text(
             "Saves all worlds with their record, the earlier runs and the arrangement of the window as a .session \
-             file in the folder (Ctrl S). A session opens at this moment; other moments are computed again when \
+             file (Ctrl S). A session opens at this moment; other moments are computed again when \
              the timeline asks for them.",
         );
         context.note_control("Save session", save.rect);

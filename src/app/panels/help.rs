@@ -2,6 +2,9 @@
 
 use egui::{Align2, RichText, Ui};
 
+use crate::app::IN_BROWSER;
+
+/// Keys and their actions. The last keys of the list have no effect in a browser.
 const KEYS: [(&str, &str); 17] = [
     ("space", "release, pause, resume"),
     ("→  ←", "one step on, one step back"),
@@ -21,6 +24,9 @@ const KEYS: [(&str, &str); 17] = [
     ("Ctrl Shift G", "open the graphics device again; the run continues"),
     ("Ctrl Q", "close the window"),
 ];
+
+/// Number of keys in the list that have an effect in a browser.
+const KEYS_IN_BROWSER: usize = KEYS.len() - 2;
 
 const MOUSE: [(&str, &str); 9] = [
     ("drag the ground", "move the scene"),
@@ -65,7 +71,8 @@ fn contents(ui: &mut Ui) {
         "The paper is A. Abramian and L. Staron, Time Steps v.s. Cohesion (2020, hal-02570097).",
     );
     ui.add_space(8.0);
-    for (title, rows) in [("Keys", &KEYS[..]), ("Mouse", &MOUSE[..])] {
+    let keys = if IN_BROWSER { &KEYS[..KEYS_IN_BROWSER] } else { &KEYS };
+    for (title, rows) in [("Keys", keys), ("Mouse", &MOUSE[..])] {
         ui.heading(title);
         egui::Grid::new(title).num_columns(2).spacing([18.0, 3.0]).show(ui, |ui| {
             for (what, does) in rows {

@@ -3,6 +3,7 @@
 use egui::{Align, Align2, Button, ComboBox, Label, Layout, Rect, RichText, Ui};
 
 use super::right_answer::{self, marked};
+use crate::app::IN_BROWSER;
 use crate::app::context::{PanelContext, Request};
 use crate::app::glossary::explained;
 use crate::app::lessons::{LESSONS, Lesson, lesson};
@@ -213,7 +214,10 @@ fn summary(ui: &Ui, context: &mut PanelContext<'_>, is_open: &mut bool) {
             }
             ui.separator();
             ui.horizontal(|ui| {
-                let hint = "A line of text that opens the present pile. Paste it into another window (Ctrl V).";
+                let hint = match IN_BROWSER {
+                    true => "A line of text that opens the present pile in a browser.",
+                    false => "A line of text that opens the present pile. Paste it into another window (Ctrl V).",
+                };
                 if ui.button("Copy a link to this pile").on_hover_text(hint).clicked() {
                     context.ask(Request::CopyLink);
                 }

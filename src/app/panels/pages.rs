@@ -86,8 +86,12 @@ impl Pages {
         let list = self.gallery.show(ui, context, &current, &groups).labelled_by(label.id);
         context.note_control("hard scenes", list.rect);
         compare::method_presets(ui, context.run);
-        // In a browser the measurement would block the page for seconds.
-        if !IN_BROWSER {
+        if IN_BROWSER {
+            // The measurement would block the browser version for seconds.
+            let text =
+                "Only the program measures the speed and accuracy of all solvers: slump chart.";
+            ui.label(RichText::new(text).weak());
+        } else {
             let race = &mut self.race;
             folded(ui, "Speed and accuracy", |ui| speed::show(ui, context.run, race));
         }

@@ -75,7 +75,9 @@ fn figure_buttons(ui: &mut Ui, context: &mut PanelContext<'_>, figure: &TimeStep
             Ok(path)
         });
     }
-    if ui.small_button("PNG").on_hover_text("Save this plot as a picture.").clicked() {
+    // Waiting for a graphics device would block the browser version.
+    if !IN_BROWSER && ui.small_button("PNG").on_hover_text("Save this plot as a picture.").clicked()
+    {
         let (size, dark) = (context.preferences.picture_size, ui.visuals().dark_mode);
         let (figure, texts) = (figure.clone(), context.run.texts(false));
         context.write(ui.ctx(), move |folder, printers| {
@@ -122,6 +124,7 @@ fn data(ui: &Ui, context: &PanelContext<'_>) -> PlotData {
 
 /// Returns the curves of the earlier run that is compared with the present run, one entry per simulation.
 fn ghosts(context: &PanelContext<'_>) -> Vec<WorldCurve> {
+    let has_others = context.ensemble.is_possible();
     let worlds = context.ghost().map_or(&[][..], |run| &run.worlds).iter();
     let pairs = worlds.zip(&context.run.frame.worlds).map(|(before, now)| {
         let (settings, now) = (&before.controls.settings, &now.controls.settings);
@@ -129,7 +132,11 @@ fn ghosts(context: &PanelContext<'_>) -> Vec<WorldCurve> {
             name: format!("earlier run: {}", title_against(settings, now)),
             colour: Color32::from_gray(128).gamma_multiply(0.6),
             curve: before.curve.clone(),
-            others: context.ensemble.band(settings).filter(|_| settings != now).cloned(),
+            others: context
+                .ensemble
+                .band(settings)
+                .filter(|_| has_others && settings != now)
+                .cloned(),
         }
     });
     pairs.collect()
@@ -168,6 +175,10 @@ pub(super) fn header(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let hint = context.ensemble.about(context.run.selected);
         let said = context.ensemble.said(&context.run.frame, context.run.selected);
         let own = context.run.slump_text(context.run.selected);
+        let said = match IN_BROWSER {
+            true => (!own.is_empty()).then(|| "no other piles run in a browser".to_owned()),
+            false => said,
+        };
         let text = effect(context).or_else(|| Some(format!("{own}; {}", said?)));
         if let Some(text) = text {
             let label = ui.add(egui::Label::new(&text).truncate()).on_hover_text(hint);
@@ -215,6 +226,10 @@ pub(super) fn choices(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let hint = context.ensemble.about(context.run.selected);
         let switch = ui.checkbox(&mut context.preferences.ensemble, "Other piles, on idle cores");
         context.note_control("other piles", switch.on_hover_text(&hint).rect);
+    }
+    if IN_BROWSER {
+        let text = "In a browser one thread computes, so no other piles run, and plots are saved only as CSV.";
+        ui.label(RichText::new(text).small().weak());
     }
 }
 

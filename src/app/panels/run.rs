@@ -4,6 +4,7 @@ use egui::{Align, Button, RichText, Ui};
 
 use super::gallery::Gallery;
 use super::shown_settings::FRONT_SETTINGS;
+use crate::app::IN_BROWSER;
 use crate::app::context::{PanelContext, Request};
 use crate::app::number_text::clock_text;
 use crate::app::provenance::CHANGED;
@@ -69,11 +70,15 @@ pub(super) fn command_line(ui: &mut Ui, context: &mut PanelContext<'_>) {
                 context.warn(format!("The command line is copied; {CHANGED}."));
             }
         }
-        let copy = ui.button("Copy link").on_hover_text(
+        let way = match IN_BROWSER {
+            true => "Open it in a browser, or paste it into this page (Ctrl V).",
+            false => "Paste it into a window (Ctrl V), or pass it to slump --open.",
+        };
+        let hint = format!(
             "Copies a line of text that opens all worlds as they are now: scene, settings with their changes, and \
-             the visible moment. Paste it into a window (Ctrl V), or pass it to slump --open.",
+             the visible moment. {way}"
         );
-        if copy.clicked() {
+        if ui.button("Copy link").on_hover_text(hint).clicked() {
             context.ask(Request::CopyLink);
         }
     });

@@ -29,6 +29,12 @@ const COLOURS: [(ColourBy, &str); 6] = [
 
 /// Duration of the GIF that the button "GIF of 5 s" saves, s.
 const SHORT_GIF_SECS: f64 = 5.0;
+/// Simulated time that a film shows, for hover texts. The browser version has no control for the interval.
+const RECORD: &str = if IN_BROWSER {
+    "the record of all worlds"
+} else {
+    "the record of all worlds, or the interval that is chosen below,"
+};
 /// Zoom factor of the user interface for a presentation.
 const PRESENTATION_ZOOM: f32 = 2.0;
 /// Zoom factor of the user interface above which the window counts as presenting. It is between the usual zoom factor,
@@ -139,10 +145,11 @@ fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
         ui.label(RichText::new(pace).weak());
     });
     ui.horizontal(|ui| {
-        let video_hint = "Saves the record of all worlds, or the interval that is chosen below, as MP4. The run \
-                          can continue meanwhile.";
-        let gif_hint = "Saves the same as a GIF, which all slides and web pages can show: 256 colours per picture, \
-                        and larger files.";
+        let video_hint = format!("Saves {RECORD} as MP4. The run can continue meanwhile.");
+        let gif_hint = format!(
+            "Saves {RECORD} as a GIF, which all slides and web pages can show: 256 colours per picture, and larger \
+             files."
+        );
         let missing = check_ffmpeg("given").err();
         let formats = [
             (FilmFormat::Video, "Save video", missing, video_hint),
@@ -165,7 +172,7 @@ fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let whole = [recorded_from, context.run.frame.recorded_secs()];
         let [from, until] = context.exports.data.stretch.unwrap_or(whole);
         let is_possible = context.run.is_ready() && until > from;
-        let hint = "Saves the record, or the interval that is chosen below, as a GIF that lasts 5 s.";
+        let hint = format!("Saves {RECORD} as a GIF that lasts 5 s.");
         let save = ui.add_enabled(is_possible, egui::Button::new("GIF of 5 s"));
         context.note_control("GIF of 5 s", save.rect);
         if save.on_hover_text(hint).clicked() {

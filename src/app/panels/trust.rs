@@ -190,8 +190,8 @@ impl TrustPanel {
     /// Shows the result of the error budget in words, and its progress.
     fn show_budget(&self, ui: &mut Ui, answer: Option<&BudgetAnswer>) {
         if IN_BROWSER {
-            let text = "A page has no idle cores: slump budget, with the command line of this run, computes its \
-                error budget.";
+            let text = "In a browser one thread computes, so there is no error budget. The program computes it: slump \
+                budget with the command line of this run.";
             ui.label(RichText::new(text).weak());
             return;
         }
