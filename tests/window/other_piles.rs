@@ -163,8 +163,11 @@ fn a_released_pile_leaves_its_own_point_if_no_other_piles_can_run() {
     robot.send(Command::Play);
     robot.until("the end", |state| !state.run.frame.playing && state.run.frame.time_secs() > 0.09);
     robot.type_number("Δt, time step", "2");
-    robot.until("a step", |state| state.run.frame.recorded_secs() > 0.0);
-    robot.until("the end", |state| !state.run.frame.playing && state.run.frame.time_secs() > 0.09);
+    robot.until("the end with 2 ms", |state| {
+        let frame = &state.run.frame;
+        let last = frame.worlds[0].snapshot.observables;
+        !frame.playing && last.time_secs > 0.09 && last.time_step_secs > 1.5e-3
+    });
     robot.harness.step();
     assert_eq!(robot.state().ensemble.threads(), 0, "other piles run");
     robot.click("CSV");
