@@ -35,8 +35,7 @@ pub fn png(report: &Report) -> Result<Vec<u8>, Box<dyn Error>> {
 fn panel(rows: &[&Row]) -> Chart {
     let costs = || rows.iter().map(|row| row.secs_per_simulated_sec);
     let least = 0.7 * costs().fold(f64::INFINITY, f64::min);
-    // Leaves space for the names of the curves on the right.
-    let most = 9.0 * costs().fold(0.0, f64::max);
+    let most = 1.5 * costs().fold(0.0, f64::max);
     let overlaps = || rows.iter().map(|row| row.mean_overlap);
     let [low, high] = [overlaps().fold(f64::INFINITY, f64::min), overlaps().fold(0.0, f64::max)];
     let mut chart = Chart::new(
@@ -44,7 +43,6 @@ fn panel(rows: &[&Row]) -> Chart {
         Axis::log("core seconds per simulated second", least, most),
         Axis::log("mean overlap (d)", 0.6 * low, 1.6 * high),
     );
-    let mut ends = Vec::new();
     for (series, colour) in ALL.into_iter().zip(PALETTE) {
         let its: Vec<&Row> = rows.iter().copied().filter(|row| row.series == series).collect();
         let honest: Vec<(f64, f64)> =
@@ -55,10 +53,7 @@ fn panel(rows: &[&Row]) -> Chart {
             interval: None,
         };
         let front: Vec<Point> = pareto_front(&honest).into_iter().rev().map(point).collect();
-        let name = name_of(series);
-        ends.extend(front.last().map(|end| (name.clone(), colour, (end.x, end.y))));
-        chart.layers.push(Layer::quiet(name, front, colour, Look::LineAndDots));
+        chart.layers.push(Layer::curve(name_of(series), front, colour, Look::LineAndDots));
     }
-    chart.add_end_labels(ends);
     chart
 }

@@ -6,6 +6,7 @@ mod draw;
 mod engine;
 mod pile;
 mod rapier;
+mod reasons;
 mod slump;
 
 use std::error::Error;
@@ -91,6 +92,10 @@ struct Compared {
 type Make = dyn Fn(&Pile, f64) -> Result<Box<dyn Engine>, Box<dyn Error>>;
 
 fn main() -> Result<(), Box<dyn Error>> {
+    if std::env::args().nth(1).as_deref() == Some("reasons") {
+        let bytes = serde_json::to_vec_pretty(&reasons::report()?)?;
+        return Ok(std::fs::write("results/reasons.json", bytes)?);
+    }
     let mut rows = Vec::new();
     for (grains, width, count) in PILES {
         let rained = |seed| Pile::rained(grains, width, seed);
@@ -133,7 +138,9 @@ fn compared() -> Vec<Compared> {
             all.push(Compared {
                 series: Series::Rapier,
                 setting: setting.clone(),
-                make: Box::new(move |pile, step| Ok(Box::new(rapier::Rapier::new(pile, of(step))))),
+                make: Box::new(move |pile, step| {
+                    Ok(Box::new(rapier::Rapier::new(pile, of(step), |_| ())))
+                }),
             });
             all.push(Compared {
                 series: Series::Box2d,
@@ -150,11 +157,19 @@ fn compared() -> Vec<Compared> {
     };
     for count in SWEEPS {
         for (series, push_out) in [(Series::Sweeps, false), (Series::PushOut, true)] {
-            own(series, format!("{count} sweeps"), Way::Sweeps { count, push_out });
+            own(
+                series,
+                format!("{count} sweeps"),
+                Way::Sweeps { count, push_out, speculative: false },
+            );
         }
     }
     for substeps in SUBSTEPS {
-        own(Series::TgsSoft, format!("{substeps} substeps"), Way::TgsSoft { substeps });
+        own(
+            Series::TgsSoft,
+            format!("{substeps} substeps"),
+            Way::TgsSoft { substeps, speculative: false },
+        );
     }
     own(Series::Certified, "the default".into(), Way::Certified { push_out: false });
     own(Series::Certified, "push-out".into(), Way::Certified { push_out: true });

@@ -38,6 +38,13 @@ impl Pile {
         Ok(Self { scene, grains, base })
     }
 
+    /// Returns the pile with its grains in reversed order.
+    pub fn reversed(&self) -> Self {
+        let mut pile = self.clone();
+        pile.grains.reverse();
+        pile
+    }
+
     /// Returns the mean diameter d, m.
     pub fn diameter(&self) -> f64 {
         self.scene.mean_diameter

@@ -10,13 +10,24 @@ use crate::pile::{AREAL_DENSITY, Disc, GRAVITY, Pile};
 /// be created too late.
 const PREDICTION: f64 = 0.1;
 
+/// Sets the distance, in mean diameters, at which rapier starts to create contacts.
+pub fn set_prediction(parameters: &mut IntegrationParameters, distance: f64) {
+    parameters.normalized_prediction_distance =
+        (distance / SLOP_IN_DIAMETERS) as f32 * parameters.normalized_allowed_linear_error;
+}
+
 pub struct Rapier {
     world: PhysicsWorld,
     grains: Vec<RigidBodyHandle>,
 }
 
 impl Rapier {
-    pub fn new(pile: &Pile, setting: Setting) -> Self {
+    /// Puts a pile into the engine. `change` may change the settings that follow from `setting`.
+    pub fn new(
+        pile: &Pile,
+        setting: Setting,
+        change: impl FnOnce(&mut IntegrationParameters),
+    ) -> Self {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::new(0.0, -GRAVITY as f32);
         let defaults = IntegrationParameters::default();
@@ -33,13 +44,13 @@ impl Rapier {
             contact_softness: stiff(defaults.contact_softness.damping_ratio),
             static_contact_softness: stiff(defaults.static_contact_softness.damping_ratio),
             length_unit,
-            normalized_prediction_distance: (PREDICTION / SLOP_IN_DIAMETERS) as f32
-                * defaults.normalized_allowed_linear_error,
             // The two following bounds are turned off, because they would also shrink with the unit.
             normalized_max_corrective_velocity: f32::MAX,
             normalized_max_linear_velocity: f32::MAX,
             ..defaults
         };
+        set_prediction(&mut world.integration_parameters, PREDICTION);
+        change(&mut world.integration_parameters);
         let [friction, restitution] = pile.friction_and_restitution();
         let ball = |disc: &Disc| {
             ColliderBuilder::ball(disc.radius as f32)

@@ -2,7 +2,7 @@
 
 use slump_core::error::Result;
 use slump_core::sim::{Remedies, Simulation, Stepper};
-use slump_core::solver::{FrictionModel, Method, SolverSettings};
+use slump_core::solver::{Method, SolverSettings};
 
 use crate::engine::Engine;
 use crate::pile::Pile;
@@ -10,12 +10,12 @@ use crate::pile::Pile;
 /// A stepper or solver of Slump with its settings.
 #[derive(Clone, Copy, Debug)]
 pub enum Way {
-    /// The paper's scheme with `count` sweeps per step, with or without the remedy `push-out`.
-    Sweeps { count: u32, push_out: bool },
+    /// The paper's scheme with `count` sweeps per step, with or without the remedies `push-out` and `speculative`.
+    Sweeps { count: u32, push_out: bool, speculative: bool },
     /// Every step is solved to tolerance with bounded friction (Tresca), with or without the remedy `push-out`.
     Certified { push_out: bool },
-    /// The stepper `tgs-soft`: soft contacts with substeps.
-    TgsSoft { substeps: u32 },
+    /// The stepper `tgs-soft`: soft contacts with substeps, with or without the remedy `speculative`.
+    TgsSoft { substeps: u32, speculative: bool },
 }
 
 pub struct Slump(Simulation);
@@ -25,17 +25,18 @@ impl Slump {
         let mut scene = pile.scene.clone();
         scene.parameters.time_step_secs = time_step_secs;
         match way {
-            Way::Sweeps { count, push_out } => {
+            Way::Sweeps { count, push_out, speculative } => {
                 // No residual is as small as this tolerance, so all sweeps are taken.
                 scene.solver = SolverSettings::to_residual(Method::Nsgs, f64::MIN_POSITIVE, count);
-                scene.remedies = Remedies { push_out, ..Remedies::default() };
+                scene.remedies = Remedies { push_out, speculative, ..Remedies::default() };
             }
             Way::Certified { push_out } => {
                 scene.solver = SolverSettings::BOUNDED;
                 scene.remedies = Remedies { push_out, ..Remedies::default() };
             }
-            Way::TgsSoft { substeps } => {
+            Way::TgsSoft { substeps, speculative } => {
                 scene.stepper = Stepper::TgsSoft;
+                scene.remedies = Remedies { speculative, ..Remedies::default() };
                 scene.parameters.substeps = substeps;
             }
         }

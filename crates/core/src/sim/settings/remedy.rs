@@ -106,9 +106,8 @@ pub const REMEDIES: [Remedy; 5] = {
         row("push-out", MOREAU, ON),
         row("max-travel", &[Stepper::Moreau, Stepper::Range], Some(Value::Number(ROBUST_TRAVEL))),
         row("sequential-impacts", MOREAU, ON),
-        // Off in the preset `robust`: `max-travel` already handles fast grains, and `speculative` would weaken their
-        // bounces.
-        row("speculative", MOREAU, None),
+        // Off in the preset `robust`: `max-travel` handles fast grains, and this remedy would weaken their bounces.
+        row("speculative", &[Stepper::Moreau, Stepper::TgsSoft], None),
         // Off in the preset `robust`: its touch tolerance already lets bonds turn.
         row("turning-bonds", MOREAU, None),
     ]

@@ -3,7 +3,7 @@
 
 use crate::contact::range::TOUCH_IN_DIAMETERS;
 use crate::sim::remedies;
-use crate::sim::settings::Settings;
+use crate::sim::settings::{Settings, Stepper};
 use crate::sim::state::State;
 use crate::sim::stepping::{Stage, StepResult};
 use crate::sim::touch_tolerance::touch_tolerance;
@@ -30,7 +30,7 @@ pub(super) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
     let tolerance = touch_tolerance(stage.state, settings);
     let touching = touching_within(stage.state, tolerance);
     let rebound = |Approach { velocity, gap, in_touch, restitution }| {
-        if !in_touch {
+        if !in_touch && settings.stepper == Stepper::Moreau {
             // A pair that is not in touch yet may close its gap and a little more. So it touches at the end of the
             // step, and the next step finds the contact.
             return (gap + touch) / parameters.time_step_secs;
@@ -38,8 +38,8 @@ pub(super) fn set_up<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) {
         let restitution = restitution.unwrap_or(parameters.restitution);
         let rebound = Parameters { restitution, ..parameters }
             .restitution_velocity(velocity, gravity_magnitude);
-        if tolerance > 0.0 && gap > touching {
-            // A pair within the touch tolerance that closes its gap within the step bounces as a touching pair does.
+        if !in_touch || tolerance > 0.0 && gap > touching {
+            // A pair that touches only by the tolerance or ahead bounces if it closes its gap within the step.
             let meets = rebound < 0.0 && gap + parameters.time_step_secs * velocity < 0.0;
             return if meets { rebound } else { gap / parameters.time_step_secs };
         }

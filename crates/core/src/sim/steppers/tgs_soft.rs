@@ -1,10 +1,10 @@
 //! Stepper `tgs-soft`: substeps with soft contacts, each followed by a sweep that removes the velocities of overlap
 //! correction, as in game engines (E. Catto, *Soft Constraints*, 2011, and *Solver2D*, 2024).
 //!
-//! All substeps use the contacts found at the beginning of the step; no contacts are added for pairs that may meet
-//! later. Impulses λ are divided by the effective mass m_ij, and σ = λ_n + Bond·a·h is the normal impulse shifted by
-//! the cohesion of a substep of length h (Bond is the Bond number, and a the acceleration in the cohesion force
-//! Bond·m_ij·a). Each substep has five parts:
+//! All substeps use the contacts found at the beginning of the step. Only the remedy `speculative` adds pairs that may
+//! meet later; without cohesion it also makes contacts nearly rigid. Impulses λ are divided by the effective mass m_ij,
+//! and σ = λ_n + Bond·a·h is the normal impulse shifted by the cohesion of a substep of length h (Bond is the Bond
+//! number, and a the acceleration in the cohesion force Bond·m_ij·a). Each substep has five parts:
 //!
 //! 1. Gravity accelerates the grains.
 //! 2. The impulses of the previous substep are applied (warm start).
@@ -31,14 +31,14 @@ use crate::sim::state::State;
 use crate::sim::steppers::substeps::{self, Substepping, Touching, add_work, set_drive_speeds};
 use crate::sim::stepping::{Stage, StepResult};
 use crate::solver::{DrivenRow, DrivenWall, Model, Row, StepProblem};
-use crate::world::{Parameters, World};
+use crate::world::World;
 
 pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -> StepResult {
     let substepping = &mut Substepping::begin_step(stage, settings);
     let substeps = substepping.count;
     let substep_secs = substepping.substep_secs;
     let (world, law) = (&stage.state.world, stage.problem.law);
-    let softness = Softness::new(world, law, substep_secs, &settings.parameters);
+    let softness = Softness::new(world, law, substep_secs, settings);
     let gap_tolerance = stage.state.candidates.gap_tolerance();
     let warm_secs = if settings.solver.warm_start { substep_secs } else { 0.0 };
     let mut contacts = substeps::touching(stage, warm_secs);
@@ -64,8 +64,7 @@ pub(super) fn advance<M: Model>(stage: &mut Stage<'_, M>, settings: &Settings) -
         substepping.add_gravity_work(&problem.bodies.now, &stage.state.world.grains.masses);
         substepping.works.drive_work += take_walls(stage, &mut contacts, walls);
         substeps::end_substep(stage.problem, &mut contacts, substepping);
-        // The contacts have computed the work of walls with the wall's final speed in the substep. Correct it to the
-        // mean speed.
+        // The contacts used the final speed of walls in the substep for the work. Correct it to the mean speed.
         for (row, contact) in stage.problem.rows.fixed.iter().zip(&contacts) {
             if let Some(DrivenRow { by, .. }) = contact.driven {
                 let (wall, along) = (&walls[by.wall as usize], by.part_along(contact.impulse));
@@ -113,8 +112,7 @@ fn restitute<M: Model>(
 }
 
 /// Calls the closure `change` for every contact with the contact's relative velocities (normal and tangential, m/s).
-/// The closure returns impulses divided by the effective mass (m/s), which are then applied to the contact's two
-/// bodies.
+/// The closure returns impulses divided by the effective mass (m/s), which are then applied to the two bodies.
 #[inline(always)]
 fn update<M: Model>(
     problem: &mut StepProblem<M>,
@@ -141,12 +139,14 @@ fn update<M: Model>(
 }
 
 /// Frequency of the contact springs, in units of √(g/d) with gravity g and the mean diameter d: 30 Hz for discs of 1 m,
-/// as in game engines. A higher frequency makes overlaps smaller; it is limited to [`FREQUENCY_PER_SUBSTEP`] times the
-/// number of substeps per second.
+/// as in game engines. A higher frequency makes overlaps smaller. [`FREQUENCY_PER_SUBSTEP`] limits it.
 const FREQUENCY: f64 = 10.0;
 /// Largest product of the frequency ω/2π of the contact springs and the length h of a substep (part of a step). With a
 /// larger value contacts are nearly rigid, and one sweep no longer transmits forces through a pile.
 const FREQUENCY_PER_SUBSTEP: f64 = 0.25;
+/// The same product with the remedy `speculative` and without cohesion. With a smaller value, overlaps are larger.
+/// Without the remedy grains that meet would be thrown apart; with cohesion, bonds that turn would break sooner.
+const RIGID: f64 = 1.0;
 /// Damping ratio ζ of the contact springs, dimensionless; 1 is critical damping. With a smaller value overlap is
 /// removed too fast, and piles jitter.
 const DAMPING_RATIO: f64 = 10.0;
@@ -183,11 +183,13 @@ struct Softness {
 }
 
 impl Softness {
-    fn new(world: &World, law: ContactLaw, substep_secs: f64, parameters: &Parameters) -> Self {
+    fn new(world: &World, law: ContactLaw, substep_secs: f64, settings: &Settings) -> Self {
         let diameter = world.mean_diameter;
-        let g = acceleration_of_springs(world, parameters);
+        let g = acceleration_of_springs(world, &settings.parameters);
         let highest = FREQUENCY_PER_SUBSTEP / substep_secs;
-        let frequency = std::f64::consts::TAU * highest.min(FREQUENCY * (g / diameter).sqrt());
+        let usual = highest.min(FREQUENCY * (g / diameter).sqrt());
+        let is_rigid = settings.remedies.speculative && law.capture_speed() == 0.0;
+        let frequency = if is_rigid { RIGID / substep_secs } else { usual } * std::f64::consts::TAU;
         let damping = 2.0 * DAMPING_RATIO + substep_secs * frequency;
         Self {
             substep_secs,
@@ -198,8 +200,7 @@ impl Softness {
         }
     }
 
-    /// Limits the impulses of the previous substep (part of a step) to the range that the contact law allows now, and
-    /// returns them.
+    /// Limits the impulses of the previous substep to the range that the contact law allows now, and returns them.
     #[inline(always)]
     fn warm_start<M: Model>(&self, contact: &mut Touching) -> [f64; 2] {
         let shifted = law::signorini(contact.impulse[0] + contact.capture_speed);
