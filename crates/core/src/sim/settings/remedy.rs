@@ -65,7 +65,8 @@ settings! {
             ),
         }
         speculative: bool = false, "speculative",
-            "Stop pairs that would meet within a step at gap 0, so that no grain passes another one; bounces get weaker", {
+            "Stop pairs that would meet within a step at gap 0, so that no grain passes another one; under moreau, bounces get \
+                weaker", {
             control: shown(
                 "Look ahead",
                 "Pairs that would meet within a step close their gap and no more: nothing \
