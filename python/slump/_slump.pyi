@@ -64,6 +64,7 @@ class _Settings(TypedDict):
     max_travel: float
     sequential_impacts: bool
     speculative: bool
+    turning_bonds: bool
 
 class _Changes(TypedDict, total=False):
     stepper: Literal["moreau", "range", "tgs-soft", "avbd", "dem"] | None
@@ -93,6 +94,7 @@ class _Changes(TypedDict, total=False):
     max_travel: _Float | None
     sequential_impacts: _Bool | None
     speculative: _Bool | None
+    turning_bonds: _Bool | None
 
 class _Attributes:
     stepper: Literal["moreau", "range", "tgs-soft", "avbd", "dem"]
@@ -122,6 +124,7 @@ class _Attributes:
     max_travel: float
     sequential_impacts: bool
     speculative: bool
+    turning_bonds: bool
 # Settings end.
 
 class _Options(_Changes, total=False):
