@@ -251,7 +251,6 @@ fn measured(argument: &str) -> Result<Vec<String>> {
     let mut scene = pile_of(settle(&pile, |_| true)?, width)?;
     scene.parameters.bond = bond;
     scene.parameters.time_step_secs = 1e-3;
-    scene.parameters.restitution_threshold = 2.0;
     let diameter = scene.mean_diameter;
     let mut simulation = scene.simulation()?;
     let mut all = Vec::new();

@@ -29,9 +29,7 @@ impl ProblemVisitor for Solve {
 }
 
 fn main() -> Result<()> {
-    let mut scene = built_in("pile")?;
-    // Without this threshold many steps have no solution (docs/accuracy-and-cost.md).
-    scene.parameters.restitution_threshold = 2.0;
+    let scene = built_in("pile")?;
     let mut simulation = scene.simulation()?;
     simulation.take_steps(50)?;
     for method in [Method::Nsgs, Method::Newton] {

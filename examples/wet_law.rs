@@ -56,6 +56,7 @@ fn slump(grains: &[Grain], law: Law, contacts: Contacts, time_step_secs: f64) ->
     let mut scene = pile_of(grains.to_vec(), NewPile::default().box_width_in_diameters)?;
     let mut settings = scene.settings().with_bond(contacts.bond).over(time_step_secs);
     settings.parameters.restitution = contacts.restitution;
+    settings.parameters.restitution_threshold = 0.0;
     settings.parameters.debonding_distance = RANGE_IN_DIAMETERS;
     if let Law::Of(stepper) = law {
         settings.stepper = stepper;

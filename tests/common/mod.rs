@@ -28,10 +28,18 @@ pub const SMOOTH: Physics = Physics { axes: 2, friction: false, rotation: false,
 /// Physics of a scene: motion in the plane, with cohesion and friction, without rotation.
 pub const UNTURNING: Physics = Physics { axes: 2, friction: true, rotation: false, cohesion: true };
 
-/// Returns parameters with this Bond number, time step (s), restitution and friction coefficient, and the default
-/// friction cone, which is the shifted cone (friction bounded by the normal force plus the cohesion force).
+/// Returns parameters with this Bond number, time step (s), restitution and friction coefficient, the default
+/// friction cone, which is the shifted cone (friction bounded by the normal force plus the cohesion force), and without
+/// a restitution threshold: exact results then hold at every closing speed.
 pub fn parameters(bond: f64, time_step_secs: f64, restitution: f64, friction: f64) -> Parameters {
-    Parameters { bond, time_step_secs, restitution, friction, ..Parameters::default() }
+    Parameters {
+        bond,
+        time_step_secs,
+        restitution,
+        friction,
+        restitution_threshold: 0.0,
+        ..Parameters::default()
+    }
 }
 
 /// Debonding distance δ_c that [`range`] and [`ranged`] set, in mean diameters.

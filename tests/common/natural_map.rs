@@ -55,8 +55,10 @@ fn wall_velocity(simulation: &Simulation, other: u32) -> (DVec2, f64) {
 pub fn judge(simulation: &Simulation, before: &Grains) -> Vec<Judged> {
     let world = simulation.world();
     let grains = &world.grains;
-    let Parameters { time_step_secs: dt, restitution, touch_tolerance, .. } =
-        *simulation.parameters();
+    let Parameters {
+        time_step_secs: dt, restitution, restitution_threshold, touch_tolerance, ..
+    } = *simulation.parameters();
+    let least_closing = restitution_threshold * dt * world.gravity.magnitude();
     let touching = (0.5 * touch_tolerance).min(ROUNDING) * world.mean_diameter;
     let turning = simulation.physics().rotation;
     let motion = |grains: &Grains| (grains.velocities.clone(), grains.angular_velocities.clone());
@@ -84,7 +86,8 @@ pub fn judge(simulation: &Simulation, before: &Grains) -> Vec<Judged> {
         };
         let normal_mass = 1.0 / normal_mobility;
         let (before, gap) = (relative(&start), contact.gap);
-        let bounce = restitution * before[0];
+        let bounces = before[0].abs() >= least_closing;
+        let bounce = if bounces { restitution * before[0] } else { 0.0 };
         let comes_there = bounce < 0.0 && gap + dt * before[0] < 0.0;
         let rebound = if gap <= touching || comes_there { bounce } else { gap / dt };
         let spin_mobility = if turning { spin_mobility } else { 0.0 };

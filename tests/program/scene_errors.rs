@@ -315,7 +315,8 @@ fn a_scene_file_that_says_the_least_has_all_defaults() {
         duration_secs: 1.0,
         stepper: Stepper::default(),
         solver: SolverSettings::default(),
-        ..under_g(parameters(0.0, 1e-3, 0.1, 0.5), grains)
+        parameters: Parameters { restitution_threshold: 2.0, ..parameters(0.0, 1e-3, 0.1, 0.5) },
+        ..under_g(Parameters::default(), grains)
     };
     assert_eq!(read_text(LEAST).expect("a scene"), expected);
     for left_out in LEAST.lines().filter(|line| line.contains(" = ")) {

@@ -32,6 +32,8 @@ impl Pile {
         let made_as = NewPile { grains, box_width_in_diameters, seed, ..NewPile::default() };
         let mut scene = pile_of(settle(&made_as, |_| true)?, box_width_in_diameters)?;
         scene.parameters.bond = 0.0;
+        // The other engines bounce at every speed, too.
+        scene.parameters.restitution_threshold = 0.0;
         let disc = |position: glam::DVec2, radius| Disc { x: position.x, y: position.y, radius };
         let grains = scene.grains.iter().map(|grain| disc(grain.position, grain.radius)).collect();
         let base = scene.fixed_discs.iter().map(|one| disc(one.position, one.radius)).collect();

@@ -276,9 +276,7 @@ mod tests {
 
     #[test]
     fn tighter_tolerances_come_to_smaller_residuals() {
-        let mut scene = built_in("pile").unwrap();
-        // With this restitution threshold the step has a solution.
-        scene.parameters.restitution_threshold = 2.0;
+        let scene = built_in("pile").unwrap();
         let mut simulation = scene.simulation().unwrap();
         simulation.take_steps(20).unwrap();
         let residual =

@@ -329,7 +329,7 @@ fn discs_that_friction_wedges_press_each_other_no_harder_from_step_to_step() {
         let mut pile = built_in("pile").expect("a scene");
         pile.solver.friction_model = FrictionModel::Tresca;
         (pile.parameters.bond, pile.parameters.friction) = (bond, friction);
-        pile.parameters.restitution = restitution;
+        (pile.parameters.restitution, pile.parameters.restitution_threshold) = (restitution, 0.0);
         let mut run = start(&pile);
         let weight: f64 = run.grains().masses.iter().sum::<f64>() * G;
         let of_step = weight * pile.parameters.time_step_secs;

@@ -74,7 +74,7 @@ fn nothing_depends_on_whether_all_that_is_fixed_goes_past_or_the_onlooker() {
                 let off = difference_of_views(&scene);
                 // If the surface speed were missing in a single step, the distance would be 0.02 d. Under `range` a gap
                 // of up to 1e-4 d counts as a contact, so the gap of a grain at rest can differ by 1e-4 d.
-                let rests = if stepper == Stepper::Range && shape == 3 { 1.1e-4 } else { 1e-5 };
+                let rests = if stepper == Stepper::Range { 1.1e-4 } else { 1e-5 };
                 if off > rests {
                     differences.push((shape, stepper, method, push_out, off));
                 }

@@ -6,9 +6,7 @@ use crate::common::*;
 fn falling_pile(seed: u64) -> Scene {
     let rain = NewPile { grains: 50, box_width_in_diameters: 9.0, seed, ..NewPile::default() };
     let grains = settle(&rain, |_| true).expect("a pile at rest");
-    let mut scene = pile_of(grains, rain.box_width_in_diameters).expect("a pile");
-    scene.parameters.restitution_threshold = 2.0;
-    scene
+    pile_of(grains, rain.box_width_in_diameters).expect("a pile")
 }
 
 fn with(scene: &Scene, method: Method, tolerance: f64) -> Simulation {

@@ -299,6 +299,7 @@ fn unsolved_steps_are_told_what_solves_them() {
     solved(&heavy, "newton");
 
     let mut strict = paper_pile().expect("the shipped state");
+    strict.parameters.restitution_threshold = 0.0;
     let stop = StopTest::Residual;
     strict.solver = SolverSettings { stop, tolerance: 1e-18, ..SolverSettings::default() };
     assert_eq!(limit(&strict), Advice::Tolerance);
@@ -309,6 +310,7 @@ fn unsolved_steps_are_told_what_solves_them() {
     bouncing.physics = UNTURNING;
     bouncing.grains[0].velocity = at(0.0, -1.0);
     (bouncing.parameters.restitution, bouncing.parameters.friction) = (0.9, 2.0);
+    bouncing.parameters.restitution_threshold = 0.0;
     bouncing.solver = solved_by(Method::Nsgs, 1e-8);
     let (alarm, _) = alarm_of(AlarmKind::SweepLimit, &bouncing, 300);
     assert_eq!(alarm.advice, Advice::RestitutionThreshold);

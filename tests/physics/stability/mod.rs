@@ -311,7 +311,6 @@ fn brittle(mut scene: Scene, bond: f64, time_step_secs: f64) -> Scene {
     scene.solver.method = Method::Newton;
     scene.solver.stop = StopTest::Residual;
     scene.solver.tolerance = 1e-6;
-    scene.parameters.restitution_threshold = 2.0;
     scene.parameters.bond = bond;
     scene.parameters.debonding_distance = 1e-4;
     scene.parameters.time_step_secs = time_step_secs;

@@ -49,3 +49,15 @@ fn what_a_kill_left_of_files_goes_once_a_study_is_complete() {
     assert!(left.iter().all(|path| !path.exists()));
     assert_eq!((names_in(&out.join("series")).len(), read(&other).as_str()), (3, "mine"));
 }
+
+#[test]
+fn every_shipped_study_can_be_run() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/studies");
+    let files = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().path());
+    let studies: Vec<PathBuf> =
+        files.filter(|path| path.extension().is_some_and(|it| it == "toml")).collect();
+    assert!(studies.len() > 20, "{studies:?}");
+    for study in studies {
+        succeed(slump("sweep").arg("count").arg(study));
+    }
+}

@@ -217,7 +217,6 @@ fn pile(grains: usize, bond: f64, time_step_secs: f64) -> Scene {
     };
     let mut scene = pile_of(settle(&new, |_| true).expect("a pile"), width).expect("a scene");
     (scene.parameters.bond, scene.parameters.time_step_secs) = (bond, time_step_secs);
-    scene.parameters.restitution_threshold = 2.0;
     scene
 }
 

@@ -113,8 +113,13 @@ fn view_on_line(min: DVec2, max: DVec2) -> Option<View> {
 pub fn collision() -> Scene {
     let radius = 0.5 * LINE_DIAMETER;
     let gravity = Gravity::Uniform { acceleration: DVec2::new(-2.0, 0.0) };
-    let parameters =
-        Parameters { bond: 3.0, restitution: 0.5, touch_tolerance: 0.0, ..Parameters::default() };
+    let parameters = Parameters {
+        bond: 3.0,
+        restitution: 0.5,
+        restitution_threshold: 0.0,
+        touch_tolerance: 0.0,
+        ..Parameters::default()
+    };
     let grain = Grain::at_rest(DVec2::new(2.0 * LINE_DIAMETER, 0.0), radius);
     Scene {
         duration_secs: 1.5,

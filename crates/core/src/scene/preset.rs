@@ -4,13 +4,11 @@ use super::Scene;
 use crate::setting::{Group, words};
 use crate::sim::{REMEDIES, Remedies, Settings};
 use crate::solver::{Method, SolverSettings, StopTest};
+use crate::world::RESTITUTION_THRESHOLD;
 
 /// Touch tolerance (largest gap at which grains touch) of the preset (group of settings) `robust`, in mean diameters.
 /// If the errors of a step open a contact by less than this length, the two grains still touch.
 const TOUCH_TOLERANCE: f64 = 1e-3;
-/// Restitution threshold of the preset (group of settings) `robust`, in units of g·Δt (gravity times time step):
-/// contacts that close slower than this do not bounce. With the value 2 nearly every step has a solution.
-const RESTITUTION_THRESHOLD: f64 = 2.0;
 /// Tolerance of the solver in the preset (group of settings) `robust`: largest residual of a solved step.
 const TOLERANCE: f64 = 1e-8;
 /// Largest number of sweeps of the solver per step in the preset (group of settings) `robust`.
@@ -19,7 +17,8 @@ const MAX_SWEEPS: u32 = 5_000;
 words! {
     /// A group of settings that are set together.
     pub enum Preset {
-        Paper = "paper", "The scheme of the paper's figures: Gauss-Seidel to a relative change of 1e-7, touch tolerance 0";
+        Paper = "paper", "The scheme of the paper's figures: Gauss-Seidel to a relative change of 1e-7, touch \
+            tolerance 0, restitution at every speed";
         Robust = "robust", "Newton's method and remedies together: most hard scenes pass, and the paper's effect of \
             the time step is gone";
     }
@@ -38,6 +37,7 @@ impl Preset {
         match self {
             Self::Paper => {
                 settings.parameters.touch_tolerance = 0.0;
+                settings.parameters.restitution_threshold = 0.0;
                 // A scene with solver settings of its own demonstrates a particular scheme, so these settings stay.
                 if settings.solver == SolverSettings::default() {
                     settings.solver = SolverSettings::PAPER;

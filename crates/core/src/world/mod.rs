@@ -19,7 +19,9 @@ pub use materials::{Material, MaterialPair, materials_of};
 pub(crate) use motion::{Carry, RigidVelocity, direction};
 pub use motion::{Drive, Motion, MotionCourse};
 pub(crate) use parameters::MAX_SUBSTEPS;
-pub use parameters::{DEBONDING_DISTANCE, FrictionCone, ParameterChanges, Parameters};
+pub use parameters::{
+    DEBONDING_DISTANCE, FrictionCone, ParameterChanges, Parameters, RESTITUTION_THRESHOLD,
+};
 pub use periodic::Periodic;
 pub use physics::Physics;
 

@@ -6,7 +6,7 @@ use crate::fracture_work::{fracture_work, with_fracture_work};
 use crate::scene::{Deposition, NewPile, Scene};
 use crate::sim::{Settings, Stepper};
 use crate::solver::{FrictionModel, Method, SolverSettings};
-use crate::world::{FrictionCone, MaterialPair};
+use crate::world::{FrictionCone, MaterialPair, RESTITUTION_THRESHOLD};
 
 /// Group of causes in an error budget: grains, contact law, or numerical method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -113,10 +113,6 @@ const TIGHTER: f64 = 1e-2;
 /// diameters. It is larger than the gaps that remain in closed contacts after a step, and smaller than the roughness of
 /// grains.
 const TOUCH_TOLERANCE: f64 = 1e-3;
-/// Restitution threshold (the approach speed below which contacts do not bounce) that an error budget tries in a scene
-/// without a threshold, in units of g·Δt, the speed that gravity adds in one step. It is small, so that the change only
-/// removes bounces that are too slow to be visible.
-const THRESHOLD: f64 = 2.0;
 
 /// Returns all variants of a scene (the scene with one change) that can be simulated and whose change can have an
 /// effect. `pile` describes the grains of the scene, if they are generated. `resizes` is true if the number of grains
@@ -190,7 +186,10 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
     if bounces && base.stepper.reads("restitution-threshold") {
         let (threshold, label) = match parameters.restitution_threshold > 0.0 {
             true => (0.0, "Restitution at every speed".to_owned()),
-            false => (THRESHOLD, format!("No restitution below {THRESHOLD} g·Δt")),
+            false => (
+                RESTITUTION_THRESHOLD,
+                format!("No restitution below {RESTITUTION_THRESHOLD} g·Δt"),
+            ),
         };
         let settings = by(&|it| it.parameters.restitution_threshold = threshold);
         add(Cause::RestitutionThreshold, &label, 1.0, settings);

@@ -15,7 +15,7 @@ use crate::scene::{Deposition, NewPile, walls};
 use crate::sim::Simulation;
 use crate::solver::{FrictionModel, Method, Ordering, SolverSettings, StopTest};
 use crate::states::States;
-use crate::world::ParameterChanges;
+use crate::world::{ParameterChanges, RESTITUTION_THRESHOLD};
 
 /// Solver settings with which piles are simulated up to the collected steps. The tolerance is so small that the
 /// collected states contain no visible error of the solver, which could favour one of the compared methods.
@@ -105,7 +105,7 @@ impl CollectionPlan {
                 friction_model: FrictionModel::Tresca,
                 ..ADVANCE
             },
-            restitution_threshold: 2.0,
+            restitution_threshold: RESTITUTION_THRESHOLD,
             friction: None,
         }
     }

@@ -14,10 +14,8 @@ use crate::chart::{Axis, Chart, Layer, Look, MapCell, Rgb, Sheet, pareto_front, 
 use crate::error::Result;
 use crate::harness::{Change, Effort, ReportTable, Threads};
 use crate::solver::{FrictionModel, Method, Ordering, SolutionSearch};
+use crate::world::RESTITUTION_THRESHOLD;
 
-/// Restitution threshold (the approach speed below which contacts do not bounce) with which nearly every step has a
-/// solution, in units of g·Δt, the speed that gravity adds in one step.
-const THRESHOLD: f64 = 2.0;
 /// Errors of the velocities, in units of √(g d), with gravity g and mean diameter d. The report says how long each
 /// solver method takes to reach each of these errors.
 const REPORTED: [f64; 3] = [1e-2, 1e-3, 1e-4];
@@ -58,7 +56,7 @@ pub(super) fn make(bench: &Bench) -> Result<Vec<ChartSection>> {
     let limit_secs = effort.pick(0.02, 0.2);
     let mut all = Vec::new();
     for (label, threshold, title) in [
-        ("steps", THRESHOLD, "steps, restitution from 2 g·Δt up"),
+        ("steps", RESTITUTION_THRESHOLD, "steps, restitution from 2 g·Δt up"),
         ("steps-paper", 0.0, "steps, restitution as in the paper"),
     ] {
         all.push(timer.time(

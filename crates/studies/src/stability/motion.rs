@@ -207,6 +207,8 @@ const SMALL_STEP_SECS: f64 = 2e-4;
 /// Number of rows of discs in the heap of two tests: one with a sudden change of the time step, and one in which the
 /// sliders of the graphical window (Bond number, time step, restitution, friction) move at random.
 const ROWS: usize = 4;
+/// Number of random sequences of settings in this test of the sliders.
+const SEQUENCES: u64 = 4;
 /// Half the side length of the box around the heap, in mean diameters d, in the test in which the sliders of the
 /// graphical window (Bond number, time step, restitution, friction) move at random.
 const BOX: f64 = 12.0;
@@ -245,10 +247,16 @@ pub(super) fn time_step_switch(trial: &Trial) -> Result<f64> {
     Ok(unrest(&simulation, &scene))
 }
 
-/// Simulates a heap in a closed box, as if a user moved the window's sliders (Bond number, time step, restitution,
-/// friction) at random and pulled a grain towards a random point. Returns the number of grains that are outside the box
-/// at the end.
+/// Simulates heaps in closed boxes, as if a user moved the window's sliders (Bond number, time step, restitution,
+/// friction) at random and pulled a grain towards a random point. Returns the number of grains that are outside their
+/// box at the end.
+///
+/// One sequence of random settings proves nothing: of 16 sequences, solver `auto` loses grains in 12 within 0.5 s.
 pub(super) fn sliders(trial: &Trial) -> Result<f64> {
+    (1..=SEQUENCES).map(|seed| grains_outside(trial, seed)).sum()
+}
+
+fn grains_outside(trial: &Trial, seed: u64) -> Result<f64> {
     let mut scene = scenes::heap(ROWS);
     scene.solver.max_sweeps = LIVE_SWEEPS;
     let half = BOX * scene.mean_diameter;
@@ -256,7 +264,7 @@ pub(super) fn sliders(trial: &Trial) -> Result<f64> {
     scene.boundaries = [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y].map(wall).into();
     let radius = scene.grains[0].radius;
     let mut simulation = trial.start(scene)?;
-    let mut random = Pcg64::seed_from_u64(3);
+    let mut random = Pcg64::seed_from_u64(seed);
     let mut next_secs = 0.0;
     while simulation.time_secs() < trial.level {
         if simulation.time_secs() >= next_secs {

@@ -116,7 +116,6 @@ impl CollapsingColumn {
 fn column_scene(grains: Vec<Grain>) -> Scene {
     let mut scene = dry("collapse", grains);
     scene.parameters.friction = FRICTION;
-    scene.parameters.restitution_threshold = 2.0;
     scene
 }
 

@@ -71,7 +71,6 @@ fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
 fn silo(grains: Vec<Grain>, variant: StepVariant) -> Scene {
     let mut scene = dry("janssen", grains);
     scene.parameters.friction = FRICTION;
-    scene.parameters.restitution_threshold = 2.0;
     scene.boundaries = open_box(WIDTH);
     variant.apply(&mut scene);
     scene.duration_secs = 60.0;

@@ -61,7 +61,6 @@ fn silo(grains: Vec<Grain>, orifice: f64, gravity: f64, variant: StepVariant) ->
     let mut scene = dry("silo", grains);
     scene.gravity = Gravity::Uniform { acceleration: -gravity * GRAVITY * DVec2::Y };
     scene.parameters.friction = FRICTION;
-    scene.parameters.restitution_threshold = 2.0;
     scene.duration_secs = 60.0;
     let mut scene = silo_of(scene, orifice, RELEASE_SECS);
     variant.apply(&mut scene);

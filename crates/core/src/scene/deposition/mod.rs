@@ -134,6 +134,7 @@ fn in_a_box(
             bond: 0.0,
             time_step_secs,
             touch_tolerance: 0.0,
+            restitution_threshold: 0.0,
             ..pile.parameters
         },
         solver,

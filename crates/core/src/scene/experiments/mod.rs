@@ -37,7 +37,6 @@ fn of_loose_grains(name: &str, places: impl Iterator<Item = DVec2>) -> Scene {
     tone_in_layers(&mut grains, DIAMETER);
     let mut scene = dry(name, grains);
     scene.parameters.restitution = 0.3;
-    scene.parameters.restitution_threshold = 2.0;
     scene.parameters.time_step_secs = 5e-4;
     scene
 }

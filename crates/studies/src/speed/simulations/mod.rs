@@ -32,9 +32,6 @@ use crate::world::ParameterChanges;
 /// Largest number of sweeps per step in the compared simulations. Without this limit, the solver would never stop in a
 /// step that has no solution.
 const MOST_SWEEPS: u32 = 5_000;
-/// Approach speed below which contacts do not bounce, in units of g·Δt, the speed that gravity adds in one step. With
-/// this value nearly every step has a solution.
-const THRESHOLD: f64 = 2.0;
 /// Smallest time step of the reference simulations, s. References with this time step have the smallest error due to
 /// the time step.
 const FINEST_SECS: f64 = 1e-4;
@@ -117,7 +114,6 @@ impl SimulationPlan {
         let parameters = ParameterChanges {
             bond: Some(bond),
             time_step_secs: Some(time_step_secs),
-            restitution_threshold: Some(THRESHOLD),
             ..ParameterChanges::default()
         };
         let source = SceneSource {
