@@ -12,7 +12,6 @@ use super::theme;
 use crate::live::{LiveFrame, LiveStart};
 use crate::scene::Scene;
 use crate::sim::Snapshot;
-use crate::world::MotionCourse;
 
 /// The main quantity of an experiment, such as the angle of the surface in a drum.
 struct ExperimentQuantity {
@@ -105,22 +104,6 @@ pub(super) fn has_quantity(frame: &LiveFrame) -> bool {
 
 fn quantity_of(start: &LiveStart) -> Option<&'static ExperimentQuantity> {
     QUANTITIES.iter().find(|quantity| quantity.scene == start.scene.name)
-}
-
-/// Returns the simulated times at which walls change their velocity, s.
-pub(super) fn events(scene: &Scene) -> Vec<f64> {
-    let mut times: Vec<f64> = Vec::new();
-    for motion in &scene.motions {
-        if let Some(
-            MotionCourse::Table { times_secs, .. } | MotionCourse::AngleTable { times_secs, .. },
-        ) = &motion.course
-        {
-            times.extend(times_secs.iter().filter(|&&at| at > 0.0 && at < scene.duration_secs));
-        }
-    }
-    times.sort_by(f64::total_cmp);
-    times.dedup();
-    times
 }
 
 /// Least simulated time between the two values from which the plot computes a change per second, s. A shorter time
@@ -225,8 +208,5 @@ mod tests {
             // Before the grains of a shear cell touch, there is no stress.
             assert!(value.is_finite() || run.observables().contacts == 0, "{}: {value}", info.name);
         }
-        let collapse =
-            (SCENES.iter().find(|info| info.name == "collapse").unwrap().make)().unwrap();
-        assert_eq!(events(&collapse).len(), 2, "the gates go, and stop");
     }
 }
