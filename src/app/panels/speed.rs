@@ -4,7 +4,7 @@
 use std::sync::OnceLock;
 
 use egui::{Color32, RichText, Ui};
-use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, Points};
+use egui_plot::{Line, LineStyle};
 
 use super::grain::compact;
 use crate::Instant;
@@ -181,13 +181,9 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace
     if curves.is_empty() {
         return;
     }
-    draw(ui, curves, now(run, race));
+    draw(ui, curves);
     legend(ui, curves);
-    let time_secs = race.time_secs;
-    let text = format!(
-        "The step after t = {}, measured here; ◆ is the present solver.",
-        clock_text(time_secs)
-    );
+    let text = format!("The step after t = {}, measured here.", clock_text(race.time_secs));
     ui.label(RichText::new(text).small().weak());
 }
 
@@ -209,22 +205,12 @@ fn measure(ui: &mut Ui, run: &mut WatchedRun, shown: &mut Option<StepRace>) {
     }
 }
 
-/// Returns the point of the present solver on the chart (decimal logarithms of ms per step and residual), if the
-/// displayed state is at the measured step. Its time is the mean computing time per step of the run.
-fn now(run: &WatchedRun, race: &StepRace) -> Option<[f64; 2]> {
-    let world = run.world()?;
-    let row = &world.snapshot.observables;
-    let is_of_step = (row.time_secs - race.time_secs).abs() < 2.0 * row.time_step_secs;
-    let told = is_of_step && world.step_ms > 0.0 && row.residual > 0.0;
-    told.then(|| [world.step_ms.log10(), row.residual.log10()])
-}
-
-fn draw(ui: &mut Ui, curves: &[RaceCurve], now: Option<[f64; 2]>) {
+fn draw(ui: &mut Ui, curves: &[RaceCurve]) {
     let dark = ui.visuals().dark_mode;
     ui.label(RichText::new("residual against ms per step").small());
     let ends = [0, 1].map(|axis| {
         let points = curves.iter().flat_map(|curve| &curve.points);
-        with_room(points.map(|point| point[axis].log10()).chain(now.map(|now| now[axis])), true)
+        with_room(points.map(|point| point[axis].log10()), true)
     });
     with_least(plot_with_axes(ui, "speed and accuracy", HEIGHT, [true; 2], ""), ends)
         .allow_drag(false)
@@ -233,13 +219,8 @@ fn draw(ui: &mut Ui, curves: &[RaceCurve], now: Option<[f64; 2]>) {
             for (index, curve) in curves.iter().enumerate() {
                 let (colour, style, _) = look(index, dark);
                 let points = curve.points.iter().map(|point| point.map(f64::log10));
-                let places: PlotPoints<'_> = points.collect();
-                plot.line(Line::new("", places).color(colour).style(style).width(1.6));
-            }
-            if let Some(place) = now {
-                let ink = if dark { Color32::WHITE } else { Color32::BLACK };
-                let dot = Points::new("now", PlotPoints::new(vec![place]));
-                plot.points(dot.shape(MarkerShape::Diamond).radius(6.0).color(ink));
+                let line = Line::new("", points.collect::<Vec<_>>());
+                plot.line(line.color(colour).style(style).width(1.6));
             }
         });
 }
