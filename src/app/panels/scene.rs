@@ -9,6 +9,7 @@ use super::scene_style::{columns, shared_style};
 use crate::app::context::PanelContext;
 use crate::app::number_text::clock_text;
 use crate::app::painting::{LegendCache, fill, scene_callback};
+use crate::app::settling_progress::view_of;
 use crate::app::theme;
 use crate::app::titles::title_against;
 use crate::app::watched_run::WatchedRun;
@@ -213,7 +214,7 @@ fn show_making(
 ) -> bool {
     let preview = context.run.frame.loading.as_ref().and_then(|it| it.preview.clone());
     let Some(preview) = preview else { return false };
-    let [lower, upper] = preview.view;
+    let [lower, upper] = view_of(&preview);
     // Forces and velocities during a deposition do not belong to the run. The scale bar would change, because the view
     // shrinks while the grains fall.
     let style = Style {
@@ -224,7 +225,7 @@ fn show_making(
         ..style.clone()
     };
     let camera = style.camera(lower, upper, size[0], size[1]);
-    let picture = scene_picture(&preview.snapshot, &style, &camera, size[0], size[1]);
+    let picture = scene_picture(&preview, &style, &camera, size[0], size[1]);
     ui.painter().with_clip_rect(area).add(scene_callback(0, area, picture));
     context.note_control("pile in the making", area);
     true
