@@ -183,7 +183,7 @@ impl Style {
         let margin = text.min(0.05 * f64::from(width.min(height)));
         let bar = if self.scale_bar { SCALE_BAR_EM * text } else { 0.0 };
         let margins = Margins { left: margin, right: margin, top: margin, bottom: margin + bar };
-        Camera::framing_within(min, max, width - self.legend_width(width, height), height, margins)
+        Camera::framing(min, max, width - self.legend_width(width, height), height, margins)
     }
 }
 
