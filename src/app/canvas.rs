@@ -7,7 +7,7 @@ use image::RgbaImage;
 
 use super::painting::{TargetFormat, fill};
 use super::theme;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, check};
 use crate::render::Gpu;
 use crate::render::gpu::{FORMAT, OffscreenTarget, begin_pass};
 
@@ -107,10 +107,9 @@ impl Canvas {
         let [width, height] = size;
         let gpu = &self.gpu;
         let largest = gpu.device.limits().max_texture_dimension_2d;
-        if width == 0 || height == 0 || width.max(height) > largest {
-            let allowed = format!("between 1x1 and {largest}x{largest} pixels on {}", gpu.name);
-            return Err(Error::value("size", format!("{width}x{height}"), allowed));
-        }
+        let is_possible = width.min(height) > 0 && width.max(height) <= largest;
+        let allowed = format!("between 1x1 and {largest}x{largest} pixels on {}", gpu.name);
+        check(is_possible, "size", format!("{width}x{height}"), allowed)?;
         let target = match self.target.take() {
             Some(target) if (target.width, target.height) == (width, height) => target,
             _ => OffscreenTarget::new(gpu, width, height)?,

@@ -14,7 +14,7 @@ use crate::data::{
     DEFAULT_FORMAT, DataSettings, FormatName, Recording, RecordingFolder, RunFacts, Times,
     formats_of,
 };
-use crate::error::{Error, Result};
+use crate::error::{Result, check};
 use crate::headless::recording_sentence;
 use crate::live::WorldRecord;
 use crate::number::millis_text;
@@ -124,15 +124,10 @@ impl DataOrder {
         let [recorded, found] = [[first, last], [from, to]].map(|times| times.map(millis_text));
         let recorded = format!("within the recording, {} to {}", recorded[0], recorded[1]);
         for (name, secs, found) in [("from", from, &found[0]), ("to", to, &found[1])] {
-            if !(first..=last).contains(&secs) {
-                return Err(Error::value(name, found, recorded));
-            }
+            check((first..=last).contains(&secs), name, found, &recorded)?;
         }
-        if to < from {
-            let allowed = format!("{}, the beginning, or later", found[0]);
-            return Err(Error::value("to", &found[1], allowed));
-        }
-        Ok([from, to])
+        let allowed = format!("{}, the beginning, or later", found[0]);
+        check(from <= to, "to", &found[1], allowed).map(|()| [from, to])
     }
 }
 
