@@ -14,7 +14,6 @@ use crate::app::theme;
 use crate::app::watched_run::{TakenRun, WatchedRun};
 use crate::app::work::{Reporter, Work, outcome_of_ended};
 use crate::error::Result;
-use crate::live::WorldFrame;
 use crate::sim::{Settings, Simulation, StepTimes};
 use crate::solver::{METHODS, Method, SolverSettings, StopTest};
 
@@ -41,11 +40,9 @@ struct RaceCurve {
     points: Vec<[f64; 2]>,
 }
 
-/// A comparison of solvers on one step.
+/// The last measurement of a step, and the measurement that is in progress.
+#[derive(Default)]
 pub(super) struct StepRace {
-    /// Simulated time before the measured step, s.
-    time_secs: f64,
-    /// Results of all solvers; empty until all solvers have finished.
     measured: Measured,
     work: Option<Work<Measured>>,
 }
@@ -53,6 +50,8 @@ pub(super) struct StepRace {
 /// Measured computing times: of the next steps by their parts, and of one step by each solver.
 #[derive(Default)]
 struct Measured {
+    /// Simulated time before the measured steps, s.
+    time_secs: f64,
     /// Number of measured steps, and their computing times summed over these steps.
     times: Option<(u32, StepTimes)>,
     /// Results of the solvers; empty for a stepper that uses no solver.
@@ -88,7 +87,7 @@ fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Measured> {
             curves.push(RaceCurve { method: info.name, points });
         }
     }
-    Ok(Measured { times, curves })
+    Ok(Measured { time_secs: simulation.time_secs(), times, curves })
 }
 
 /// Takes the next steps with the present settings. Returns their number and the sum of their computing times. `None` if
@@ -161,20 +160,16 @@ const HEIGHT: f32 = 230.0;
 /// Number of colours of curves. Further curves have the same colours with other line styles.
 const COLOURS: usize = 6;
 
-pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace>) {
-    if let Some(race) = race
-        && let Some(outcome) = outcome_of_ended(&mut race.work)
-    {
+pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut StepRace) {
+    if let Some(outcome) = outcome_of_ended(&mut race.work) {
         race.measured = outcome.unwrap_or_default();
     }
-    match race.as_ref().and_then(|race| race.work.as_ref()) {
-        Some(work) => {
-            work.show(ui, "Measuring", "Stop measuring", "Leaves out the remaining solvers.")
-        }
-        None => measure(ui, run, race),
+    if let Some(work) = &race.work {
+        let hint = "Leaves out the remaining solvers.";
+        return work.show(ui, "Measuring", "Stop measuring", hint);
     }
-    let Some(race) = race.as_ref().filter(|race| race.work.is_none()) else { return };
-    let Measured { times, curves } = &race.measured;
+    measure(ui, run, race);
+    let Measured { time_secs, times, curves } = &race.measured;
     if let Some(times) = times {
         ui.label(told(times));
     }
@@ -183,25 +178,22 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace
     }
     draw(ui, curves);
     legend(ui, curves);
-    let text = format!("The step after t = {}, measured here.", clock_text(race.time_secs));
+    let text = format!("The step after t = {}, measured here.", clock_text(*time_secs));
     ui.label(RichText::new(text).small().weak());
 }
 
 /// Shows the button that starts the measurement of the displayed step with all solvers.
-fn measure(ui: &mut Ui, run: &mut WatchedRun, shown: &mut Option<StepRace>) {
-    let goes_on = |world: &&WorldFrame| world.failure.is_none();
-    let time_secs = run.world().filter(goes_on).map(|world| world.snapshot.observables.time_secs);
-    let button = ui.add_enabled(time_secs.is_some(), egui::Button::new("Measure this step"));
+fn measure(ui: &mut Ui, run: &mut WatchedRun, shown: &mut StepRace) {
+    let goes_on = run.world().is_some_and(|world| world.failure.is_none());
+    let button = ui.add_enabled(goes_on, egui::Button::new("Measure this step"));
     let hint = "Measures the parts of a step. Then each solver solves the visible step, to one tolerance after the \
                 other. This takes some seconds.";
     let button = button.on_hover_text(hint).on_disabled_hover_text("This run cannot continue.");
-    if let Some(time_secs) = time_secs.filter(|_| button.clicked()) {
+    if button.clicked() {
         let taken = run.take(run.selected);
-        let work = Work::start(ui.ctx(), vec![taken], move |mut runs, reporter| {
-            race(runs.pop(), reporter)
-        });
-        let measured = Measured::default();
-        *shown = Some(StepRace { time_secs, measured, work: Some(work) });
+        let work = |mut runs: Vec<_>, reporter: &Reporter| race(runs.pop(), reporter);
+        shown.work = Some(Work::start(ui.ctx(), vec![taken], work));
+        shown.measured = Measured::default();
     }
 }
 
