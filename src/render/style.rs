@@ -14,9 +14,7 @@ const FADING: f32 = 0.62;
 const SCALE_BAR_EM: f64 = 1.6;
 
 /// The quantity that the colour of a grain shows.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, clap::ValueEnum,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum ColourBy {
     /// The grey that the scene gives each grain, as in the paper (Abramian & Staron, 2020).
@@ -44,9 +42,7 @@ impl ColourBy {
 }
 
 /// Colours of the background, and of lines and text.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, clap::ValueEnum,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Theme {
     /// Dark lines and text on white, for print.
