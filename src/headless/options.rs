@@ -275,9 +275,7 @@ impl HeadlessOptions {
         }
         Ok((0..=last as u64).map(|number| number as f64 / fps).collect())
     }
-}
 
-impl HeadlessOptions {
     /// Returns an error if the interval between checkpoints is not positive and finite.
     pub(super) fn check_checkpoints(&self) -> Result<()> {
         self.checkpoint_every.map_or(Ok(()), |secs| {
@@ -302,20 +300,7 @@ impl HeadlessOptions {
             (folder, _) => Ok(folder.map(|folder| (folder, settings))),
         }
     }
-}
 
-/// Returns the texts (scene, settings, command line) that are written into the picture file of one panel of a figure.
-/// The panel shows a built-in scene.
-pub(super) fn texts_of_panel(scene: &Scene, snapshot: &Snapshot) -> Result<Texts> {
-    let settings = scene.settings();
-    let words = Config::of_scene(&scene.name).words(&settings)?;
-    let time_secs = asked_time_secs(snapshot.observables.time_secs);
-    let frames = ["--frames".to_owned(), "frames".to_owned()];
-    let run = Provenance { scene: scene.name.clone(), settings, words };
-    Ok(run.texts(Some(time_secs), &[words_up_to(time_secs), frames.into()].concat()))
-}
-
-impl HeadlessOptions {
     /// Returns the provenance (scene, settings and command-line arguments) of the run that `config` and these options
     /// describe.
     pub(super) fn provenance(&self, config: &Config, scene: &Scene) -> Result<Provenance> {
@@ -400,4 +385,15 @@ impl HeadlessOptions {
         }
         words
     }
+}
+
+/// Returns the texts (scene, settings, command line) that are written into the picture file of one panel of a figure.
+/// The panel shows a built-in scene.
+pub(super) fn texts_of_panel(scene: &Scene, snapshot: &Snapshot) -> Result<Texts> {
+    let settings = scene.settings();
+    let words = Config::of_scene(&scene.name).words(&settings)?;
+    let time_secs = asked_time_secs(snapshot.observables.time_secs);
+    let frames = ["--frames".to_owned(), "frames".to_owned()];
+    let run = Provenance { scene: scene.name.clone(), settings, words };
+    Ok(run.texts(Some(time_secs), &[words_up_to(time_secs), frames.into()].concat()))
 }
