@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::stored_moments::{STORED_BYTES, StoredMoments};
 use super::{Controls, Curve, LiveOptions, LoadingProgress, Tell, WorldHistory};
 use crate::Instant;
-use crate::error::{Error, Result};
+use crate::error::{Result, check};
 use crate::sim::{Edit, Settings, Simulation, Snapshot, Tally};
 
 /// Largest number of earlier runs. If there are more, the oldest run is dropped. A larger number takes more memory.
@@ -439,9 +439,8 @@ impl RunHistory {
             if !goes_on {
                 break;
             }
-            if !tell(LoadingProgress { part, text, preview: None }) {
-                return Err(Error::value("link", "given up", "computed to its end"));
-            }
+            let is_wanted = tell(LoadingProgress { part, text, preview: None });
+            check(is_wanted, "link", "given up", "computed to its end")?;
         }
         let worlds = planned.into_iter().map(|(world, _)| world).collect();
         Ok(Self { present: LiveRun { worlds, ..LiveRun::default() }, ..Self::default() })

@@ -10,7 +10,7 @@ use image::RgbaImage;
 use super::painter::{Painter, PictureArea};
 use super::renderer_choice::GpuKind;
 use super::{Colour, Picture};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, check};
 
 pub(crate) struct Gpu {
     pub device: wgpu::Device,
@@ -195,13 +195,8 @@ impl OffscreenTarget {
         let padded_row_bytes = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let bytes = u64::from(padded_row_bytes) * u64::from(height);
         let largest = gpu.device.limits().max_buffer_size;
-        if bytes > largest {
-            return Err(Error::value(
-                "size",
-                format!("{width}x{height}"),
-                format!("at most {largest} bytes as a picture on {}", gpu.name),
-            ));
-        }
+        let allowed = format!("at most {largest} bytes as a picture on {}", gpu.name);
+        check(bytes <= largest, "size", format!("{width}x{height}"), allowed)?;
         let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("picture"),
