@@ -206,12 +206,15 @@ fn chosen<T>(
 /// A comparison of a column with a number, as part of a filter.
 struct Comparison {
     column: usize,
-    is_true: fn(&f64, &f64) -> bool,
+    is_true: ComparisonTest,
     number: f64,
 }
 
+/// Function that compares the value of a row with the number in a filter.
+type ComparisonTest = fn(&f64, &f64) -> bool;
+
 /// Signs of comparison in a filter and their meaning. Longer signs come first, because "<=" begins with "<".
-const SIGNS: [(&str, fn(&f64, &f64) -> bool); 5] =
+const SIGNS: [(&str, ComparisonTest); 5] =
     [("<=", f64::le), (">=", f64::ge), ("<", f64::lt), (">", f64::gt), ("=", f64::eq)];
 
 /// Reads the text of a filter: comparisons such as `y > 2`, joined by "and". The error message states the wrong
