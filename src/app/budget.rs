@@ -2,7 +2,7 @@
 
 use crate::sim::{Settings, Stepper, Surroundings};
 use crate::solver::{Method, SolverSettings};
-use crate::world::{FrictionCone, Parameters, Periodic};
+use crate::world::{Parameters, Periodic};
 
 /// A preset of the solver's settings with its name.
 #[derive(Clone, Copy, Debug)]
@@ -67,10 +67,8 @@ pub(super) const SOLVED: Budget = Budget {
 /// All presets, in the order of their buttons.
 pub(super) const BUDGETS: [Budget; 3] = [FAST, SOLVED, PAPER];
 
-/// Largest Bond number at which the window says that a longer time step makes a pile more stable, whichever bound on
-/// friction is chosen (`docs/paper.md`, Fig. 5a). At larger Bond numbers it says so only for the compressive cone
-/// (bound without cohesion). In the shifted cone, whose bound also contains cohesion, such piles hardly gain from a
-/// longer step.
+/// Largest Bond number at which the window says that a longer time step makes a pile more stable (`docs/paper.md`, Fig.
+/// 5a).
 const WEAK: f64 = 50.0;
 
 /// Longest fall of a grain from rest in one step that causes no warning, in mean diameters. With a smaller value, the
@@ -102,34 +100,17 @@ const LONG_STEP_SECS: f64 = 5e-3;
 /// because Δt then changes cohesion less (`docs/theory.md`).
 const LARGE_TOLERANCE: f64 = 1e-4;
 
-/// Returns a hint that asks the user to move the slider of Bond or Δt and states the effect; `None` if the effect is
-/// not known for these settings.
+/// Returns a hint that asks the user to move the slider of Δt and states the effect on weakly cohesive grains under the
+/// default law; `None` for other grains and laws.
 pub(super) fn what_to_try(settings: &Settings) -> Option<&'static str> {
-    let parameters = &settings.parameters;
-    if parameters.bond == 0.0 {
-        return Some("At Bond 0 nothing sticks, and Δt hardly matters: drag Bond and see.");
-    }
-    Some(match settings.stepper {
-        Stepper::Moreau if parameters.touch_tolerance > LARGE_TOLERANCE => return None,
-        Stepper::Moreau
-            if parameters.bond <= WEAK && parameters.time_step_secs >= LONG_STEP_SECS =>
-        {
-            "A smaller Δt makes these grains stick less: drag it and see."
-        }
-        Stepper::Moreau if parameters.bond <= WEAK => {
-            "A larger Δt makes these grains stick better: drag it and see."
-        }
-        Stepper::Moreau if parameters.cone == FrictionCone::Shifted => {
-            "Such strong piles hardly gain from a larger Δt, and even lose if steps are unsolved."
-        }
-        Stepper::Moreau => {
-            "With this cone a larger Δt makes strong piles stick better, too: drag it and see."
-        }
-        Stepper::Range => "Under this law Bond means the same at every Δt: drag both and see.",
-        Stepper::Avbd => "Here each step makes a fixed number of iterations: drag Δt and see.",
-        Stepper::TgsSoft | Stepper::Dem => {
-            "Here cohesion is an ordinary force at every Δt: drag Bond and see."
-        }
+    let Parameters { bond, time_step_secs, touch_tolerance, .. } = settings.parameters;
+    let is_weak = bond > 0.0 && bond <= WEAK;
+    let is_known =
+        settings.stepper == Stepper::Moreau && is_weak && touch_tolerance <= LARGE_TOLERANCE;
+    is_known.then_some(if time_step_secs >= LONG_STEP_SECS {
+        "A smaller Δt makes these grains stick less: drag it and see."
+    } else {
+        "A larger Δt makes these grains stick better: drag it and see."
     })
 }
 
@@ -195,27 +176,16 @@ mod tests {
     }
 
     #[test]
-    fn the_hint_says_nothing_of_sticking_where_nothing_sticks_or_the_time_step_does_not_matter() {
-        let mut settings = Settings::default();
-        let mut said = Vec::new();
-        for (stepper, bond) in [
-            (Stepper::Moreau, 0.0),
-            (Stepper::Moreau, 20.0),
-            (Stepper::Moreau, 100.0),
-            (Stepper::Range, 20.0),
-            (Stepper::Dem, 20.0),
-        ] {
-            (settings.stepper, settings.parameters.bond) = (stepper, bond);
-            said.push(what_to_try(&settings).expect("a hint"));
+    fn the_hint_is_of_weakly_cohesive_grains_under_the_default_law() {
+        let weak = Settings::default().with_bond(20.0);
+        let said = |settings: Settings| what_to_try(&settings).unwrap_or_default();
+        assert!(said(weak).contains("larger Δt makes these grains stick"));
+        assert!(said(weak.over(LONG_STEP_SECS)).contains("smaller Δt"));
+        let mut tolerant = weak;
+        tolerant.parameters.touch_tolerance = 0.01;
+        let range = Settings { stepper: Stepper::Range, ..weak };
+        for other in [weak.with_bond(0.0), weak.with_bond(100.0), tolerant, range] {
+            assert_eq!(what_to_try(&other), None);
         }
-        let larger = said.iter().filter(|text| text.contains("larger Δt makes these grains stick"));
-        assert_eq!(larger.count(), 1, "{said:?}");
-        said.dedup();
-        assert_eq!(said.len(), 5);
-        (settings.stepper, settings.parameters.bond) = (Stepper::Moreau, 20.0);
-        let hint = what_to_try(&settings.over(LONG_STEP_SECS)).expect("a hint");
-        assert!(hint.contains("smaller Δt"), "{hint}");
-        settings.parameters.touch_tolerance = 0.01;
-        assert_eq!(what_to_try(&settings), None);
     }
 }

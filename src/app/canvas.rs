@@ -7,9 +7,9 @@ use image::RgbaImage;
 
 use super::painting::{TargetFormat, fill};
 use super::theme;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, check};
 use crate::render::Gpu;
-use crate::render::gpu::{FORMAT, OffscreenTarget};
+use crate::render::gpu::{FORMAT, OffscreenTarget, begin_pass};
 
 /// Renderer of user interfaces, for render targets of one texture format.
 pub(super) struct Screen {
@@ -52,19 +52,7 @@ impl Screen {
         let screen = ScreenDescriptor { size_in_pixels: size, pixels_per_point };
         let mut encoder = device.create_command_encoder(&Default::default());
         let extra = renderer.update_buffers(device, queue, &mut encoder, primitives, &screen);
-        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("window"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            ..wgpu::RenderPassDescriptor::default()
-        });
+        let pass = begin_pass(&mut encoder, view, wgpu::Color::BLACK);
         renderer.render(&mut pass.forget_lifetime(), primitives, &screen);
         then(&mut encoder);
         queue.submit(extra.into_iter().chain([encoder.finish()]));
@@ -119,10 +107,9 @@ impl Canvas {
         let [width, height] = size;
         let gpu = &self.gpu;
         let largest = gpu.device.limits().max_texture_dimension_2d;
-        if width == 0 || height == 0 || width.max(height) > largest {
-            let allowed = format!("between 1x1 and {largest}x{largest} pixels on {}", gpu.name);
-            return Err(Error::value("size", format!("{width}x{height}"), allowed));
-        }
+        let is_possible = width.min(height) > 0 && width.max(height) <= largest;
+        let allowed = format!("between 1x1 and {largest}x{largest} pixels on {}", gpu.name);
+        check(is_possible, "size", format!("{width}x{height}"), allowed)?;
         let target = match self.target.take() {
             Some(target) if (target.width, target.height) == (width, height) => target,
             _ => OffscreenTarget::new(gpu, width, height)?,

@@ -10,6 +10,7 @@ use super::camera::SceneCamera;
 use super::ensemble::Ensemble;
 use super::experiment_plot::ExperimentSeries;
 use super::exports::{Exports, Printers};
+use super::file_names::free_path;
 use super::notice::Notice;
 use super::preferences::Preferences;
 use super::watched_run::WatchedRun;
@@ -68,14 +69,19 @@ impl PanelContext<'_> {
         *self.notice = Some(Notice::new(text, true));
     }
 
-    /// Writes a file on another thread, into the folder that the preferences name. `job` writes the file and returns
-    /// its path.
+    /// Writes the file `stem.ending` on another thread, into the folder that the preferences name. If this file exists
+    /// already, a number is added to its name. `job` writes the file with the given path.
     pub(crate) fn write(
         &mut self,
         context: &egui::Context,
-        job: impl FnOnce(&Path, &mut Printers) -> Result<PathBuf> + MaySend + 'static,
+        stem: String,
+        ending: &'static str,
+        job: impl FnOnce(&Path, &mut Printers) -> Result<()> + MaySend + 'static,
     ) {
-        let job = |folder: &Path, printers: &mut Printers, _: Vec<()>| job(folder, printers);
+        let job = move |folder: &Path, printers: &mut Printers, _: Vec<()>| {
+            let path = free_path(folder, &stem, ending);
+            job(&path, printers).map(|()| path)
+        };
         self.exports.write(context, &self.preferences.folder, Vec::new(), job);
     }
 

@@ -14,12 +14,11 @@ use crate::data::{
     DEFAULT_FORMAT, DataSettings, FormatName, Recording, RecordingFolder, RunFacts, Times,
     formats_of,
 };
-use crate::error::{Error, Result};
+use crate::error::{Result, check};
 use crate::headless::recording_sentence;
-use crate::live::{ControlsChange, HandEdit, WorldRecord};
+use crate::live::WorldRecord;
 use crate::number::millis_text;
-use crate::sim::{Edit, Pull, RunEnding, Simulation};
-use crate::world::Disc;
+use crate::sim::{RunEnding, Simulation};
 
 /// The user's choices for exported recordings (files of the grains and contacts of a run).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -125,15 +124,10 @@ impl DataOrder {
         let [recorded, found] = [[first, last], [from, to]].map(|times| times.map(millis_text));
         let recorded = format!("within the recording, {} to {}", recorded[0], recorded[1]);
         for (name, secs, found) in [("from", from, &found[0]), ("to", to, &found[1])] {
-            if !(first..=last).contains(&secs) {
-                return Err(Error::value(name, found, recorded));
-            }
+            check((first..=last).contains(&secs), name, found, &recorded)?;
         }
-        if to < from {
-            let allowed = format!("{}, the beginning, or later", found[0]);
-            return Err(Error::value("to", &found[1], allowed));
-        }
-        Ok([from, to])
+        let allowed = format!("{}, the beginning, or later", found[0]);
+        check(from <= to, "to", &found[1], allowed).map(|()| [from, to])
     }
 }
 
@@ -149,56 +143,15 @@ fn facts(run: &TakenRun, simulation: &Simulation, until_secs: f64) -> Result<Run
         .iter()
         .map(|change| (change.after_step, change.time_secs, change.controls.settings));
     let mut about = run_facts(&scene, &settings.collect::<Vec<_>>())?;
-    let mut tell = |name: &str, said: String| {
-        if !said.is_empty() {
-            about.facts.push((name.to_owned(), said));
-        }
-    };
+    let mut tell = |name: &str, said: String| about.facts.push((name.to_owned(), said));
     tell("exported", format!("from the window, from step {step} to {until_secs} s"));
     let start = record.start().observables();
     if start.step > 0 {
         tell("restarted_from", format!("step {}, {} s", start.step, start.time_secs));
     }
-    tell("pulled_by_hand", pulls(simulation.pull(), step, &changes).join(", "));
-    tell("changed_by_hand", edits(record.edits()).join(", "));
-    Ok(about)
-}
-
-/// Returns phrases for the description of a run that state which grains the user pulled with the mouse, and in which
-/// steps.
-fn pulls(mut pull: Option<Pull>, first_step: u64, changes: &[&ControlsChange]) -> Vec<String> {
-    let mut told = Vec::new();
-    let mut since = first_step;
-    for change in changes {
-        let next = change.controls.pull;
-        let grain = |pull: Option<Pull>| pull.map(|pull| pull.grain);
-        if grain(next) != grain(pull) {
-            if let Some(Pull { grain, .. }) = pull {
-                told.push(format!("grain {grain} in steps {since} to {}", change.after_step));
-            }
-            since = change.after_step + 1;
-        }
-        pull = next;
+    let pulls = changes.iter().any(|change| change.controls.pull.is_some());
+    if pulls || simulation.pull().is_some() || !record.edits().is_empty() {
+        tell("changed_by_hand", "grains were pulled, added or removed, or walls were moved".into());
     }
-    told.extend(pull.map(|Pull { grain, .. }| format!("grain {grain} from step {since} on")));
-    told
-}
-
-/// Returns phrases for the description of a run that state which grains the user added or removed and which walls the
-/// user moved, and after which steps.
-fn edits(all: &[HandEdit]) -> Vec<String> {
-    let told = |HandEdit { after_step, edit }: &HandEdit| {
-        let told = match edit {
-            Edit::Add(Disc { position, radius }) => {
-                format!("a grain of radius {radius} m added at {}, {} m", position.x, position.y)
-            }
-            Edit::Remove(grain) => format!("grain {grain} removed"),
-            Edit::Draw { boundary, to } => {
-                format!("boundary {boundary} drawn towards {}, {} m", to.x, to.y)
-            }
-            Edit::LetGo => return None,
-        };
-        Some(format!("{told} after step {after_step}"))
-    };
-    all.iter().filter_map(told).collect()
+    Ok(about)
 }

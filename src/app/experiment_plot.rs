@@ -12,7 +12,6 @@ use super::theme;
 use crate::live::{LiveFrame, LiveStart};
 use crate::scene::Scene;
 use crate::sim::Snapshot;
-use crate::world::MotionCourse;
 
 /// The main quantity of an experiment, such as the angle of the surface in a drum.
 struct ExperimentQuantity {
@@ -21,8 +20,6 @@ struct ExperimentQuantity {
     title: &'static str,
     /// Function that returns the value of the quantity, given the scene in its initial state and a snapshot of the run.
     of: fn(&Scene, &Snapshot) -> f64,
-    /// True if the plot shows the change of the quantity per second instead of the quantity itself.
-    is_rate: bool,
 }
 
 const fn quantity(
@@ -30,7 +27,7 @@ const fn quantity(
     title: &'static str,
     of: fn(&Scene, &Snapshot) -> f64,
 ) -> ExperimentQuantity {
-    ExperimentQuantity { scene, title, of, is_rate: false }
+    ExperimentQuantity { scene, title, of }
 }
 
 const QUANTITIES: [ExperimentQuantity; 8] = [
@@ -49,12 +46,9 @@ const QUANTITIES: [ExperimentQuantity; 8] = [
         let before = half_width(scene.grains.iter().map(|grain| grain.position.x));
         half_width(now.grains.iter().map(|grain| grain.position.x)) / before - 1.0
     }),
-    ExperimentQuantity {
-        is_rate: true,
-        ..quantity("silo", "grains per second through the orifice", |_, now| {
-            now.grains.iter().filter(|grain| grain.position.y < 0.0).count() as f64
-        })
-    },
+    quantity("silo", "grains that have left through the orifice", |_, now| {
+        now.grains.iter().filter(|grain| grain.position.y < 0.0).count() as f64
+    }),
     quantity("incline", "mean speed of the grains (mm/s)", |_, now| {
         let speeds = now.grains.iter().map(|grain| grain.velocity.length());
         1e3 * speeds.sum::<f64>() / now.grains.len().max(1) as f64
@@ -107,25 +101,6 @@ fn quantity_of(start: &LiveStart) -> Option<&'static ExperimentQuantity> {
     QUANTITIES.iter().find(|quantity| quantity.scene == start.scene.name)
 }
 
-/// Returns the simulated times at which walls change their velocity, s.
-pub(super) fn events(scene: &Scene) -> Vec<f64> {
-    let mut times: Vec<f64> = Vec::new();
-    for motion in &scene.motions {
-        if let Some(
-            MotionCourse::Table { times_secs, .. } | MotionCourse::AngleTable { times_secs, .. },
-        ) = &motion.course
-        {
-            times.extend(times_secs.iter().filter(|&&at| at > 0.0 && at < scene.duration_secs));
-        }
-    }
-    times.sort_by(f64::total_cmp);
-    times.dedup();
-    times
-}
-
-/// Least simulated time between the two values from which the plot computes a change per second, s. A shorter time
-/// would show the fluctuations between single frames.
-const RATE_SECS: f64 = 0.1;
 /// Largest number of points of a drawn curve. If the window has shown more frames, the curve omits some of them. With a
 /// larger number, drawing takes longer.
 const MOST_POINTS: usize = 2_000;
@@ -162,26 +137,6 @@ impl ExperimentSeries {
         }
     }
 
-    /// Returns the points of a simulation's curve: simulated time, s, and the quantity or its change per second.
-    fn points(&self, start: &LiveStart, world: usize) -> Vec<[f64; 2]> {
-        let Some(values) = self.worlds.get(world) else { return Vec::new() };
-        let values: Vec<[f64; 2]> = values.values().copied().collect();
-        let is_rate = quantity_of(start).is_some_and(|quantity| quantity.is_rate);
-        let point = |&[time_secs, value]: &[f64; 2]| {
-            let before = values.partition_point(|[at, _]| *at <= time_secs - RATE_SECS);
-            match (is_rate, before.checked_sub(1)) {
-                (false, _) => [time_secs, value],
-                (true, None) => [time_secs, f64::NAN],
-                (true, Some(before)) => {
-                    let [then_secs, then] = values[before];
-                    [time_secs, (value - then) / (time_secs - then_secs)]
-                }
-            }
-        };
-        let stride = values.len().div_ceil(MOST_POINTS).max(1);
-        values.iter().step_by(stride).map(point).filter(|[_, value]| value.is_finite()).collect()
-    }
-
     /// Draws the plot of the experiment's main quantity (such as the angle of the surface in a drum) into the remaining
     /// space. Draws nothing if the scene has no such quantity.
     pub(crate) fn draw(&self, ui: &mut Ui, frame: &LiveFrame) {
@@ -191,8 +146,7 @@ impl ExperimentSeries {
             return;
         };
         ui.add(Label::new(RichText::new(quantity.title).small()).truncate());
-        let worlds: Vec<_> =
-            (0..self.worlds.len()).map(|world| self.points(start, world)).collect();
+        let worlds: Vec<Vec<_>> = self.worlds.iter().map(points).collect();
         let values = worlds.iter().flatten().map(|point| point[1]);
         let least = [[0.0, start.scene.duration_secs], with_room(values, false)];
         let height = (ui.available_height() - 2.0).max(40.0);
@@ -206,6 +160,12 @@ impl ExperimentSeries {
             }
         });
     }
+}
+
+/// Returns the points of a simulation's curve: simulated time, s, and the quantity.
+fn points(values: &BTreeMap<u64, [f64; 2]>) -> Vec<[f64; 2]> {
+    let stride = values.len().div_ceil(MOST_POINTS).max(1);
+    values.values().step_by(stride).copied().filter(|[_, value]| value.is_finite()).collect()
 }
 
 #[cfg(test)]
@@ -225,8 +185,5 @@ mod tests {
             // Before the grains of a shear cell touch, there is no stress.
             assert!(value.is_finite() || run.observables().contacts == 0, "{}: {value}", info.name);
         }
-        let collapse =
-            (SCENES.iter().find(|info| info.name == "collapse").unwrap().make)().unwrap();
-        assert_eq!(events(&collapse).len(), 2, "the gates go, and stop");
     }
 }

@@ -9,7 +9,7 @@ use super::number_text::slump_text;
 use super::scene_picture::ScenePicture;
 use super::watched_run::TakenRun;
 use super::work::Reporter;
-use crate::error::{Error, Result};
+use crate::error::{Result, check};
 use crate::film::{Animation, Video};
 use crate::headless::WaitingStates;
 use crate::number::millis_text;
@@ -130,15 +130,10 @@ impl FilmOrder {
         let [from, until] = self.stretch.unwrap_or([first, last]);
         let each = self.speed / self.rate_hz;
         let count = ((until.min(last) - from.max(first)) / each * (1.0 + 1e-12)).floor();
-        if !(0.0..MOST_PICTURES).contains(&count) {
-            let found = format!(
-                "{} at {} pictures per ms",
-                millis_text(until - from),
-                1e-3 * self.rate_hz / self.speed
-            );
-            let allowed = format!("at least one picture and at most {MOST_PICTURES}");
-            return Err(Error::value(self.format.name(), found, allowed));
-        }
+        let rate_per_ms = 1e-3 * self.rate_hz / self.speed;
+        let found = format!("{} at {rate_per_ms} pictures per ms", millis_text(until - from));
+        let allowed = format!("at least one picture and at most {MOST_PICTURES}");
+        check((0.0..MOST_PICTURES).contains(&count), self.format.name(), found, allowed)?;
         Ok((0..=count as u64).map(|number| from.max(first) + number as f64 * each).collect())
     }
 

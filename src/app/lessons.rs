@@ -101,6 +101,19 @@ impl Lesson {
         let grains = parse_discs(GRAINS, "assets/pile_138_seed15.csv".as_ref())?;
         Ok((config.clone(), config.scene_from(grains)?))
     }
+
+    /// Returns the preferences that the lesson sets while it is open.
+    pub(super) fn choices(&self) -> Choices {
+        Choices {
+            quantities: self.plots.iter().map(|name| (*name).to_owned()).collect(),
+            speed: self.speed,
+            full_speed: false,
+            starts_again: self.starts_again,
+            page: self.page,
+            // The lessons on piles are about cohesion.
+            show_forces: self.scene == Config::DEFAULT_SCENE,
+        }
+    }
 }
 
 fn two_time_steps(base: Settings, bond: f64) -> Vec<Settings> {
@@ -265,21 +278,6 @@ pub const LESSONS: [Lesson; 7] = [
 const LESSON_4_BOND: f64 = 8.0;
 /// Time step at the beginning of lesson 2 (a pile at rest), s. The user shortens the time step later.
 const LONG_STEP_SECS: f64 = 5e-3;
-
-impl Lesson {
-    /// Returns the preferences that the lesson sets while it is open.
-    pub(super) fn choices(&self) -> Choices {
-        Choices {
-            quantities: self.plots.iter().map(|name| (*name).to_owned()).collect(),
-            speed: self.speed,
-            full_speed: false,
-            starts_again: self.starts_again,
-            page: self.page,
-            // The lessons on piles are about cohesion.
-            show_forces: self.scene == Config::DEFAULT_SCENE,
-        }
-    }
-}
 
 /// Returns the lesson with the index `at`, or the last lesson if `at` is too large.
 pub(super) fn lesson(at: usize) -> &'static Lesson {

@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 
 use super::watched_run::TakenRun;
 use crate::config::{Config, SceneSource, words_of};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, check};
 use crate::live::WorldPlan;
 use crate::scene::SceneInfo;
 use crate::sim::Settings;
@@ -77,10 +77,9 @@ pub(super) fn link_of(runs: &[TakenRun]) -> Result<(String, bool)> {
     append(&mut query, &unchanged.words(&base)?);
     let mut is_by_hand = false;
     for TakenRun { world, .. } in runs {
-        if world.record.start().observables().step > 0 {
-            let allowed = "one that began with a scene: save a session instead";
-            return Err(Error::value("run", "continued from a saved run", allowed));
-        }
+        let allowed = "one that began with a scene: save a session instead";
+        let is_from_scene = world.record.start().observables().step == 0;
+        check(is_from_scene, "run", "continued from a saved run", allowed)?;
         let now = &world.simulation;
         let steps = now.observables().step;
         let mut before = base;
@@ -120,10 +119,8 @@ impl RunLink {
             let step: u64 = value.parse().map_err(|_| {
                 Error::value(format!("link: {name}"), &value, "the number of a step")
             })?;
-            if step < after {
-                let allowed = format!("at least {after}, the step before it in the link");
-                return Err(Error::value(format!("link: {name}"), step, allowed));
-            }
+            let allowed = format!("at least {after}, the step before it in the link");
+            check(step >= after, format!("link: {name}"), step, allowed)?;
             let config =
                 Config::of_options(options.iter().map(|(name, value)| (&**name, &**value)))?;
             options.clear();

@@ -133,6 +133,21 @@ impl Preferences {
     pub(crate) fn pace(&self) -> Pace {
         if self.full_speed { Pace::Max } else { Pace::RealTime(self.speed) }
     }
+
+    /// Begins the lesson with the index `at`, and sets the preferences that the lesson needs.
+    pub(super) fn begin_lesson(&mut self, at: usize, choices: Choices) {
+        let replaced = choices.swap(self);
+        let before = self.lesson.before.take().unwrap_or(replaced);
+        let predictions = std::mem::take(&mut self.lesson.predictions);
+        self.lesson = LessonPlace { at, on: true, predictions, before: Some(before) };
+    }
+
+    /// Restores the choices that the user had before the lessons.
+    pub(super) fn put_lesson_away(&mut self) {
+        if let Some(before) = self.lesson.before.take() {
+            before.swap(self);
+        }
+    }
 }
 
 /// A user's progress in the lessons.
@@ -177,23 +192,6 @@ impl Choices {
             starts_again: std::mem::replace(&mut preferences.starts_again, self.starts_again),
             page: std::mem::replace(&mut preferences.page, self.page),
             show_forces: std::mem::replace(&mut preferences.style.show_forces, self.show_forces),
-        }
-    }
-}
-
-impl Preferences {
-    /// Begins the lesson with the index `at`, and sets the preferences that the lesson needs.
-    pub(super) fn begin_lesson(&mut self, at: usize, choices: Choices) {
-        let replaced = choices.swap(self);
-        let before = self.lesson.before.take().unwrap_or(replaced);
-        let predictions = std::mem::take(&mut self.lesson.predictions);
-        self.lesson = LessonPlace { at, on: true, predictions, before: Some(before) };
-    }
-
-    /// Restores the choices that the user had before the lessons.
-    pub(super) fn put_lesson_away(&mut self) {
-        if let Some(before) = self.lesson.before.take() {
-            before.swap(self);
         }
     }
 }

@@ -20,7 +20,7 @@ use crate::output::{Seal, write_file};
 /// First bytes of a session file, by which the program recognises such a file.
 const SEAL: Seal = Seal {
     magic: "slump-session ",
-    format: 9,
+    format: 10,
     what: "session",
     of: "",
     form: "a session that the window saved",

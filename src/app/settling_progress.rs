@@ -6,7 +6,7 @@ use std::time::Duration;
 use glam::DVec2;
 
 use crate::Instant;
-use crate::live::{LoadingProgress, Preview};
+use crate::live::LoadingProgress;
 use crate::scene::Settling;
 use crate::sim::{GrainView, Snapshot};
 
@@ -24,7 +24,7 @@ const PART_THAT_TELLS: f64 = 0.05;
 pub(super) struct SettlingProgress {
     begun: Instant,
     looked: Option<Instant>,
-    preview: Option<Preview>,
+    preview: Option<Arc<Snapshot>>,
     part: f64,
 }
 
@@ -38,9 +38,7 @@ impl SettlingProgress {
     pub(super) fn look(&mut self, settling: &Settling<'_>) -> LoadingProgress {
         if self.looked.is_none_or(|at| at.elapsed() >= INTERVAL) {
             self.looked = Some(Instant::now());
-            let snapshot = settling.simulation.snapshot();
-            let view = view_of(&snapshot);
-            self.preview = Some(Preview { snapshot: Arc::new(snapshot), view });
+            self.preview = Some(Arc::new(settling.simulation.snapshot()));
         }
         self.part = self.part.max(settled_part(settling));
         let grains = settling.simulation.world().grains.len();
@@ -84,7 +82,7 @@ pub(super) fn settled_part(settling: &Settling) -> f64 {
 
 /// Returns the lower left and upper right corner of the area with all grains and the base at y = 0, m. The area becomes
 /// smaller as the grains fall.
-fn view_of(snapshot: &Snapshot) -> [DVec2; 2] {
+pub(super) fn view_of(snapshot: &Snapshot) -> [DVec2; 2] {
     let diameter = snapshot.surroundings.mean_diameter;
     let ends = |side: DVec2| {
         let end = |grain: &GrainView| side * grain.position + DVec2::splat(grain.radius);
@@ -110,10 +108,10 @@ mod tests {
             making.looked = None;
             let told = making.look(&settling);
             let preview = told.preview.expect("something to see");
-            assert_eq!(preview.snapshot.grains.len(), 40);
+            assert_eq!(preview.grains.len(), 40);
             parts.push(told.part);
-            tops.push(preview.view[1].y);
-            diameter = preview.snapshot.surroundings.mean_diameter;
+            tops.push(view_of(&preview)[1].y);
+            diameter = preview.surroundings.mean_diameter;
             let said = if settling.rains { "Raining a new pile of 40" } else { "A new pile of 40" };
             assert!(told.text.starts_with(said), "{}", told.text);
             true

@@ -177,7 +177,8 @@ impl WatchedRun {
 
     /// Returns to the run that the user left with Undo.
     pub(crate) fn redo(&mut self) {
-        self.go_to(self.redo_target().map(|run| run.number));
+        let undone = self.frame.past.iter().find(|run| run.is_undone);
+        self.go_to(undone.map(|run| run.number));
     }
 
     fn go_to(&mut self, number: Option<u64>) {
@@ -190,11 +191,6 @@ impl WatchedRun {
     /// The run to which Undo goes back.
     fn undo_target(&self) -> Option<&PastRun> {
         self.frame.past.iter().rfind(|run| !run.is_undone)
-    }
-
-    /// The run to which Redo returns.
-    fn redo_target(&self) -> Option<&PastRun> {
-        self.frame.past.iter().find(|run| run.is_undone)
     }
 
     /// Changes the settings of a simulation.

@@ -14,7 +14,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 #[cfg(feature = "window")]
 use crate::app::WindowOptions;
 use crate::config::{Config, parser_of, refusal_of, scene_to_toml, write_discs};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, check};
 use crate::headless::{HeadlessOptions, settled};
 use crate::interchange::{
     FoundSolution, MOST_STARTS, ProblemFile, Solution, problem_file_at, solutions_of_file,
@@ -174,7 +174,7 @@ fn check_stack() -> Result<()> {
     if let Some(bytes) = rustix::process::getrlimit(rustix::process::Resource::Stack).current {
         let [found, least] = [bytes, LEAST_STACK_BYTES].map(|bytes| bytes >> 10);
         let allowed = format!("at least {least}, as `ulimit -s {least}` makes it");
-        crate::error::check(found >= least, "the limit on the stack in KiB", found, allowed)?;
+        check(found >= least, "the limit on the stack in KiB", found, allowed)?;
     }
     Ok(())
 }
@@ -397,10 +397,9 @@ impl ProblemCommand {
             } => {
                 if let Some(out) = &out {
                     let place = resolved(out)?;
-                    if place.is_some() && place == resolved(&file)? {
-                        let allowed = "another file than that of the problem";
-                        return Err(Error::value("out", out.display(), allowed));
-                    }
+                    let is_another = place.is_none() || place != resolved(&file)?;
+                    let allowed = "another file than that of the problem";
+                    check(is_another, "out", out.display(), allowed)?;
                     check_new_file("out", out, overwrite)?;
                 }
                 let mut problem = ProblemFile::read(&file)?;

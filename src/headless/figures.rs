@@ -190,7 +190,6 @@ impl FigureWriter<'_> {
             format!("Δy_{{G}} = {:.3}", panel.run.snapshots[0].observables.slump)
         };
         figure.panel_titles = panels.iter().map(title).collect();
-        figure.titles_inside = true;
         figure.caption = format!(
             "The pile at t = {} s, from one initial state; Δy_{{G}} is the slump.",
             run.paper.scene.duration_secs
@@ -250,7 +249,7 @@ impl FigureWriter<'_> {
         let mut texts = Texts::default();
         texts.add("Command line", "slump --headless --frames figures");
         let shows = panels.iter().map(FigurePanel::moment).collect();
-        self.write(file, &figure.draw()?, shows, &texts)
+        self.write(file, &figure.draw(), shows, &texts)
     }
 
     fn write(

@@ -7,7 +7,7 @@ use clap::ValueEnum;
 
 use crate::config::{Config, Provenance, asked_time_secs, parser_of, words_of, words_up_to};
 use crate::data::{DataSettings, FormatName};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, check};
 use crate::film::{VIDEO_RATES_HZ, VIDEO_SIDES, check_ending, check_ffmpeg};
 use crate::output::Texts;
 use crate::render::{ColourBy, RendererChoice, Style, Theme};
@@ -160,11 +160,9 @@ impl HeadlessOptions {
         if self.draws() {
             return Ok(());
         }
-        if self.save.is_none() && data.is_none() {
-            let allowed = "a folder (--frames out/), or give --gif FILE, --video FILE, --data DIR or \
-                           --save FILE";
-            return Err(Error::value("frames", "missing", allowed));
-        }
+        let allowed =
+            "a folder (--frames out/), or give --gif FILE, --video FILE, --data DIR or --save FILE";
+        check(self.save.is_some() || data.is_some(), "frames", "missing", allowed)?;
         let has_times = data.is_some_and(|data| data.every_secs.is_none());
         let given = [
             ("size", self.size.is_some()),
@@ -173,11 +171,8 @@ impl HeadlessOptions {
             ("colour", self.colour.is_some()),
             ("theme", self.theme.is_some()),
         ];
-        if let Some((option, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
-            let allowed = "left out, since no pictures are asked for (--frames, --gif or --video)";
-            return Err(Error::value(option, "given", allowed));
-        }
-        Ok(())
+        let allowed = "left out, since no pictures are asked for (--frames, --gif or --video)";
+        given.into_iter().try_for_each(|(option, is)| check(!is, option, "given", allowed))
     }
 
     /// Path of the GIF or video; `None` if the options name no such file.
@@ -199,13 +194,10 @@ impl HeadlessOptions {
             ..Style::default()
         };
         if let Some(force) = self.force_scale {
-            if !style.show_forces {
-                let allowed = "left out where --show forces is not given";
-                return Err(Error::value("force-scale", force, allowed));
-            }
-            if !(force > 0.0 && force.is_finite()) {
-                return Err(Error::value("force-scale", force, "a finite force > 0 N"));
-            }
+            let allowed = "left out where --show forces is not given";
+            check(style.show_forces, "force-scale", force, allowed)?;
+            let is_sound = force > 0.0 && force.is_finite();
+            check(is_sound, "force-scale", force, "a finite force > 0 N")?;
         }
         let range = match self.colour_scale[..] {
             [] => None,
@@ -216,10 +208,8 @@ impl HeadlessOptions {
                 return Err(Error::value("colour-scale", found.join(","), allowed));
             }
         };
-        if range.is_some() && !style.colour_by.has_scale() {
-            let allowed = "left out where --colour is not speed, overlap or force";
-            return Err(Error::value("colour-scale", "given", allowed));
-        }
+        let allowed = "left out where --colour is not speed, overlap or force";
+        check(range.is_none() || style.colour_by.has_scale(), "colour-scale", "given", allowed)?;
         Ok(Style { range, ..style })
     }
 
@@ -231,13 +221,10 @@ impl HeadlessOptions {
     /// Simulated seconds per second of video; 1 if the option is missing.
     fn video_speed(&self) -> Result<f64> {
         let Some(speed) = self.video_speed else { return Ok(1.0) };
-        if self.video.is_none() {
-            return Err(Error::value("video-speed", speed, "left out where --video is not given"));
-        }
-        if speed > 0.0 && speed.is_finite() {
-            return Ok(speed);
-        }
-        Err(Error::value("video-speed", speed, "a finite number > 0"))
+        let allowed = "left out where --video is not given";
+        check(self.video.is_some(), "video-speed", speed, allowed)?;
+        let is_sound = speed > 0.0 && speed.is_finite();
+        check(is_sound, "video-speed", speed, "a finite number > 0").map(|()| speed)
     }
 
     pub(super) fn video_rate_hz(&self) -> Result<f64> {
@@ -246,21 +233,18 @@ impl HeadlessOptions {
             let PictureSize { width, height } = self.size()?;
             let [least, most] = VIDEO_SIDES;
             let is_side = |side: u32| side.is_multiple_of(2) && (least..=most).contains(&side);
-            if !is_side(width) || !is_side(height) {
-                let allowed =
-                    format!("even and from {least} to {most} pixels on both sides for a video");
-                return Err(Error::value("size", format!("{width}x{height}"), allowed));
-            }
+            let allowed =
+                format!("even and from {least} to {most} pixels on both sides for a video");
+            let is_sound = is_side(width) && is_side(height);
+            check(is_sound, "size", format!("{width}x{height}"), allowed)?;
         }
         let speed = self.video_speed()?;
         let rate_hz = self.pictures_per_sec()? * speed;
         let [least, most] = VIDEO_RATES_HZ;
         let Some(path) = &self.video else { return Ok(rate_hz) };
-        if !(least..=most).contains(&rate_hz) {
-            let found = format!("{} at --video-speed {speed}", self.pictures_per_sec()?);
-            let allowed = format!("such that a second of the video has {least} to {most} pictures");
-            return Err(Error::value("fps", found, allowed));
-        }
+        let found = format!("{} at --video-speed {speed}", self.pictures_per_sec()?);
+        let allowed = format!("such that a second of the video has {least} to {most} pictures");
+        check((least..=most).contains(&rate_hz), "fps", found, allowed)?;
         check_ffmpeg(path.display()).map(|()| rate_hz)
     }
 
@@ -268,9 +252,8 @@ impl HeadlessOptions {
     pub(crate) fn picture_times(&self, duration_secs: f64) -> Result<Vec<f64>> {
         if !self.times.is_empty() {
             let allowed = format!("between 0 and the duration of {duration_secs} s");
-            let outside = |time: &&f64| !(0.0..=duration_secs).contains(*time);
-            if let Some(time) = self.times.iter().find(outside) {
-                return Err(Error::value("times", time, allowed));
+            for time in &self.times {
+                check((0.0..=duration_secs).contains(time), "times", time, &allowed)?;
             }
             let mut times = self.times.clone();
             times.sort_by(f64::total_cmp);
@@ -292,17 +275,13 @@ impl HeadlessOptions {
         }
         Ok((0..=last as u64).map(|number| number as f64 / fps).collect())
     }
-}
 
-impl HeadlessOptions {
     /// Returns an error if the interval between checkpoints is not positive and finite.
     pub(super) fn check_checkpoints(&self) -> Result<()> {
-        match self.checkpoint_every {
-            Some(secs) if !(secs > 0.0 && secs.is_finite()) => {
-                Err(Error::value("checkpoint-every", secs, "a finite number of seconds > 0"))
-            }
-            _ => Ok(()),
-        }
+        self.checkpoint_every.map_or(Ok(()), |secs| {
+            let is_sound = secs > 0.0 && secs.is_finite();
+            check(is_sound, "checkpoint-every", secs, "a finite number of seconds > 0")
+        })
     }
 
     /// Returns the folder and settings of the recording of grains and contacts; `None` if neither the options nor the
@@ -321,20 +300,7 @@ impl HeadlessOptions {
             (folder, _) => Ok(folder.map(|folder| (folder, settings))),
         }
     }
-}
 
-/// Returns the texts (scene, settings, command line) that are written into the picture file of one panel of a figure.
-/// The panel shows a built-in scene.
-pub(super) fn texts_of_panel(scene: &Scene, snapshot: &Snapshot) -> Result<Texts> {
-    let settings = scene.settings();
-    let words = Config::of_scene(&scene.name).words(&settings)?;
-    let time_secs = asked_time_secs(snapshot.observables.time_secs);
-    let frames = ["--frames".to_owned(), "frames".to_owned()];
-    let run = Provenance { scene: scene.name.clone(), settings, words };
-    Ok(run.texts(Some(time_secs), &[words_up_to(time_secs), frames.into()].concat()))
-}
-
-impl HeadlessOptions {
     /// Returns the provenance (scene, settings and command-line arguments) of the run that `config` and these options
     /// describe.
     pub(super) fn provenance(&self, config: &Config, scene: &Scene) -> Result<Provenance> {
@@ -419,4 +385,15 @@ impl HeadlessOptions {
         }
         words
     }
+}
+
+/// Returns the texts (scene, settings, command line) that are written into the picture file of one panel of a figure.
+/// The panel shows a built-in scene.
+pub(super) fn texts_of_panel(scene: &Scene, snapshot: &Snapshot) -> Result<Texts> {
+    let settings = scene.settings();
+    let words = Config::of_scene(&scene.name).words(&settings)?;
+    let time_secs = asked_time_secs(snapshot.observables.time_secs);
+    let frames = ["--frames".to_owned(), "frames".to_owned()];
+    let run = Provenance { scene: scene.name.clone(), settings, words };
+    Ok(run.texts(Some(time_secs), &[words_up_to(time_secs), frames.into()].concat()))
 }

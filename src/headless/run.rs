@@ -55,7 +55,11 @@ pub(super) fn draw(
         }
         _ => Vec::new(),
     };
-    let claim = |data| RecordingPlan::claim(data, options.overwrite, found.is_some());
+    let claim = |(folder, settings): (PathBuf, DataSettings)| -> Result<RecordingPlan> {
+        // A resumed run continues its own recording, so it claims no folder.
+        let of_new = found.is_none().then(|| RecordingFolder::of(&folder, options.overwrite));
+        Ok(RecordingPlan { claim: of_new.transpose()?, folder, settings })
+    };
     let recording = data.map(claim).transpose()?;
     let begun = match found {
         Some(found) => found,
@@ -67,7 +71,9 @@ pub(super) fn draw(
     let goes_on = !begun.marks.went_on_at.is_empty();
     if let (true, Some(plan)) = (goes_on, &recording) {
         // This check comes before any output is cut off, so that a refused run keeps all its files.
-        plan.check(begun.state.simulation.observables().step, &begun.marks.recording)?;
+        let step = begun.state.simulation.observables().step;
+        let formats = formats_of(&plan.settings)?;
+        Recording::check(&plan.folder, &formats, step, &begun.marks.recording)?;
     }
     if let Some(folder) = &folder {
         if goes_on {
@@ -293,30 +299,6 @@ pub(super) struct RecordingPlan {
 }
 
 impl RecordingPlan {
-    /// Locks the folder of the recording (files of grains and contacts), so that no other run writes into it. If
-    /// `goes_on` is true, a resumed run continues its own recording and needs no lock.
-    ///
-    /// # Errors
-    /// States why the folder cannot be used.
-    pub(super) fn claim(
-        (folder, settings): (PathBuf, DataSettings),
-        overwrite: bool,
-        goes_on: bool,
-    ) -> Result<Self> {
-        let claim = (!goes_on).then(|| RecordingFolder::of(&folder, overwrite)).transpose()?;
-        Ok(Self { claim, folder, settings })
-    }
-
-    /// Checks that the files of the recording (of grains and contacts) that a resumed run continues still have all
-    /// their data up to step number `step`, the step of the checkpoint. `mark` has the numbers of recorded states
-    /// (frames) and table rows at this step.
-    ///
-    /// # Errors
-    /// Names the file that is missing or has lost data.
-    fn check(&self, step: u64, mark: &RecordingMark) -> Result<()> {
-        Recording::check(&self.folder, &formats_of(&self.settings)?, step, mark)
-    }
-
     /// Starts the recording (files of grains and contacts) at the present state of a run, or continues an existing
     /// recording after the numbers of recorded states (frames) and table rows in `mark`.
     ///

@@ -59,8 +59,6 @@ pub enum Command {
     /// Return to the run with this number, at the simulated time at which the user left that run, and pause. The run is
     /// an earlier run, or a run from which the user went back to an earlier run. The present run is kept.
     Return(u64),
-    /// Give this name to the run of this number, or to the present run if the number is `None`.
-    Name(Option<u64>, String),
     /// Go to the recorded state nearest to this simulated time, s, and pause.
     Seek(f64),
     /// Pass the history of the simulation with this index to the callback.

@@ -235,7 +235,6 @@ impl Engine {
             },
             Command::Seek(time_secs) => self.seek(time_secs, false),
             Command::SetPace(pace) => self.set_pace(pace),
-            Command::Name(number, name) => self.history.name(number, name),
             Command::Take(world, taker) => {
                 if let (Some(world), Some(start)) =
                     (self.history.present.worlds.get(world), &self.start)
@@ -464,7 +463,6 @@ impl Engine {
             loads: self.loads,
             start: self.start.clone(),
             worlds: worlds.collect(),
-            name: run.name.clone(),
             past: self.history.told(),
             ghosts: self.history.ghosts(shown_secs.unwrap_or_else(|| run.time_secs())),
             playing: self.mode.plays(),

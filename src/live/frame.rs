@@ -26,8 +26,6 @@ pub struct LiveFrame {
     pub start: Option<Arc<LiveStart>>,
     /// The worlds (simulations side by side). There is one world, unless the user compares several settings.
     pub worlds: Vec<WorldFrame>,
-    /// The user's name for the present run; may be empty.
-    pub name: String,
     /// Summaries of the earlier runs, the newest last, followed by the undone runs (from which the user went back),
     /// starting with the next one to redo.
     pub past: Arc<[PastRun]>,

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::stored_moments::{STORED_BYTES, StoredMoments};
 use super::{Controls, Curve, LiveOptions, LoadingProgress, Tell, WorldHistory};
 use crate::Instant;
-use crate::error::{Error, Result};
+use crate::error::{Result, check};
 use crate::sim::{Edit, Settings, Simulation, Snapshot, Tally};
 
 /// Largest number of earlier runs. If there are more, the oldest run is dropped. A larger number takes more memory.
@@ -41,8 +41,6 @@ const STEPS_AT_ONCE: u64 = 8;
 pub(super) struct LiveRun {
     #[serde(rename = "tracks")]
     pub worlds: Vec<WorldHistory>,
-    /// The user's name for the run; may be empty.
-    pub name: String,
     /// Number by which the window selects an earlier run.
     #[serde(skip)]
     number: u64,
@@ -182,8 +180,6 @@ fn return_freed_memory() {
 pub struct PastRun {
     /// Number by which the window selects the run ([`Command::Return`](super::Command::Return)).
     pub number: u64,
-    /// The user's name for the run; may be empty.
-    pub name: String,
     /// True if the user went back from this run to an earlier run, so that this run can be redone.
     pub is_undone: bool,
     /// Simulated time of the last recorded step of the run, s.
@@ -210,7 +206,6 @@ impl PastRun {
         let ends = run.worlds.iter().map(|world| world.record.end_secs());
         Self {
             number: run.number,
-            name: run.name.clone(),
             is_undone,
             recorded_secs: ends.fold(0.0, f64::max),
             worlds: run.worlds.iter().map(of_world).collect(),
@@ -333,10 +328,9 @@ impl RunHistory {
         Ok(())
     }
 
-    /// Makes `before`, the run before a change, an earlier run. The present run becomes a new run without a name.
+    /// Makes `before`, the run before a change, an earlier run. The present run becomes a new run.
     fn keep_copy(&mut self, before: LiveRun) {
         self.keep(before);
-        self.present.name.clear();
         self.present.number = 0;
     }
 
@@ -389,19 +383,6 @@ impl RunHistory {
             || (self.past.len() > NEWEST && bytes > self.recording_bytes)
         {
             bytes -= self.past.remove(0).bytes();
-        }
-    }
-
-    /// Gives a name to the run with this number, or to the present run if the number is `None`.
-    pub(super) fn name(&mut self, number: Option<u64>, name: String) {
-        match number {
-            None => self.present.name = name,
-            Some(number) => {
-                let mut runs = self.past.iter_mut().chain(&mut self.undone);
-                let run = runs.find(|run| run.number == number);
-                run.into_iter().for_each(|run| run.name.clone_from(&name));
-                self.tell();
-            }
         }
     }
 
@@ -458,9 +439,8 @@ impl RunHistory {
             if !goes_on {
                 break;
             }
-            if !tell(LoadingProgress { part, text, preview: None }) {
-                return Err(Error::value("link", "given up", "computed to its end"));
-            }
+            let is_wanted = tell(LoadingProgress { part, text, preview: None });
+            check(is_wanted, "link", "given up", "computed to its end")?;
         }
         let worlds = planned.into_iter().map(|(world, _)| world).collect();
         Ok(Self { present: LiveRun { worlds, ..LiveRun::default() }, ..Self::default() })

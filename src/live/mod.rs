@@ -29,7 +29,7 @@ pub use curve::Curve;
 pub use frame::{LiveFrame, WorldAlarm, WorldFrame};
 pub use handle::Live;
 pub use history::{PastRun, PastWorld, RunHistory, WorldPlan};
-pub use loading::{LoadingProgress, Preview, Tell};
+pub use loading::{LoadingProgress, Tell};
 pub use message::to_bytes;
 pub use options::LiveOptions;
 pub use record::{Controls, ControlsChange, HandEdit, WorldRecord};

@@ -28,15 +28,9 @@ pub(super) struct Margins {
 }
 
 impl Camera {
-    /// Returns the camera that shows the box from `min` to `max` (m) as large as possible, with at least `margin_px`
-    /// free pixels on each side of a picture of `width` × `height` pixels.
-    pub fn framing(min: DVec2, max: DVec2, width: u32, height: u32, margin_px: f64) -> Self {
-        let margins =
-            Margins { left: margin_px, right: margin_px, top: margin_px, bottom: margin_px };
-        Self::framing_within(min, max, width, height, margins)
-    }
-
-    pub(super) fn framing_within(
+    /// Returns the camera that shows the box from `min` to `max` (m) as large as possible within the margins of a
+    /// picture of `width` × `height` pixels.
+    pub(super) fn framing(
         min: DVec2,
         max: DVec2,
         width: u32,
@@ -113,7 +107,9 @@ mod tests {
 
     #[test]
     fn framing_fills_the_tighter_direction_and_centres_the_other() {
-        let camera = Camera::framing(DVec2::new(1.0, 2.0), DVec2::new(5.0, 3.0), 440, 300, 20.0);
+        let (min, max) = (DVec2::new(1.0, 2.0), DVec2::new(5.0, 3.0));
+        let margins = Margins { left: 20.0, right: 20.0, top: 20.0, bottom: 20.0 };
+        let camera = Camera::framing(min, max, 440, 300, margins);
         assert_eq!(camera.metres_per_pixel, 0.01);
         assert_eq!(camera.centre, DVec2::new(3.0, 2.5));
         assert_eq!(camera.project(DVec2::new(1.0, 3.0)), [-200.0, 50.0]);
@@ -122,7 +118,7 @@ mod tests {
     #[test]
     fn unequal_margins_shift_the_box() {
         let margins = Margins { left: 0.0, right: 0.0, top: 10.0, bottom: 50.0 };
-        let camera = Camera::framing_within(DVec2::ZERO, DVec2::new(1.0, 1.0), 100, 160, margins);
+        let camera = Camera::framing(DVec2::ZERO, DVec2::new(1.0, 1.0), 100, 160, margins);
         assert_eq!(camera.metres_per_pixel, 0.01);
         // 50 px are free below the box and 10 px above it.
         assert_eq!(camera.project(DVec2::ZERO), [-50.0, -30.0]);
@@ -131,7 +127,8 @@ mod tests {
 
     #[test]
     fn a_single_point_can_be_framed() {
-        let camera = Camera::framing(DVec2::ONE, DVec2::ONE, 100, 100, 200.0);
+        let margins = Margins { left: 200.0, right: 200.0, top: 200.0, bottom: 200.0 };
+        let camera = Camera::framing(DVec2::ONE, DVec2::ONE, 100, 100, margins);
         assert!(camera.metres_per_pixel > 0.0);
         assert_eq!(camera.project(DVec2::ONE), [0.0, 0.0]);
     }

@@ -10,7 +10,7 @@ use image::RgbaImage;
 use super::painter::{Painter, PictureArea};
 use super::renderer_choice::GpuKind;
 use super::{Colour, Picture};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, check};
 
 pub(crate) struct Gpu {
     pub device: wgpu::Device,
@@ -46,18 +46,8 @@ impl Gpu {
         };
         let adapter =
             pollster::block_on(instance.request_adapter(&options)).map_err(|_| missing(kind))?;
-        let available = adapter.limits();
-        let limits = wgpu::Limits {
-            max_buffer_size: available.max_buffer_size,
-            ..wgpu::Limits::downlevel_webgl2_defaults().using_resolution(available)
-        };
         let name = format!("{}: {}", kind.name(), adapter.get_info().name);
-        let request = adapter.request_device(&wgpu::DeviceDescriptor {
-            label: Some("slump"),
-            required_limits: limits,
-            ..wgpu::DeviceDescriptor::default()
-        });
-        let (device, queue) = pollster::block_on(request)
+        let (device, queue) = open_device(&adapter)
             .map_err(|error| Error::Renderer(format!("{name} does not open: {error}")))?;
 
         let failure = Arc::new(Mutex::new(None));
@@ -79,6 +69,42 @@ impl Gpu {
         let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
         Err(Error::Renderer(format!("{} failed: {message}", self.name)))
     }
+}
+
+/// Opens a device of a driver. Textures and buffers may be as large as the driver allows; all other limits are those
+/// that every driver has.
+pub(crate) fn open_device(
+    adapter: &wgpu::Adapter,
+) -> std::result::Result<(wgpu::Device, wgpu::Queue), wgpu::RequestDeviceError> {
+    let available = adapter.limits();
+    pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+        label: Some("slump"),
+        required_limits: wgpu::Limits {
+            max_buffer_size: available.max_buffer_size,
+            ..wgpu::Limits::downlevel_webgl2_defaults().using_resolution(available)
+        },
+        ..wgpu::DeviceDescriptor::default()
+    }))
+}
+
+/// Begins to draw into a render target, which is first filled with one colour.
+pub(crate) fn begin_pass<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    view: &wgpu::TextureView,
+    colour: wgpu::Color,
+) -> wgpu::RenderPass<'a> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(colour),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        ..wgpu::RenderPassDescriptor::default()
+    })
 }
 
 /// Returns an error that names the missing driver and the package that contains this driver.
@@ -147,22 +173,8 @@ impl Offscreen {
         self.painter.prepare(&gpu.device, &gpu.queue, picture, area);
 
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("picture"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &target.view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(clear_colour(picture.background)),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })],
-                ..wgpu::RenderPassDescriptor::default()
-            });
-            self.painter.draw(&mut pass);
-        }
+        let ground = clear_colour(picture.background);
+        self.painter.draw(&mut begin_pass(&mut encoder, &target.view, ground));
         target.record_copy(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
         let image = target.read(gpu);
@@ -183,13 +195,8 @@ impl OffscreenTarget {
         let padded_row_bytes = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let bytes = u64::from(padded_row_bytes) * u64::from(height);
         let largest = gpu.device.limits().max_buffer_size;
-        if bytes > largest {
-            return Err(Error::value(
-                "size",
-                format!("{width}x{height}"),
-                format!("at most {largest} bytes as a picture on {}", gpu.name),
-            ));
-        }
+        let allowed = format!("at most {largest} bytes as a picture on {}", gpu.name);
+        check(bytes <= largest, "size", format!("{width}x{height}"), allowed)?;
         let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("picture"),

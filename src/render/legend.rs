@@ -19,7 +19,6 @@ const LONGEST: f64 = 0.2;
 /// Position and label of a picture's scale bar.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ScaleBar {
-    pub length: f64,
     pub label: String,
     /// Left end of the bar, pixels, relative to the middle of the picture, y up.
     pub start: [f32; 2],
@@ -37,13 +36,7 @@ impl ScaleBar {
         let left = text_px - width as f32 / 2.0;
         let y = text_px - height as f32 / 2.0;
         let right = left + camera.pixels(length_m);
-        Self {
-            length: length_m,
-            label: length(length_m),
-            start: [left, y],
-            end: [right, y],
-            text_px,
-        }
+        Self { label: length(length_m), start: [left, y], end: [right, y], text_px }
     }
 
     /// Returns the thick lines of which the bar and its end marks consist. They lie on a rectangle in the colour of the

@@ -6,7 +6,7 @@ use image::RgbaImage;
 use super::gpu::Offscreen;
 use super::renderer_choice::{GpuKind, RendererChoice};
 use super::{Picture, primitives};
-use crate::error::{Error, Result};
+use crate::error::{Result, check};
 
 /// Prevents Mesa's Vulkan driver from writing to stderr on systems without a desktop. A layer of the driver connects to
 /// a Wayland display, and the library for this connection writes a message if `XDG_RUNTIME_DIR` is not set. With a
@@ -46,7 +46,7 @@ impl Backend {
 
     #[cfg(not(feature = "gpu"))]
     fn open(kind: GpuKind) -> Result<Self> {
-        Err(Error::Renderer(format!(
+        Err(crate::error::Error::Renderer(format!(
             "this build draws nothing by {}: build it with the feature gpu, or use --renderer cpu",
             kind.name()
         )))
@@ -110,13 +110,8 @@ impl Renderer {
     /// If a side of the picture has 0 pixels or is too long for the renderer. The error names `size`.
     pub(crate) fn check_size(&self, width: u32, height: u32) -> Result<()> {
         let largest = self.largest_side();
-        if (1..=largest).contains(&width) && (1..=largest).contains(&height) {
-            return Ok(());
-        }
-        Err(Error::value(
-            "size",
-            format!("{width}x{height}"),
-            format!("between 1x1 and {largest}x{largest} pixels on {}", self.name()),
-        ))
+        let is_possible = (1..=largest).contains(&width) && (1..=largest).contains(&height);
+        let allowed = format!("between 1x1 and {largest}x{largest} pixels on {}", self.name());
+        check(is_possible, "size", format!("{width}x{height}"), allowed)
     }
 }

@@ -1,18 +1,7 @@
 //! The renderers that a user can choose, and the kinds of GPU drivers.
 
 /// The renderer that the user chooses.
-#[derive(
-    Clone,
-    Copy,
-    Debug,
-    Default,
-    PartialEq,
-    Eq,
-    serde::Serialize,
-    serde::Deserialize,
-    clap::ValueEnum,
-)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum RendererChoice {
     /// Vulkan if there is a driver, else OpenGL, else the processor.
     #[default]

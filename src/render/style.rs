@@ -14,9 +14,7 @@ const FADING: f32 = 0.62;
 const SCALE_BAR_EM: f64 = 1.6;
 
 /// The quantity that the colour of a grain shows.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, clap::ValueEnum,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum ColourBy {
     /// The grey that the scene gives each grain, as in the paper (Abramian & Staron, 2020).
@@ -44,9 +42,7 @@ impl ColourBy {
 }
 
 /// Colours of the background, and of lines and text.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, clap::ValueEnum,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Theme {
     /// Dark lines and text on white, for print.
@@ -183,7 +179,7 @@ impl Style {
         let margin = text.min(0.05 * f64::from(width.min(height)));
         let bar = if self.scale_bar { SCALE_BAR_EM * text } else { 0.0 };
         let margins = Margins { left: margin, right: margin, top: margin, bottom: margin + bar };
-        Camera::framing_within(min, max, width - self.legend_width(width, height), height, margins)
+        Camera::framing(min, max, width - self.legend_width(width, height), height, margins)
     }
 }
 

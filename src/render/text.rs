@@ -21,17 +21,10 @@ fn embedded(bytes: &'static [u8]) -> FontRef<'static> {
     FontRef::try_from_slice(bytes).expect("an embedded font is a font")
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Weight {
-    #[default]
-    Regular,
-    Bold,
-}
-
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TextStyle {
     pub size_px: f32,
-    pub weight: Weight,
+    pub is_bold: bool,
     pub colour: Colour,
     /// Alignment of the lines of a text block relative to each other.
     pub lines: Align,
@@ -40,11 +33,11 @@ pub(crate) struct TextStyle {
 impl TextStyle {
     /// Returns the style of regular text with left-aligned lines.
     pub(crate) fn new(size_px: f32, colour: Colour) -> Self {
-        Self { size_px, weight: Weight::Regular, colour, lines: Align::Start }
+        Self { size_px, is_bold: false, colour, lines: Align::Start }
     }
 
     pub(crate) fn bold(self) -> Self {
-        Self { weight: Weight::Bold, ..self }
+        Self { is_bold: true, ..self }
     }
 
     pub(crate) fn centred(self) -> Self {
@@ -52,10 +45,7 @@ impl TextStyle {
     }
 
     fn font(&self) -> PxScaleFont<&FontRef<'static>> {
-        let font: &FontRef = match self.weight {
-            Weight::Regular => &REGULAR,
-            Weight::Bold => &BOLD,
-        };
+        let font: &FontRef = if self.is_bold { &BOLD } else { &REGULAR };
         // The library ab_glyph scales the height from descent to ascent, whereas a font size is the size of the em.
         let per_em = font.units_per_em().map_or(1.0, |units| font.height_unscaled() / units);
         font.as_scaled(PxScale::from(self.size_px * per_em))
@@ -313,7 +303,7 @@ mod tests {
         let regular = TextStyle::new(20.0, Colour::BLACK);
         for style in [regular, regular.bold()] {
             for letter in NEEDED.chars() {
-                assert!(style.has(letter), "no {letter} in {:?}", style.weight);
+                assert!(style.has(letter), "no {letter}, bold: {}", style.is_bold);
                 let inked = TextBlock::new(&letter.to_string(), &style).ink() > 0.0;
                 assert_eq!(inked, letter != ' ', "{letter}");
             }

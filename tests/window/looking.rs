@@ -75,9 +75,7 @@ fn long_names_do_not_widen_the_panel() {
     let mut robot = Robot::open(pile());
     robot.click("Compare");
     let before = robot.state().controls["Pile"].left();
-    let line_ups =
-        ["Two laws", "Law, solver", "Expert", "Solvers", "Friction models", "Steppers", "Compare"];
-    for line_up in line_ups {
+    for line_up in ["Two laws", "Law, solver", "Expert", "Solvers", "Compare"] {
         robot.click(line_up);
         robot.frames(10);
         let now = robot.state().controls["Pile"].left();
@@ -355,21 +353,6 @@ fn two_laws_stand_side_by_side() {
     });
     let of_law = |law| [1e-4, 1e-3, 5e-3].map(|time| (law, 20.0, time));
     assert_eq!(told, [of_law(Stepper::Moreau), of_law(Stepper::Range)].concat());
-}
-
-#[test]
-fn models_of_friction_stand_side_by_side() {
-    let mut robot = Robot::open(pile());
-    robot.clicks(&["Law, solver", "Expert", "Friction models"]);
-    robot.key(egui::Key::ArrowRight);
-    let solved = robot.of_worlds(|world| {
-        let solver = world.controls.settings.solver;
-        let residual = world.snapshot.observables.model_residual;
-        (solver.friction_model, solver.model_solves, residual.is_some())
-    });
-    let once = FrictionModel::ALL.iter().map(|&model| (model, 1, model != FrictionModel::Coulomb));
-    let expected: Vec<_> = once.chain([(FrictionModel::Tresca, 4, true)]).collect();
-    assert_eq!(solved, expected);
 }
 
 #[test]

@@ -251,9 +251,9 @@ fn grains_are_seen_as_they_rain_and_the_world_before_comes_back() {
         state.run.frame.loading.as_ref().and_then(|loading| loading.preview.clone())
     };
     robot.until("the rain", |state| preview(state).is_some());
-    assert_eq!(preview(robot.state()).expect("the rain").snapshot.grains.len(), 400);
+    assert_eq!(preview(robot.state()).expect("the rain").grains.len(), 400);
     robot.until("grains that have fallen", |state| {
-        preview(state).is_some_and(|now| now.snapshot.observables.time_secs > 0.05)
+        preview(state).is_some_and(|now| now.observables.time_secs > 0.05)
     });
     let told = robot.state().run.frame.loading.as_ref().expect("progress").text.clone();
     assert!(told.starts_with("Raining a new pile of 400"), "{told}");

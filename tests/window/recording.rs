@@ -100,7 +100,8 @@ fn a_run_that_goes_on_differently_leaves_the_old_one_to_be_gone_back_to() {
     let past = robot.state().run.frame.past.clone();
     assert_eq!(past[0].worlds[0].controls.settings.parameters.time_step_secs, 5e-3);
     // An undone change can be made again any number of times.
-    robot.send(Command::Return(past[0].number));
+    let slump = past[0].worlds[0].curve.rows().last().expect("a row").slump;
+    robot.click(&format!("↷ Bond 20, Δt 5 ms, ρ 0.1, μ 0.5, slump {slump:.3}"));
     assert_eq!(robot.world().curve.len(), 22);
 }
 
@@ -256,29 +257,4 @@ fn play_shows_stored_moments_and_computes_where_they_end() {
     assert_eq!(robot.settings().parameters.bond, 5.0);
     robot.until("a branch", |state| !state.run.frame.past.is_empty());
     assert!(!robot.state().run.frame.stored);
-}
-
-#[test]
-fn runs_have_the_names_that_they_are_given() {
-    let mut robot = Robot::open(pile());
-    robot.take_steps(3);
-    robot.key(egui::Key::R);
-    robot.take_steps(2);
-    robot.click("Compare");
-    let number = robot.state().run.frame.past[0].number;
-    robot.type_number(&format!("Name of run {number}"), "first try");
-    robot.type_number("Name of this run", "second");
-    assert_eq!(robot.state().run.frame.past[0].name, "first try");
-    assert_eq!(robot.state().run.frame.name, "second");
-    robot.click("↶ first try");
-    assert_eq!((robot.steps(), &*robot.state().run.frame.name), (3, "first try"));
-    assert_eq!(robot.state().run.frame.past[0].name, "second");
-    // A branch is a new run and has no name.
-    robot.seek(0.001);
-    let mut settings = robot.settings();
-    settings.parameters.bond = 3.0;
-    robot.state_mut().run.change(0, settings);
-    robot.take_steps(1);
-    let names: Vec<_> = robot.state().run.frame.past.iter().map(|run| &*run.name).collect();
-    assert_eq!((names, &*robot.state().run.frame.name), (vec!["second", "first try"], ""));
 }

@@ -8,7 +8,7 @@ use crate::app::watched_run::WatchedRun;
 use crate::live::Command;
 use crate::setting::Group;
 use crate::sim::{Settings, Stepper};
-use crate::solver::{FrictionModel, METHODS, Method, MethodInfo, SolverSettings};
+use crate::solver::{METHODS, MethodInfo};
 use crate::study::{FIG4_BONDS, FIG4_TIME_STEPS_SECS};
 use crate::world::{FrictionCone, Parameters};
 
@@ -21,7 +21,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     let text = "Worlds from one initial state, kept at the same simulated time.";
     let hint = "A preset keeps the stepper and the parameters that all worlds share. It uses the scene's solver.";
     ui.label(RichText::new(text).small().weak()).on_hover_text(hint);
-    presets(ui, run);
+    line_ups(ui, run, &LINE_UPS);
     let before: Vec<_> = run.wanted.iter().map(|wanted| wanted.settings).collect();
     if before.is_empty() {
         return;
@@ -88,39 +88,15 @@ const LINE_UPS: [LineUp; 4] = [
     },
 ];
 
-/// Presets that compare numerical methods, for users who study solvers.
-const METHOD_LINE_UPS: [LineUp; 3] = [
-    LineUp {
-        name: "Solvers",
-        hint: "As many solvers as there is room for, on the same problem.",
-        worlds: |base| {
-            let by = |info: &MethodInfo| Settings { solver: base.solver.by(info.method), ..base };
-            METHODS.iter().take(MOST_WORLDS).map(by).collect()
-        },
+/// The preset that compares solvers, for users who study them.
+const SOLVERS: LineUp = LineUp {
+    name: "Solvers",
+    hint: "As many solvers as there is room for, on the same problem.",
+    worlds: |base| {
+        let by = |info: &MethodInfo| Settings { solver: base.solver.by(info.method), ..base };
+        METHODS.iter().take(MOST_WORLDS).map(by).collect()
     },
-    LineUp {
-        name: "Friction models",
-        hint: "All friction models, solved by nsgs, and tresca with four solves per step.",
-        worlds: |base| {
-            let base = stepped(base, Stepper::Moreau);
-            let by = |friction_model, model_solves| {
-                let method = Method::Nsgs;
-                let solver = SolverSettings { method, friction_model, model_solves, ..base.solver };
-                Settings { solver, ..base }
-            };
-            let once = FrictionModel::ALL.iter().map(|&model| by(model, 1));
-            once.chain([by(FrictionModel::Tresca, 4)]).collect()
-        },
-    },
-    LineUp {
-        name: "Steppers",
-        hint: "As many steppers as there is room for, from the same initial state.",
-        worlds: |base| {
-            let by = |&stepper: &Stepper| stepped(base, stepper);
-            Stepper::ALL.iter().take(MOST_WORLDS).map(by).collect()
-        },
-    },
-];
+};
 
 /// Returns the settings with another stepper (rule that advances the grains by Δt). Settings and remedies (corrections
 /// of known weaknesses of a step) that this stepper does not support are switched off.
@@ -148,15 +124,11 @@ fn base(scene: &Settings, worlds: &[Settings]) -> Settings {
     if base.stepper == scene.stepper { base } else { base.with_only_what_is_taken() }
 }
 
-fn presets(ui: &mut Ui, run: &mut WatchedRun) {
-    line_ups(ui, run, &LINE_UPS);
-}
-
-/// Shows the presets that compare numerical methods.
+/// Shows the preset that compares solvers.
 pub(super) fn method_presets(ui: &mut Ui, run: &mut WatchedRun) {
     ui.label("Side by side")
         .on_hover_text("Worlds from one initial state, kept at the same simulated time.");
-    line_ups(ui, run, &METHOD_LINE_UPS);
+    line_ups(ui, run, &[SOLVERS]);
 }
 
 fn line_ups(ui: &mut Ui, run: &mut WatchedRun, all: &[LineUp]) {
@@ -203,6 +175,7 @@ mod tests {
     use super::*;
     use crate::app::titles::title_among;
     use crate::live::Controls;
+    use crate::solver::{Method, SolverSettings};
 
     fn titles(all: &[Settings]) -> Vec<String> {
         let controls: Vec<_> =
@@ -216,7 +189,7 @@ mod tests {
         let mut dragged = scene.with_bond(35.0).over(2e-3);
         dragged.parameters.friction = 0.3;
         assert_eq!(base(&scene, &[dragged]), dragged, "one world");
-        for LineUp { name, worlds, .. } in LINE_UPS.iter().chain(&METHOD_LINE_UPS) {
+        for LineUp { name, worlds, .. } in LINE_UPS.iter().chain(&[SOLVERS]) {
             let made = base(&scene, &worlds(dragged));
             assert_eq!(made.solver, scene.solver, "{name}");
             assert_eq!(made.parameters.touch_tolerance, scene.parameters.touch_tolerance, "{name}");
@@ -244,7 +217,7 @@ mod tests {
         let mut cone = base;
         cone.parameters.cone = FrictionCone::Compressive;
         assert_eq!(titles(&[base, cone]), ["cone shifted", "cone compressive"]);
-        for LineUp { name, worlds, .. } in LINE_UPS.iter().chain(&METHOD_LINE_UPS) {
+        for LineUp { name, worlds, .. } in LINE_UPS.iter().chain(&[SOLVERS]) {
             let mut all = titles(&worlds(base));
             let count = all.len();
             all.sort();

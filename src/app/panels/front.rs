@@ -1,11 +1,10 @@
 //! The main controls: the buttons for start and restart, the speed of playing, the timeline, and the sliders for Bond,
 //! Δt, restitution ρ and friction μ.
 
-use egui::{Button, ComboBox, Rect, RichText, Slider, Stroke, Ui};
+use egui::{Button, ComboBox, RichText, Slider, Ui};
 
 use super::shown_settings::{FRONT_SETTINGS, shown_settings};
 use crate::app::context::PanelContext;
-use crate::app::experiment_plot::events;
 use crate::app::lessons::lesson;
 use crate::app::number_text::clock_text;
 use crate::app::{budget, setting_control, theme};
@@ -144,24 +143,10 @@ fn timeline(ui: &mut Ui, context: &mut PanelContext<'_>) {
             context.run.live.send(Command::Seek(at.min(end)));
         }
         context.note_control("timeline", response.rect);
-        mark_events(ui, context, response.rect, end);
         response.on_hover_text(
-            "The recorded run: drag to any moment, then continue from there; → and ← move by one step. A mark is a moment at \
-             which walls change their velocity.",
+            "The recorded run: drag to any moment, then continue from there; → and ← move by one step.",
         );
     });
-}
-
-/// Marks the times at which walls change their velocity on the timeline.
-fn mark_events(ui: &Ui, context: &PanelContext<'_>, rect: Rect, end_secs: f64) {
-    let Some(start) = &context.run.frame.start else { return };
-    // The handle of the slider stays within its ends.
-    let span = rect.x_range().shrink(0.4 * rect.height());
-    let stroke = Stroke::new(2.0, theme::warning(ui.visuals().dark_mode));
-    for at_secs in events(&start.scene).into_iter().filter(|&at_secs| at_secs <= end_secs) {
-        let x = egui::lerp(span.min..=span.max, (at_secs / end_secs) as f32);
-        ui.painter().vline(x, rect.bottom() - 5.0..=rect.bottom(), stroke);
-    }
 }
 
 /// Shows those of the main sliders (for Bond, Δt, ρ and μ) that have an effect in the scene, side by side; in a lesson,

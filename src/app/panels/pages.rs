@@ -16,7 +16,7 @@ use crate::scene::SceneGroup;
 #[derive(Default)]
 pub(crate) struct Pages {
     gallery: Gallery,
-    race: Option<StepRace>,
+    race: StepRace,
     distributions: Distributions,
     table: BodyTable,
 }
@@ -25,7 +25,7 @@ impl Pages {
     /// Discards the measured computing times of the solvers. They belong to one step of a run that the window no longer
     /// shows.
     pub(crate) fn forget_race(&mut self) {
-        self.race = None;
+        self.race = StepRace::default();
     }
 
     /// Shows a page of the sidebar.
@@ -71,9 +71,7 @@ impl Pages {
             }
         }
     }
-}
 
-impl Pages {
     /// Shows settings, scenes and comparisons for users who study solvers.
     fn expert(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
         solver::expert(ui, context.run);

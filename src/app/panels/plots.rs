@@ -6,7 +6,6 @@ use crate::app::IN_BROWSER;
 use crate::app::context::{PanelContext, Request};
 use crate::app::experiment_plot::has_quantity;
 use crate::app::exports::write_table;
-use crate::app::file_names::free_path;
 use crate::app::glossary::explained;
 use crate::app::plots::{LEAST_WIDTH, PlotData, WorldCurve, draw, draw_with_key};
 use crate::app::preferences::Preferences;
@@ -14,6 +13,7 @@ use crate::app::theme;
 use crate::app::time_step_figure::{TimeStepFigure, without_time_step};
 use crate::app::titles::title_against;
 use crate::app::watched_run::WatchedRun;
+use crate::app::work::MaySend;
 use crate::live::Command;
 use crate::number::millis_text;
 use crate::output::write_file;
@@ -68,25 +68,31 @@ fn figure_buttons(ui: &mut Ui, context: &mut PanelContext<'_>, figure: &TimeStep
     }
     let stem = format!("{}-slump-over-dt", context.run.file_stem());
     if ui.small_button("CSV").on_hover_text("Save the points as a table.").clicked() {
-        let (table, stem) = (figure.table(), stem.clone());
-        context.write(ui.ctx(), move |folder, _| {
-            let path = free_path(folder, &stem, "csv");
-            write_file(&path, table.as_bytes())?;
-            Ok(path)
+        let table = figure.table();
+        context.write(ui.ctx(), stem.clone(), "csv", move |path, _| {
+            write_file(path, table.as_bytes())
         });
     }
     // Waiting for a graphics device would block the browser version.
     if !IN_BROWSER && ui.small_button("PNG").on_hover_text("Save this plot as a picture.").clicked()
     {
-        let (size, dark) = (context.preferences.picture_size, ui.visuals().dark_mode);
-        let (figure, texts) = (figure.clone(), context.run.texts(false));
-        context.write(ui.ctx(), move |folder, printers| {
-            let path = free_path(folder, &stem, "png");
-            let print = |ui: &mut Ui| figure.draw(ui, |_| {});
-            write_png(&path, &printers.canvas()?.print(size, dark, print)?, &texts)?;
-            Ok(path)
-        });
+        let figure = figure.clone();
+        print(ui, context, stem, move |ui| figure.draw(ui, |_| {}));
     }
+}
+
+/// Saves a picture of plots, which `draw` draws, in the size that the preferences state.
+fn print(
+    ui: &Ui,
+    context: &mut PanelContext<'_>,
+    stem: String,
+    draw: impl Fn(&mut Ui) + MaySend + 'static,
+) {
+    let (size, dark) = (context.preferences.picture_size, ui.visuals().dark_mode);
+    let texts = context.run.texts(false);
+    context.write(ui.ctx(), stem, "png", move |path, printers| {
+        write_png(path, &printers.canvas()?.print(size, dark, draw)?, &texts)
+    });
 }
 
 fn curves(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -242,15 +248,7 @@ fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
         && ui.button("Plot as PNG").on_hover_text("Save the plots as a picture.").clicked()
     {
         let data = data(ui, context);
-        let size = context.preferences.picture_size;
-        let (dark, texts) = (ui.visuals().dark_mode, context.run.texts(false));
-        let stem = stem.clone();
-        context.write(ui.ctx(), move |folder, printers| {
-            let path = free_path(folder, &stem, "png");
-            let print = |ui: &mut Ui| draw_with_key(ui, &data);
-            write_png(&path, &printers.canvas()?.print(size, dark, print)?, &texts)?;
-            Ok(path)
-        });
+        print(ui, context, stem.clone(), move |ui| draw_with_key(ui, &data));
     }
     let hint =
         "Save all observables of all worlds. A text file next to the table describes the run.";
@@ -258,11 +256,7 @@ fn files(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let worlds = context.run.frame.worlds.iter();
         let curves: Vec<_> = worlds.map(|world| world.curve.clone()).collect();
         let texts = context.run.texts(false);
-        context.write(ui.ctx(), move |folder, _| {
-            let path = free_path(folder, &stem, "csv");
-            write_table(&path, &curves, &texts)?;
-            Ok(path)
-        });
+        context.write(ui.ctx(), stem, "csv", move |path, _| write_table(path, &curves, &texts));
     }
     let worlds = context.run.frame.worlds.iter();
     let spacing_secs = worlds.map(|world| world.curve.least_spacing_secs()).fold(0.0, f64::max);

@@ -181,9 +181,6 @@ fn pile_like_this(run: &WatchedRun, pile: &NewPile) -> Config {
     }
 }
 
-/// Width of the fields for names of runs, points.
-const NAME_WIDTH: f32 = 60.0;
-
 /// Shows the earlier runs, if there are any: a button for each run, and a checkbox that shows the newest earlier run as
 /// a ghost (grey outlines).
 pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
@@ -200,48 +197,15 @@ pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
                 .on_hover_text("Show the newest earlier run: its curves in grey, its grains as outlines.");
         });
     });
-    ui.horizontal(|ui| {
-        ui.label(RichText::new("This run").size(11.5));
-        let given = context.run.frame.name.clone();
-        name_field(ui, context.run, None, &given);
-    });
-    let runs = context.run.frame.past.clone();
-    for run in runs.iter().rev() {
-        ui.horizontal(|ui| {
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                name_field(ui, context.run, Some(run.number), &run.name);
-                let title = title(run, context.run.slumps());
-                let name = if run.name.is_empty() { &title } else { &run.name };
-                let text = format!("{} {name}", if run.is_undone { "↷" } else { "↶" });
-                let back = ui.add(Button::new(RichText::new(text).size(11.5)).truncate());
-                let hint = format!("Bring back {title}, {}", clock_text(run.recorded_secs));
-                if back.on_hover_text(hint).clicked() {
-                    context.run.live.send(Command::Return(run.number));
-                }
-            });
-        });
+    for run in context.run.frame.past.clone().iter().rev() {
+        let title = title(run, context.run.slumps());
+        let text = format!("{} {title}", if run.is_undone { "↷" } else { "↶" });
+        let back = ui.add(Button::new(RichText::new(text).size(11.5)).truncate());
+        let hint = format!("Bring back {title}, {}", clock_text(run.recorded_secs));
+        if back.on_hover_text(hint).clicked() {
+            context.run.live.send(Command::Return(run.number));
+        }
     }
-}
-
-/// Shows the field for the name of a run. The field stores the typed text until it loses the focus, because the name
-/// returns from the solver's thread one step later.
-fn name_field(ui: &mut Ui, run: &mut WatchedRun, number: Option<u64>, given: &str) {
-    let id = egui::Id::unique(("name of run", number));
-    let typed = ui.data(|data| data.get_temp(id));
-    let mut text: String = typed.unwrap_or_else(|| given.to_owned());
-    let edit = egui::TextEdit::singleline(&mut text).desired_width(NAME_WIDTH).hint_text("name");
-    let response = ui.add(edit);
-    let label = number.map_or("Name of this run".into(), |number| format!("Name of run {number}"));
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, &label));
-    if response.changed() {
-        run.live.send(Command::Name(number, text.clone()));
-    }
-    if response.has_focus() {
-        ui.data_mut(|data| data.insert_temp(id, text));
-    } else {
-        ui.data_mut(|data| data.remove::<String>(id));
-    }
-    response.on_hover_text("A name for this run. Sessions keep it.");
 }
 
 /// Returns a title for an earlier run. If the run has one simulation, the title contains Bond, Δt, ρ, μ and the slump.

@@ -9,6 +9,7 @@ use super::scene_style::{columns, shared_style};
 use crate::app::context::PanelContext;
 use crate::app::number_text::clock_text;
 use crate::app::painting::{LegendCache, fill, scene_callback};
+use crate::app::settling_progress::view_of;
 use crate::app::theme;
 use crate::app::titles::title_against;
 use crate::app::watched_run::WatchedRun;
@@ -213,7 +214,7 @@ fn show_making(
 ) -> bool {
     let preview = context.run.frame.loading.as_ref().and_then(|it| it.preview.clone());
     let Some(preview) = preview else { return false };
-    let [lower, upper] = preview.view;
+    let [lower, upper] = view_of(&preview);
     // Forces and velocities during a deposition do not belong to the run. The scale bar would change, because the view
     // shrinks while the grains fall.
     let style = Style {
@@ -224,7 +225,7 @@ fn show_making(
         ..style.clone()
     };
     let camera = style.camera(lower, upper, size[0], size[1]);
-    let picture = scene_picture(&preview.snapshot, &style, &camera, size[0], size[1]);
+    let picture = scene_picture(&preview, &style, &camera, size[0], size[1]);
     ui.painter().with_clip_rect(area).add(scene_callback(0, area, picture));
     context.note_control("pile in the making", area);
     true
@@ -241,7 +242,8 @@ const STRAIGHT: f64 = 1e-9;
 /// Draws an arrow in the direction of gravity, if the user wants an arrow or if gravity does not point straight down.
 fn paint_gravity(ui: &Ui, context: &PanelContext<'_>, world: usize, cell: Rect) {
     let shows = |gravity: &DVec2| {
-        *gravity != DVec2::ZERO && (context.preferences.gravity || is_tilted(*gravity))
+        let is_tilted = gravity.y > 0.0 || gravity.x.abs() > STRAIGHT * gravity.length();
+        *gravity != DVec2::ZERO && (context.preferences.gravity || is_tilted)
     };
     let gravity = context.run.frame.worlds.get(world).and_then(|world| world.gravity);
     let Some(gravity) = gravity.filter(shows) else { return };
@@ -255,19 +257,4 @@ fn paint_gravity(ui: &Ui, context: &PanelContext<'_>, world: usize, cell: Rect) 
     // The letter is beside the arrow, whatever the arrow's direction.
     let aside = middle + 12.0 * Vec2::new(along.y, -along.x);
     painter.text(aside, Align2::CENTER_CENTER, "g", FontId::proportional(13.0), ink);
-}
-
-fn is_tilted(gravity: DVec2) -> bool {
-    gravity.y > 0.0 || gravity.x.abs() > STRAIGHT * gravity.length()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn gravity_straight_down_goes_without_saying() {
-        assert!(!is_tilted(DVec2::new(0.0, -9.8)) && !is_tilted(DVec2::ZERO));
-        assert!(is_tilted(DVec2::new(0.1, -9.8)) && is_tilted(DVec2::new(0.0, 9.8)));
-    }
 }

@@ -8,7 +8,6 @@ use glam::DVec2;
 use super::scene_style::{columns, own_style, shared_style};
 use crate::app::IN_BROWSER;
 use crate::app::context::{PanelContext, Request};
-use crate::app::file_names::free_path;
 use crate::app::film::{FilmFormat, FilmOrder};
 use crate::app::preferences::Preferences;
 use crate::app::scene_picture::{PicturedWorld, ScenePicture};
@@ -223,11 +222,8 @@ pub(crate) fn save_picture(gui: &egui::Context, context: &mut PanelContext<'_>) 
     }
     let style = shared_style(context.run, context.preferences, gui.theme() == egui::Theme::Dark);
     let picture = scene_picture(context, style, context.preferences.picture_size, true);
-    let stem = context.run.file_stem();
-    context.write(gui, move |folder, printers| {
-        let path = free_path(folder, &stem, "png");
-        write_png(&path, &picture.draw(printers.renderer()?)?, &picture.texts)?;
-        Ok(path)
+    context.write(gui, context.run.file_stem(), "png", move |path, printers| {
+        write_png(path, &picture.draw(printers.renderer()?)?, &picture.texts)
     });
 }
 

@@ -4,7 +4,7 @@
 use std::sync::OnceLock;
 
 use egui::{Color32, RichText, Ui};
-use egui_plot::{Line, LineStyle, MarkerShape, PlotPoints, Points};
+use egui_plot::{Line, LineStyle};
 
 use super::grain::compact;
 use crate::Instant;
@@ -14,7 +14,6 @@ use crate::app::theme;
 use crate::app::watched_run::{TakenRun, WatchedRun};
 use crate::app::work::{Reporter, Work, outcome_of_ended};
 use crate::error::Result;
-use crate::live::WorldFrame;
 use crate::sim::{Settings, Simulation, StepTimes};
 use crate::solver::{METHODS, Method, SolverSettings, StopTest};
 
@@ -41,11 +40,9 @@ struct RaceCurve {
     points: Vec<[f64; 2]>,
 }
 
-/// A comparison of solvers on one step.
+/// The last measurement of a step, and the measurement that is in progress.
+#[derive(Default)]
 pub(super) struct StepRace {
-    /// Simulated time before the measured step, s.
-    time_secs: f64,
-    /// Results of all solvers; empty until all solvers have finished.
     measured: Measured,
     work: Option<Work<Measured>>,
 }
@@ -53,6 +50,8 @@ pub(super) struct StepRace {
 /// Measured computing times: of the next steps by their parts, and of one step by each solver.
 #[derive(Default)]
 struct Measured {
+    /// Simulated time before the measured steps, s.
+    time_secs: f64,
     /// Number of measured steps, and their computing times summed over these steps.
     times: Option<(u32, StepTimes)>,
     /// Results of the solvers; empty for a stepper that uses no solver.
@@ -88,7 +87,7 @@ fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Measured> {
             curves.push(RaceCurve { method: info.name, points });
         }
     }
-    Ok(Measured { times, curves })
+    Ok(Measured { time_secs: simulation.time_secs(), times, curves })
 }
 
 /// Takes the next steps with the present settings. Returns their number and the sum of their computing times. `None` if
@@ -161,70 +160,49 @@ const HEIGHT: f32 = 230.0;
 /// Number of colours of curves. Further curves have the same colours with other line styles.
 const COLOURS: usize = 6;
 
-pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut Option<StepRace>) {
-    if let Some(race) = race
-        && let Some(outcome) = outcome_of_ended(&mut race.work)
-    {
+pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut StepRace) {
+    if let Some(outcome) = outcome_of_ended(&mut race.work) {
         race.measured = outcome.unwrap_or_default();
     }
-    match race.as_ref().and_then(|race| race.work.as_ref()) {
-        Some(work) => {
-            work.show(ui, "Measuring", "Stop measuring", "Leaves out the remaining solvers.")
-        }
-        None => measure(ui, run, race),
+    if let Some(work) = &race.work {
+        let hint = "Leaves out the remaining solvers.";
+        return work.show(ui, "Measuring", "Stop measuring", hint);
     }
-    let Some(race) = race.as_ref().filter(|race| race.work.is_none()) else { return };
-    let Measured { times, curves } = &race.measured;
+    measure(ui, run, race);
+    let Measured { time_secs, times, curves } = &race.measured;
     if let Some(times) = times {
         ui.label(told(times));
     }
     if curves.is_empty() {
         return;
     }
-    draw(ui, curves, now(run, race));
+    draw(ui, curves);
     legend(ui, curves);
-    let time_secs = race.time_secs;
-    let text = format!(
-        "The step after t = {}, measured here; ◆ is the present solver.",
-        clock_text(time_secs)
-    );
+    let text = format!("The step after t = {}, measured here.", clock_text(*time_secs));
     ui.label(RichText::new(text).small().weak());
 }
 
 /// Shows the button that starts the measurement of the displayed step with all solvers.
-fn measure(ui: &mut Ui, run: &mut WatchedRun, shown: &mut Option<StepRace>) {
-    let goes_on = |world: &&WorldFrame| world.failure.is_none();
-    let time_secs = run.world().filter(goes_on).map(|world| world.snapshot.observables.time_secs);
-    let button = ui.add_enabled(time_secs.is_some(), egui::Button::new("Measure this step"));
+fn measure(ui: &mut Ui, run: &mut WatchedRun, shown: &mut StepRace) {
+    let goes_on = run.world().is_some_and(|world| world.failure.is_none());
+    let button = ui.add_enabled(goes_on, egui::Button::new("Measure this step"));
     let hint = "Measures the parts of a step. Then each solver solves the visible step, to one tolerance after the \
                 other. This takes some seconds.";
     let button = button.on_hover_text(hint).on_disabled_hover_text("This run cannot continue.");
-    if let Some(time_secs) = time_secs.filter(|_| button.clicked()) {
+    if button.clicked() {
         let taken = run.take(run.selected);
-        let work = Work::start(ui.ctx(), vec![taken], move |mut runs, reporter| {
-            race(runs.pop(), reporter)
-        });
-        let measured = Measured::default();
-        *shown = Some(StepRace { time_secs, measured, work: Some(work) });
+        let work = |mut runs: Vec<_>, reporter: &Reporter| race(runs.pop(), reporter);
+        shown.work = Some(Work::start(ui.ctx(), vec![taken], work));
+        shown.measured = Measured::default();
     }
 }
 
-/// Returns the point of the present solver on the chart (decimal logarithms of ms per step and residual), if the
-/// displayed state is at the measured step. Its time is the mean computing time per step of the run.
-fn now(run: &WatchedRun, race: &StepRace) -> Option<[f64; 2]> {
-    let world = run.world()?;
-    let row = &world.snapshot.observables;
-    let is_of_step = (row.time_secs - race.time_secs).abs() < 2.0 * row.time_step_secs;
-    let told = is_of_step && world.step_ms > 0.0 && row.residual > 0.0;
-    told.then(|| [world.step_ms.log10(), row.residual.log10()])
-}
-
-fn draw(ui: &mut Ui, curves: &[RaceCurve], now: Option<[f64; 2]>) {
+fn draw(ui: &mut Ui, curves: &[RaceCurve]) {
     let dark = ui.visuals().dark_mode;
     ui.label(RichText::new("residual against ms per step").small());
     let ends = [0, 1].map(|axis| {
         let points = curves.iter().flat_map(|curve| &curve.points);
-        with_room(points.map(|point| point[axis].log10()).chain(now.map(|now| now[axis])), true)
+        with_room(points.map(|point| point[axis].log10()), true)
     });
     with_least(plot_with_axes(ui, "speed and accuracy", HEIGHT, [true; 2], ""), ends)
         .allow_drag(false)
@@ -233,13 +211,8 @@ fn draw(ui: &mut Ui, curves: &[RaceCurve], now: Option<[f64; 2]>) {
             for (index, curve) in curves.iter().enumerate() {
                 let (colour, style, _) = look(index, dark);
                 let points = curve.points.iter().map(|point| point.map(f64::log10));
-                let places: PlotPoints<'_> = points.collect();
-                plot.line(Line::new("", places).color(colour).style(style).width(1.6));
-            }
-            if let Some(place) = now {
-                let ink = if dark { Color32::WHITE } else { Color32::BLACK };
-                let dot = Points::new("now", PlotPoints::new(vec![place]));
-                plot.points(dot.shape(MarkerShape::Diamond).radius(6.0).color(ink));
+                let line = Line::new("", points.collect::<Vec<_>>());
+                plot.line(line.color(colour).style(style).width(1.6));
             }
         });
 }

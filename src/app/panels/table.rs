@@ -190,7 +190,9 @@ fn chosen<T>(
 ) -> Result<Vec<usize>, String> {
     let comparisons = read_filter(&table.filter, columns)?;
     let value = |index: usize, column: usize| (columns[column].value)(index, &all[index], diameter);
-    let passes = |&index: &usize| comparisons.iter().all(|it| it.holds(value(index, it.column)));
+    let passes = |&index: &usize| {
+        comparisons.iter().all(|it| (it.is_true)(&value(index, it.column), &it.number))
+    };
     let mut chosen: Vec<usize> = (0..all.len()).filter(passes).collect();
     if let Some((column, is_down)) = table.sort.filter(|&(column, _)| column < columns.len()) {
         chosen.sort_by(|&one, &other| {
@@ -204,34 +206,26 @@ fn chosen<T>(
 /// A comparison of a column with a number, as part of a filter.
 struct Comparison {
     column: usize,
-    sign: &'static str,
+    is_true: ComparisonTest,
     number: f64,
 }
 
-/// Signs of comparison in a filter. Longer signs come first, because "<=" begins with "<".
-const SIGNS: [&str; 5] = ["<=", ">=", "<", ">", "="];
+/// Function that compares the value of a row with the number in a filter.
+type ComparisonTest = fn(&f64, &f64) -> bool;
 
-impl Comparison {
-    fn holds(&self, value: f64) -> bool {
-        match self.sign {
-            "<=" => value <= self.number,
-            ">=" => value >= self.number,
-            "<" => value < self.number,
-            ">" => value > self.number,
-            _ => value == self.number,
-        }
-    }
-}
+/// Signs of comparison in a filter and their meaning. Longer signs come first, because "<=" begins with "<".
+const SIGNS: [(&str, ComparisonTest); 5] =
+    [("<=", f64::le), (">=", f64::ge), ("<", f64::lt), (">", f64::gt), ("=", f64::eq)];
 
 /// Reads the text of a filter: comparisons such as `y > 2`, joined by "and". The error message states the wrong
 /// comparison.
 fn read_filter<T>(text: &str, columns: &[ShownColumn<T>]) -> Result<Vec<Comparison>, String> {
     let parts = text.split(" and ").map(str::trim).filter(|part| !part.is_empty());
     let read = |part: &str| -> Option<Comparison> {
-        let (sign, at) = SIGNS.iter().find_map(|sign| Some((*sign, part.find(sign)?)))?;
-        let (name, number) = (part[..at].trim(), part[at + sign.len()..].trim());
-        let column = columns.iter().position(|column| column.name == name)?;
-        Some(Comparison { column, sign, number: number.parse().ok()? })
+        let split = |&(sign, is_true)| Some((part.split_once(sign)?, is_true));
+        let ((name, number), is_true) = SIGNS.iter().find_map(split)?;
+        let column = columns.iter().position(|column| column.name == name.trim())?;
+        Some(Comparison { column, is_true, number: number.trim().parse().ok()? })
     };
     parts
         .map(|part| {

@@ -13,7 +13,7 @@ use crate::app::preferences::Preferences;
 use crate::app::session::open_session;
 use crate::app::state::AppState;
 use crate::config::{Config, SavedState};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, check};
 
 /// Options of the window. The scene, its physics and its solver are in [`crate::config::Config`].
 #[derive(Clone, Debug, Default, PartialEq, clap::Args)]
@@ -52,11 +52,10 @@ pub(super) fn first(
     options: &WindowOptions,
     preferences: &Preferences,
 ) -> Result<Opener> {
-    if (options.session.is_some() || options.open.is_some()) && !asked.is_empty() {
-        let field = if options.session.is_some() { "session" } else { "open" };
-        let allowed = "left out if a scene or a setting is given, because it has its own";
-        return Err(Error::value(field, "given", allowed));
-    }
+    let is_alone = asked.is_empty() || (options.session.is_none() && options.open.is_none());
+    let field = if options.session.is_some() { "session" } else { "open" };
+    let allowed = "left out if a scene or a setting is given, because it has its own";
+    check(is_alone, field, "given", allowed)?;
     if let Some(path) = &options.session {
         let session = open_session(path)?;
         return Ok(Box::new(move |state| state.open(Opening::Session(Box::new(session)))));

@@ -11,6 +11,7 @@ use winit::window::Window;
 use crate::app::canvas::Screen;
 use crate::error::{Error, Result};
 use crate::render::RendererChoice;
+use crate::render::gpu::open_device;
 
 /// Largest side of egui's font textures, pixels, that every graphics driver allows.
 const LARGEST_SIDE_NEEDED: u32 = 2048;
@@ -88,16 +89,7 @@ impl WindowSurface {
         };
         let adapter = pollster::block_on(instance.request_adapter(&options))
             .map_err(|error| no_driver(&error))?;
-        let available = adapter.limits();
-        let request = adapter.request_device(&wgpu::DeviceDescriptor {
-            label: Some("slump window"),
-            required_limits: wgpu::Limits {
-                max_buffer_size: available.max_buffer_size,
-                ..wgpu::Limits::downlevel_webgl2_defaults().using_resolution(available)
-            },
-            ..wgpu::DeviceDescriptor::default()
-        });
-        let (device, queue) = pollster::block_on(request).map_err(|error| no_driver(&error))?;
+        let (device, queue) = open_device(&adapter).map_err(|error| no_driver(&error))?;
         let lost = Arc::new(AtomicBool::new(false));
         let seen = Arc::clone(&lost);
         device.set_device_lost_callback(move |_, _| seen.store(true, Ordering::Relaxed));

@@ -172,5 +172,5 @@ fn figure(renderer: &mut Renderer) -> Result<RgbaImage> {
         "A caption goes on below the panels and, where it is longer than they are wide, \
                     breaks into lines: Δ ρ μ · − × √ ≤ v_{n} = −Δt·C₀/m_{ij}, 10^{−3}."
             .to_owned();
-    grid.draw()
+    Ok(grid.draw())
 }
