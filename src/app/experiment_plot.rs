@@ -20,6 +20,8 @@ struct ExperimentQuantity {
     title: &'static str,
     /// Function that returns the value of the quantity, given the scene in its initial state and a snapshot of the run.
     of: fn(&Scene, &Snapshot) -> f64,
+    /// True if the plot shows the change of the quantity per second instead of the quantity itself.
+    is_rate: bool,
 }
 
 const fn quantity(
@@ -27,7 +29,7 @@ const fn quantity(
     title: &'static str,
     of: fn(&Scene, &Snapshot) -> f64,
 ) -> ExperimentQuantity {
-    ExperimentQuantity { scene, title, of }
+    ExperimentQuantity { scene, title, of, is_rate: false }
 }
 
 const QUANTITIES: [ExperimentQuantity; 8] = [
@@ -46,9 +48,12 @@ const QUANTITIES: [ExperimentQuantity; 8] = [
         let before = half_width(scene.grains.iter().map(|grain| grain.position.x));
         half_width(now.grains.iter().map(|grain| grain.position.x)) / before - 1.0
     }),
-    quantity("silo", "grains that have left through the orifice", |_, now| {
-        now.grains.iter().filter(|grain| grain.position.y < 0.0).count() as f64
-    }),
+    ExperimentQuantity {
+        is_rate: true,
+        ..quantity("silo", "grains per second through the orifice", |_, now| {
+            now.grains.iter().filter(|grain| grain.position.y < 0.0).count() as f64
+        })
+    },
     quantity("incline", "mean speed of the grains (mm/s)", |_, now| {
         let speeds = now.grains.iter().map(|grain| grain.velocity.length());
         1e3 * speeds.sum::<f64>() / now.grains.len().max(1) as f64
@@ -101,6 +106,9 @@ fn quantity_of(start: &LiveStart) -> Option<&'static ExperimentQuantity> {
     QUANTITIES.iter().find(|quantity| quantity.scene == start.scene.name)
 }
 
+/// Least simulated time between the two values from which the plot computes a change per second, s. A shorter time
+/// would show the fluctuations between single frames.
+const RATE_SECS: f64 = 0.1;
 /// Largest number of points of a drawn curve. If the window has shown more frames, the curve omits some of them. With a
 /// larger number, drawing takes longer.
 const MOST_POINTS: usize = 2_000;
@@ -137,6 +145,26 @@ impl ExperimentSeries {
         }
     }
 
+    /// Returns the points of a simulation's curve: simulated time, s, and the quantity or its change per second.
+    fn points(&self, start: &LiveStart, world: usize) -> Vec<[f64; 2]> {
+        let Some(values) = self.worlds.get(world) else { return Vec::new() };
+        let values: Vec<[f64; 2]> = values.values().copied().collect();
+        let is_rate = quantity_of(start).is_some_and(|quantity| quantity.is_rate);
+        let point = |&[time_secs, value]: &[f64; 2]| {
+            let before = values.partition_point(|[at, _]| *at <= time_secs - RATE_SECS);
+            match (is_rate, before.checked_sub(1)) {
+                (false, _) => [time_secs, value],
+                (true, None) => [time_secs, f64::NAN],
+                (true, Some(before)) => {
+                    let [then_secs, then] = values[before];
+                    [time_secs, (value - then) / (time_secs - then_secs)]
+                }
+            }
+        };
+        let stride = values.len().div_ceil(MOST_POINTS).max(1);
+        values.iter().step_by(stride).map(point).filter(|[_, value]| value.is_finite()).collect()
+    }
+
     /// Draws the plot of the experiment's main quantity (such as the angle of the surface in a drum) into the remaining
     /// space. Draws nothing if the scene has no such quantity.
     pub(crate) fn draw(&self, ui: &mut Ui, frame: &LiveFrame) {
@@ -146,7 +174,8 @@ impl ExperimentSeries {
             return;
         };
         ui.add(Label::new(RichText::new(quantity.title).small()).truncate());
-        let worlds: Vec<Vec<_>> = self.worlds.iter().map(points).collect();
+        let worlds: Vec<_> =
+            (0..self.worlds.len()).map(|world| self.points(start, world)).collect();
         let values = worlds.iter().flatten().map(|point| point[1]);
         let least = [[0.0, start.scene.duration_secs], with_room(values, false)];
         let height = (ui.available_height() - 2.0).max(40.0);
@@ -160,12 +189,6 @@ impl ExperimentSeries {
             }
         });
     }
-}
-
-/// Returns the points of a simulation's curve: simulated time, s, and the quantity.
-fn points(values: &BTreeMap<u64, [f64; 2]>) -> Vec<[f64; 2]> {
-    let stride = values.len().div_ceil(MOST_POINTS).max(1);
-    values.values().step_by(stride).copied().filter(|[_, value]| value.is_finite()).collect()
 }
 
 #[cfg(test)]
