@@ -261,14 +261,16 @@ pub const LESSONS: [Lesson; 7] = [
         title: "Your own pile",
         watch: "On the right: another scene, or a new pile of your number of grains and seed. Drag the sliders below, drag \
                 grains with the mouse, and ask whether you can trust the result.",
+        question: Some(Question {
+            text: "Will your pile slump by more than 0.3?",
+            answers: ["more", "less"],
+            rows: predictions::last_rows,
+            result: predictions::own_pile,
+        }),
         learnt: "A number needs several piles, a shorter Δt and a better solver before you can trust it.",
         worlds: |base| vec![base.over(1e-4)],
         page: Some(Page::Pile),
         leaves_free: |_| true,
-        asks_for: |run, preferences| match (waits_at_start(run), preferences.page) {
-            (true, Some(Page::Pile)) => &["scenes"],
-            _ => &[],
-        },
         sliders: &["bond", "dt", "rho", "mu"],
         ..PILE
     },

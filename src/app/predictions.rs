@@ -36,6 +36,9 @@ const ALIKE: f64 = 0.05;
 /// Overlap above which a disc counts as not carrying its load, in mean diameters. The command `slump stability` uses
 /// the same limit.
 const SQUEEZED: f64 = 0.01;
+/// Slump that the question of lesson 7 asks about. Piles of the lesson's settings slump by 0.3 to 0.45, so that a
+/// smaller Bond number or another Δt can change the answer.
+const ASKED_SLUMP: f64 = 0.3;
 /// Simulated time after a change of Δt for which the pile is watched, s.
 const WATCHED_SECS: f64 = 0.3;
 
@@ -132,4 +135,13 @@ pub(super) fn ten_sweeps(rows: &[Observables]) -> Option<(usize, String)> {
         100.0 * solved.max_overlap
     );
     Some((usize::from(few.max_overlap > SQUEEZED), text))
+}
+
+/// Evaluates the question of lesson 7: does the user's own pile slump by more than [`ASKED_SLUMP`]?
+pub(super) fn own_pile(rows: &[Observables]) -> Option<(usize, String)> {
+    let slump = rows.first()?.slump;
+    let text = format!(
+        "Your pile slumped by {slump:.2}. Other piles with the same settings slump differently."
+    );
+    Some((usize::from(slump <= ASKED_SLUMP), text))
 }

@@ -53,6 +53,7 @@ fn lesson_answer(title: &str) -> &'static str {
         "Bonds with a length" => "less",
         "What friction depends on" => "right",
         "A heavy disc" => "no",
+        "Your own pile" => "more",
         _ => panic!("{title} asks nothing"),
     }
 }
@@ -173,6 +174,15 @@ fn ten_sweeps_do_not_carry_a_heavy_disc() {
     let overlaps: Vec<f64> = rows.iter().map(|row| row.max_overlap).collect();
     assert_eq!(right_answer(lesson, &rows), lesson_answer(lesson.title));
     assert!(overlaps[0] > 0.03 && overlaps[1] < 1e-4, "overlaps {overlaps:?}");
+}
+
+#[test]
+fn the_last_lesson_asks_about_a_slump_that_bond_can_bring_below_the_asked_one() {
+    let (_, lesson) = lesson("Your own pile");
+    let rows = final_rows(lesson, None);
+    assert_eq!(right_answer(lesson, &rows), lesson_answer(lesson.title));
+    let held = [Observables { slump: 0.05, ..rows[0] }];
+    assert_ne!(right_answer(lesson, &held), lesson_answer(lesson.title));
 }
 
 #[test]

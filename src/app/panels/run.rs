@@ -92,8 +92,7 @@ fn scene_box(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery)
             "To open a TOML scene, a CSV file of discs or a saved run, drop it on the window.",
         );
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
-            let list = gallery.show(ui, context, &current, &SCENE_GROUPS).labelled_by(label.id);
-            context.note_control("scenes", list.rect);
+            gallery.show(ui, context, &current, &SCENE_GROUPS).labelled_by(label.id);
         });
     });
     if let Some(info) = SCENES.iter().find(|info| info.name == current) {
