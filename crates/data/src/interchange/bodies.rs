@@ -10,7 +10,7 @@ use slump_core::with_model;
 
 use super::{Friction, ProblemFile, pairs};
 use crate::contact::{ContactLaw, ContactList};
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::scene::Scene;
 use crate::sim::{ProblemVisitor, RunEnding, Simulation};
 use crate::solver::{Assembled, FixedRow, Model, ModelParts, PairRow, Row, StepProblem};
@@ -257,9 +257,7 @@ pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> R
         return Err(failure);
     }
     let file = problem_file_of(&simulation)?;
-    if file.nc == 0 {
-        return Err(Error::value("at", at_secs, "a time at which there are contacts"));
-    }
+    error::check(file.nc != 0, "at", at_secs, "a time at which there are contacts")?;
     // Contact laws of a finite scene can still overflow, and a file cannot contain infinite numbers.
     file.delassus()?;
     file.bodies.as_ref().map_or(Ok(()), |bodies| bodies.check(&file))?;

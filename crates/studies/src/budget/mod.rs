@@ -270,24 +270,14 @@ fn command_of(options: &BudgetOptions, settings: &Settings) -> Result<String> {
 
 fn window_of(options: &BudgetOptions, starts: &Starts) -> Result<Window> {
     let duration_secs = starts.scene.duration_secs;
-    let (from_secs, to_secs) =
-        (options.from_secs.unwrap_or(0.0), options.to_secs.unwrap_or(duration_secs));
-    let allowed =
-        |from: f64| format!("above {from} s and at most the duration of {duration_secs} s");
-    if !(from_secs >= 0.0 && from_secs < duration_secs) {
-        let allowed = format!("at least 0 and below the duration of {duration_secs} s");
-        return Err(Error::value("from", from_secs, allowed));
-    }
-    if !(to_secs > from_secs && to_secs <= duration_secs) {
-        return Err(Error::value("to", to_secs, allowed(from_secs)));
-    }
+    let from_secs = options.from_secs.unwrap_or(0.0);
+    let to_secs = options.to_secs.unwrap_or(duration_secs);
+    let allowed = format!("at least 0 and below the duration of {duration_secs} s");
+    error::check(from_secs >= 0.0 && from_secs < duration_secs, "from", from_secs, allowed)?;
+    let allowed = format!("above {from_secs} s and at most the duration of {duration_secs} s");
+    error::check(to_secs > from_secs && to_secs <= duration_secs, "to", to_secs, allowed)?;
     let step = starts.scene.parameters.time_step_secs;
-    if to_secs - from_secs < 0.5 * step {
-        return Err(Error::value(
-            "to",
-            to_secs,
-            format!("at least a time step of {step} s after from"),
-        ));
-    }
+    let allowed = format!("at least a time step of {step} s after from");
+    error::check(to_secs - from_secs >= 0.5 * step, "to", to_secs, allowed)?;
     Ok(Window { from_secs, to_secs })
 }
