@@ -32,7 +32,16 @@ impl Table {
 
     /// Makes the table of contacts of a snapshot: one row per contact.
     pub fn of_contacts(moment: &Moment) -> Self {
-        contacts(moment)
+        let (step, time_secs) = (moment.observables.step, moment.observables.time_secs);
+        let has_bonds = moment.settings.stepper == Stepper::Range;
+        let others = OtherBodies::of(moment);
+        let row = |state: &ContactState| {
+            let (kind, other_id, name) = others.told(state.other);
+            let id = moment.id(state.grain);
+            ContactTableRow { step, time_secs, id, other_id, kind, name, has_bonds, state: *state }
+        };
+        let rows: Vec<ContactTableRow> = moment.contacts.iter().map(row).collect();
+        Self::new(CONTACTS, CONTACT_COLUMNS, &rows, &others.names)
     }
 
     /// Makes the table of measures of a snapshot, such as stress and solid fraction: one row for the whole pile.
@@ -156,19 +165,6 @@ const CONTACT_COLUMNS: &[ColumnSpec<ContactTableRow>] = table_columns! { step an
     "fx", "N", Number(row.state.force.x), "force on i, mean over the step with its shocks";
     "fy", "N", Number(row.state.force.y), "force on i, mean over the step with its shocks";
 };
-
-pub(super) fn contacts(moment: &Moment) -> Table {
-    let (step, time_secs) = (moment.observables.step, moment.observables.time_secs);
-    let has_bonds = moment.settings.stepper == Stepper::Range;
-    let others = OtherBodies::of(moment);
-    let row = |state: &ContactState| {
-        let (kind, other_id, name) = others.told(state.other);
-        let id = moment.id(state.grain);
-        ContactTableRow { step, time_secs, id, other_id, kind, name, has_bonds, state: *state }
-    };
-    let rows: Vec<ContactTableRow> = moment.contacts.iter().map(row).collect();
-    Table::new(CONTACTS, CONTACT_COLUMNS, &rows, &others.names)
-}
 
 const TIME_COLUMNS: &[ColumnSpec<Observables>] = table_columns! { step and time of now; };
 

@@ -55,7 +55,7 @@ impl Means {
             }
         };
         Self {
-            pairs: pairs_table(sums, moment),
+            pairs: Table::of_pairs(sums, moment),
             grains: self::of_grains(&of_grains),
             walls: of_walls(
                 &walls(&moment.surroundings).into_iter().map(of_wall).collect::<Vec<_>>(),
@@ -95,23 +95,19 @@ const PAIR_COLUMNS: &[ColumnSpec<PairTableRow>] = table_columns! { step and time
     "fy", "N", Number(row.sum.impulse.y / row.secs), "force on i, mean over mean_time";
 };
 
-fn pairs_table(sums: &ForceSums, moment: &Moment) -> Table {
-    let (step, time_secs) = (moment.observables.step, moment.observables.time_secs);
-    let others = OtherBodies::of(moment);
-    let row = |&sum: &PairSum| {
-        let (kind, other_id, name) = others.told(sum.other);
-        let id = moment.id(sum.grain);
-        PairTableRow { step, time_secs, secs: sums.secs, id, other_id, kind, name, sum }
-    };
-    let rows: Vec<PairTableRow> = sums.pairs.iter().map(row).collect();
-    Table::new("pairs", PAIR_COLUMNS, &rows, &others.names)
-}
-
 impl Table {
     /// Makes the table of pairs: one row per pair of bodies between which a contact force acted since the previous
     /// frame.
     pub fn of_pairs(sums: &ForceSums, moment: &Moment) -> Self {
-        pairs_table(sums, moment)
+        let (step, time_secs) = (moment.observables.step, moment.observables.time_secs);
+        let others = OtherBodies::of(moment);
+        let row = |&sum: &PairSum| {
+            let (kind, other_id, name) = others.told(sum.other);
+            let id = moment.id(sum.grain);
+            PairTableRow { step, time_secs, secs: sums.secs, id, other_id, kind, name, sum }
+        };
+        let rows: Vec<PairTableRow> = sums.pairs.iter().map(row).collect();
+        Self::new("pairs", PAIR_COLUMNS, &rows, &others.names)
     }
 }
 
