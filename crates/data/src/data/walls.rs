@@ -7,8 +7,8 @@ use glam::DVec2;
 
 use super::table::Table;
 use crate::column_spec::{ColumnSpec, table_columns};
-use crate::sim::{GrainState, Moment, MotionView, OtherBody, Surroundings};
-use crate::world::{Boundary, Edge, materials_of};
+use crate::sim::{self, GrainState, Moment, MotionView, OtherBody, Surroundings};
+use crate::world::{Boundary, materials_of};
 
 struct WallTableRow {
     step: u64,
@@ -151,7 +151,7 @@ fn row(
 /// first boundary, else the centre of its first disc.
 pub(super) fn place_of(wall: &MotionView, surroundings: &Surroundings) -> DVec2 {
     let Surroundings { boundaries, fixed_discs, .. } = surroundings;
-    let of_boundary = wall.boundaries.first().and_then(|&it| point_of(&boundaries[it]));
+    let of_boundary = wall.boundaries.first().map(|&it| sim::place_of(&boundaries[it]));
     let of_disc = || wall.fixed_discs.first().map(|&it| fixed_discs[it].position);
     let turns = wall.angular_velocity != 0.0;
     if turns { wall.pivot } else { of_boundary.or_else(of_disc).unwrap_or_default() }
@@ -164,11 +164,4 @@ pub(super) fn is_of(body: OtherBody, wall: &MotionView) -> bool {
         OtherBody::FixedDisc(disc) => wall.fixed_discs.contains(&(disc as usize)),
         OtherBody::Boundary(boundary) => wall.boundaries.contains(&(boundary as usize)),
     }
-}
-
-fn point_of(boundary: &Boundary) -> Option<DVec2> {
-    boundary.edges().first().map(|edge| match *edge {
-        Edge::Endless { point, .. } => point,
-        Edge::Wall([from, _]) | Edge::Side([from, _]) => from,
-    })
 }
