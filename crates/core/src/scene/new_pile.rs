@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{self, Error, Result};
+use crate::error::{self, Result};
 use crate::scene::sizes::Sizes;
 use crate::setting::words;
 
@@ -70,10 +70,8 @@ impl NewPile {
         let (width, spacing) = (self.box_width_in_diameters, self.spacing());
         let allowed = format!("between {} and 1e6 diameters", (1e3 * spacing).round() / 1e3);
         error::check((spacing..1e6).contains(&width), "box-width", width, allowed)?;
-        if !(1..=1_000_000).contains(&self.grains) {
-            return Err(Error::value("grains", self.grains, "between 1 and 1,000,000"));
-        }
-        Ok(())
+        let is_count = (1..=1_000_000).contains(&self.grains);
+        error::check(is_count, "grains", self.grains, "between 1 and 1,000,000")
     }
 
     /// Returns the spacing of the lattice on which the grains of the method rain are placed before they fall, in mean

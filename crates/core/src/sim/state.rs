@@ -250,9 +250,8 @@ const MOST_RADII_OF_DIAMETER: f64 = 200.0;
 /// each disc would have too many neighbours.
 pub(super) fn reach_in(world: &World, gap_tolerance: f64) -> Result<Reach> {
     let diameter = world.mean_diameter;
-    if !(diameter > 0.0 && diameter.is_finite()) {
-        return Err(Error::value("mean_diameter", diameter, "a finite length > 0 m"));
-    }
+    let is_length = diameter > 0.0 && diameter.is_finite();
+    error::check(is_length, "mean_diameter", diameter, "a finite length > 0 m")?;
     let most = MOST_RADII_OF_DIAMETER * world.grains.radii.iter().copied().fold(0.0, f64::max);
     if diameter > most {
         let allowed = format!("at most {most} m, 100 times the diameter of the largest grain");

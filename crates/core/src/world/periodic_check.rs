@@ -35,9 +35,8 @@ impl Periodic {
         physics: Physics,
         lengths: [f64; 2],
     ) -> Result<()> {
-        if self.x.is_none() && self.y.is_none() && !self.is_sheared() {
-            return Err(Error::value("periodic", "without borders", "given with x, y or both"));
-        }
+        let has_borders = self.x.is_some() || self.y.is_some() || self.is_sheared();
+        error::check(has_borders, "periodic", "without borders", "given with x, y or both")?;
         let allowed = "left out where physics.axes is 1";
         error::check(self.y.is_none() || physics.axes != 1, "periodic.y", "given", allowed)?;
         for wrapping in self.wrapping() {
@@ -81,8 +80,7 @@ impl Periodic {
             return Err(Error::value(field, found, allowed));
         }
         let allowed = "0 where there are boundaries or fixed discs, which cannot go with it";
-        error::check(fixed_bodies == 0, field, found, allowed)?;
-        Ok(())
+        error::check(fixed_bodies == 0, field, found, allowed)
     }
 
     fn wrapping(self) -> impl Iterator<Item = Wrapping> {

@@ -92,10 +92,9 @@ impl ProblemFile {
     /// If the file would be larger than the largest file that Slump reads, or the system refuses to write it.
     pub fn write(&self, path: &Path) -> Result<()> {
         let text = self.text();
-        if text.len() as u64 > MOST_BYTES {
-            let field = "the length of the problem's file";
-            return Err(Error::value(field, text.len(), format!("at most {MOST_BYTES} bytes")));
-        }
+        let (length, allowed) = (text.len(), format!("at most {MOST_BYTES} bytes"));
+        let is_small = length as u64 <= MOST_BYTES;
+        error::check(is_small, "the length of the problem's file", length, allowed)?;
         write_file(path, text.as_bytes())
     }
 
@@ -150,10 +149,9 @@ impl ProblemFile {
     pub fn delassus(&self) -> Result<DelassusProblem> {
         error::check(self.nc != 0, "nc", 0, "at least 1")?;
         // This is checked before any memory is allocated whose size is given by `nc` and not by the size of the file.
-        if Some(self.q.len()) != self.nc.checked_mul(2) {
-            let allowed = format!("{} (2 nc)", 2 * self.nc as u128);
-            return Err(Error::value("the length of q", self.q.len(), allowed));
-        }
+        let (length, allowed) = (self.q.len(), format!("{} (2 nc)", 2 * self.nc as u128));
+        let is_whole = Some(length) == self.nc.checked_mul(2);
+        error::check(is_whole, "the length of q", length, allowed)?;
         let friction = self.friction();
         let allowed = format!("{} (nc)", self.nc);
         error::check(friction.len() == self.nc, "the length of mu", friction.len(), allowed)?;

@@ -150,14 +150,8 @@ fn made_showing(
     let quantities: Vec<BudgetQuantity> =
         asked.iter().map(|text| text.parse()).collect::<Result<_>>()?;
     error::check(*cost_secs > 0.0, "cost", format!("{cost_secs} s"), "a time > 0")?;
-    if let Some(within) = within {
-        error::check(
-            *within > 0.0 && within.is_finite(),
-            "within",
-            *within,
-            "a finite number > 0",
-        )?;
-    }
+    let is_size = within.is_none_or(|within| within > 0.0 && within.is_finite());
+    error::check(is_size, "within", within.unwrap_or(0.0), "a finite number > 0")?;
     check_writable("out", folder)?;
     let starts = Starts::of(config, states)?;
     let window = window_of(options, &starts)?;
