@@ -51,21 +51,30 @@ impl<Row> CellValue<Row> {
 /// column, and the rows of a table are sorted by it.
 pub(crate) const STEP: &str = "step";
 
-pub(crate) const fn column<Row>(
-    name: &'static str,
-    unit: &'static str,
-    about: &'static str,
-    value: CellValue<Row>,
-) -> ColumnSpec<Row> {
-    ColumnSpec { name, unit, about, value }
+/// Makes the list of the columns of a table: name, unit, type of the values with the value in a row, and description of
+/// each column. `step and time of` puts the columns with step and time of a row first.
+macro_rules! table_columns {
+    (step and time of $row:ident; $($columns:tt)*) => {
+        table_columns! { $row;
+            $crate::column_spec::STEP, "", Count($row.step), "steps since the start";
+            "time", "s", Number($row.time_secs), "simulated time";
+            $($columns)*
+        }
+    };
+    ($row:ident; $($name:expr, $unit:literal, $kind:ident($($value:expr),+), $about:expr;)*) => {
+        &[$($crate::column_spec::ColumnSpec {
+            name: $name,
+            unit: $unit,
+            about: $about,
+            value: table_columns!(@$kind $row, $($value),+),
+        }),*]
+    };
+    (@$kind:ident $row:ident, $value:expr) => {
+        $crate::column_spec::CellValue::$kind(|$row| $value)
+    };
+    (@$kind:ident $row:ident, $words:expr, $value:expr) => {
+        $crate::column_spec::CellValue::$kind($words, |$row| $value)
+    };
 }
 
-impl<Row> ColumnSpec<Row> {
-    pub(crate) const fn step(of: fn(&Row) -> u64) -> Self {
-        column(STEP, "", "steps since the start", CellValue::Count(of))
-    }
-
-    pub(crate) const fn time(of: fn(&Row) -> f64) -> Self {
-        column("time", "s", "simulated time", CellValue::Number(of))
-    }
-}
+pub(crate) use table_columns;

@@ -57,7 +57,7 @@ fn every_verdict_is_that_of_the_table() {
 
 #[test]
 fn every_challenge_opens_a_scene_and_no_two_scenes_share_a_name() {
-    for challenge in &CHALLENGES {
+    for challenge in CHALLENGES {
         assert!(built_in(challenge.name).is_ok(), "{} is no scene", challenge.name);
     }
     let mut names: Vec<_> =
@@ -71,7 +71,7 @@ fn every_challenge_opens_a_scene_and_no_two_scenes_share_a_name() {
 
 #[test]
 fn every_scene_breaks_a_method_at_its_last_level_and_none_at_its_first() {
-    for challenge in &CHALLENGES {
+    for challenge in CHALLENGES {
         let hardest = challenge.quick[challenge.quick.len() - 1];
         let of = |level: f64| {
             let here = quick().cells.iter();

@@ -6,7 +6,7 @@ use parry2d_f64::query::{PointQuery, PointQueryWithLocation};
 use parry2d_f64::shape::{HalfSpace, Segment, SegmentPointLocation};
 
 use super::seams::{Seams, nearest_corner};
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::world::{Boundary, Carry};
 
 /// A half-space, segment or convex polygon that is a part of a boundary. A disc touches it in at most one point.
@@ -99,9 +99,7 @@ impl Feature {
         name: impl Fn(usize) -> String,
         features: &mut Vec<Feature>,
     ) -> Result<()> {
-        if points.len() < 2 {
-            return Err(Error::value(field, count_of(points, "point"), "at least two points"));
-        }
+        error::check(points.len() >= 2, field, count_of(points, "point"), "at least two points")?;
         check_finite(points, &name)?;
         let apart = |ends: &[DVec2]| {
             let distance = ends[0].distance(ends[1]);
@@ -283,9 +281,7 @@ fn check_finite(points: &[DVec2], name: impl Fn(usize) -> String) -> Result<()> 
 /// plane: once for a single round.
 fn check_convex(points: &[DVec2], field: &str) -> Result<()> {
     let count = points.len();
-    if count < 3 {
-        return Err(Error::value(field, count_of(points, "corner"), "at least three corners"));
-    }
+    error::check(count >= 3, field, count_of(points, "corner"), "at least three corners")?;
     check_finite(points, |index| format!("{field}.points[{index}]"))?;
     let side = |k: usize| points[(k + 1) % count] - points[k % count];
     if let Some(k) = (0..count).find(|&k| side(k + count - 1).perp_dot(side(k)) <= 0.0) {

@@ -243,11 +243,9 @@ impl Scene {
             / self.grains.len() as f64;
         // Lower limit of `mean_diameter`. The upper limit depends on the largest grain; `reach_in` checks it.
         let least = mean / MOST_DIAMETERS_OF_MEAN;
-        if self.mean_diameter < least {
-            let allowed =
-                format!("at least {least} m, a hundredth of the mean diameter of the grains");
-            return Err(Error::value("mean_diameter", self.mean_diameter, allowed));
-        }
+        let is_large = self.mean_diameter >= least;
+        let allowed = format!("at least {least} m, a hundredth of the mean diameter of the grains");
+        error::check(is_large, "mean_diameter", self.mean_diameter, allowed)?;
         for (index, disc) in self.fixed_discs.iter().enumerate() {
             positive(format_args!("fixed_discs[{index}].radius"), disc.radius, " m")?;
             if !disc.position.is_finite() {
@@ -261,9 +259,8 @@ impl Scene {
             )?;
         }
         let magnitude = self.gravity.magnitude();
-        if !(magnitude >= 0.0 && magnitude.is_finite()) {
-            return Err(Error::value("gravity", magnitude, "a finite norm ≥ 0 m/s²"));
-        }
+        let is_norm = magnitude >= 0.0 && magnitude.is_finite();
+        error::check(is_norm, "gravity", magnitude, "a finite norm ≥ 0 m/s²")?;
         if let Gravity::Attraction { centre, .. } = self.gravity
             && !centre.is_finite()
         {

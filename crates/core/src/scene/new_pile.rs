@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
+use crate::error::{self, Result};
 use crate::scene::sizes::Sizes;
 use crate::setting::words;
 
@@ -68,14 +68,10 @@ impl NewPile {
     /// If a parameter is outside its range. The error names the field, its value and the range.
     pub fn validate(&self) -> Result<()> {
         let (width, spacing) = (self.box_width_in_diameters, self.spacing());
-        if !(spacing..1e6).contains(&width) {
-            let allowed = format!("between {} and 1e6 diameters", (1e3 * spacing).round() / 1e3);
-            return Err(Error::value("box-width", width, allowed));
-        }
-        if !(1..=1_000_000).contains(&self.grains) {
-            return Err(Error::value("grains", self.grains, "between 1 and 1,000,000"));
-        }
-        Ok(())
+        let allowed = format!("between {} and 1e6 diameters", (1e3 * spacing).round() / 1e3);
+        error::check((spacing..1e6).contains(&width), "box-width", width, allowed)?;
+        let is_count = (1..=1_000_000).contains(&self.grains);
+        error::check(is_count, "grains", self.grains, "between 1 and 1,000,000")
     }
 
     /// Returns the spacing of the lattice on which the grains of the method rain are placed before they fall, in mean

@@ -215,13 +215,8 @@ impl Simulation {
     /// Fails if no grain has this index, or if it is the only grain.
     pub fn remove_grain(&mut self, grain: usize) -> Result<()> {
         let count = self.state.world.grains.len();
-        if grain >= count {
-            return Err(Error::value(
-                "grain",
-                grain,
-                format!("below {count}, the number of grains"),
-            ));
-        }
+        let allowed = format!("below {count}, the number of grains");
+        error::check(grain < count, "grain", grain, allowed)?;
         error::check(count != 1, "grains", 1, "more than one where one is taken away")?;
         self.initial_heights -= self.state.world.grains.positions[grain].y;
         self.watch.remove(grain);

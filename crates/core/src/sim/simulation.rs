@@ -6,7 +6,7 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::contact::{Candidates, ContactList};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, check};
 use crate::sim::alarm::{AlarmKind, Watch};
 use crate::sim::observables::{self, Observables};
 use crate::sim::settings::{Settings, Stepper};
@@ -444,22 +444,18 @@ impl Simulation {
         let Self { state, watch, .. } = &self;
         let grains = state.world.grains.len();
         let bodies = grains + state.world.fixed_discs.len() + state.candidates.features().len();
-        let refuse = |field: &str| Error::value(field, "of other grains", "of those of the state");
-        if !state.contacts.is_sound(bodies, grains) {
-            return Err(refuse("contacts"));
+        let is_pull = state.pull.is_none_or(|pull| (pull.grain as usize) < grains);
+        let forces = state.body_forces.len();
+        for (field, is_sound) in [
+            ("contacts", state.contacts.is_sound(bodies, grains)),
+            ("watch", watch.losses.is_of(grains)),
+            ("pull", is_pull),
+            ("body_forces", forces == 0 || forces == grains),
+        ] {
+            check(is_sound, field, "of other grains", "of those of the state")?;
         }
-        if !watch.losses.is_of(grains) {
-            return Err(refuse("watch"));
-        }
-        if state.pull.is_some_and(|pull| pull.grain as usize >= grains) {
-            return Err(refuse("pull"));
-        }
-        if !(state.body_forces.is_empty() || state.body_forces.len() == grains) {
-            return Err(refuse("body_forces"));
-        }
-        if state.is_held && state.world.motions.is_empty() {
-            return Err(Error::value("hand", "on no wall", "on the wall of the last motion"));
-        }
+        let is_hand = !state.is_held || !state.world.motions.is_empty();
+        check(is_hand, "hand", "on no wall", "on the wall of the last motion")?;
         Ok(self)
     }
 }

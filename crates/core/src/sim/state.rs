@@ -5,7 +5,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::{Candidates, ContactList, LookAhead, PairLaws, Reach, check_distances};
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::sim::pull::{Pull, Push};
 use crate::sim::settings::Settings;
 use crate::sim::step_times::Stopwatch;
@@ -250,9 +250,8 @@ const MOST_RADII_OF_DIAMETER: f64 = 200.0;
 /// each disc would have too many neighbours.
 pub(super) fn reach_in(world: &World, gap_tolerance: f64) -> Result<Reach> {
     let diameter = world.mean_diameter;
-    if !(diameter > 0.0 && diameter.is_finite()) {
-        return Err(Error::value("mean_diameter", diameter, "a finite length > 0 m"));
-    }
+    let is_length = diameter > 0.0 && diameter.is_finite();
+    error::check(is_length, "mean_diameter", diameter, "a finite length > 0 m")?;
     let most = MOST_RADII_OF_DIAMETER * world.grains.radii.iter().copied().fold(0.0, f64::max);
     if diameter > most {
         let allowed = format!("at most {most} m, 100 times the diameter of the largest grain");
@@ -262,10 +261,8 @@ pub(super) fn reach_in(world: &World, gap_tolerance: f64) -> Result<Reach> {
     // If a disc were smaller than the tolerance, all discs within the tolerance would count as touching.
     let least_radius = world.grains.radii.iter().copied().fold(f64::INFINITY, f64::min);
     let most = (0.1 * skin).min(least_radius);
-    if !(0.0..most).contains(&gap_tolerance) {
-        let allowed = format!("≥ 0 and below {most} m");
-        return Err(Error::value("gap_tolerance", gap_tolerance, allowed));
-    }
+    let allowed = format!("≥ 0 and below {most} m");
+    error::check((0.0..most).contains(&gap_tolerance), "gap_tolerance", gap_tolerance, allowed)?;
     check_distances(world)?;
     Ok(Reach { skin, gap_tolerance })
 }

@@ -85,6 +85,8 @@ impl MethodOrder {
     }
 }
 
+use MethodOrder::{AllAtOnce, Always, OfSettings};
+
 /// Text for users that names the contact laws of the solutions that a method finds: Signorini's law with cohesion, and
 /// Coulomb friction.
 const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
@@ -93,121 +95,52 @@ const COULOMB: &str = "Signorini's law with cohesion and Coulomb's law";
 /// solves the laws that `COULOMB` names.
 const BOUND_BY_BOUND: &str = "the same, the bound of friction taken anew every iteration";
 
-/// Returns the properties of a method that supports periodic borders that shear, and contact laws that differ between
-/// pairs of materials. The method supports neither friction models other than Coulomb's law nor walls driven by a force
-/// nor rolling friction.
-const fn known(
-    method: Method,
-    order: MethodOrder,
-    solves: &'static str,
-    source: &'static str,
-) -> MethodInfo {
-    MethodInfo {
-        method,
-        name: method.name(),
-        summary: method.hint(),
-        solves,
-        source,
-        order,
-        takes_models: false,
-        takes_drives: false,
-        takes_shear: true,
-        takes_pairs: true,
-        takes_rolling: false,
-    }
+/// Makes [`METHODS`]. Each row has a method, its order, the laws that it solves and its source, and then the names of
+/// the parts of scenes that the method supports.
+macro_rules! methods {
+    ($($method:ident, $order:expr, $solves:expr, $source:literal: $($takes:ident)*;)*) => {
+        /// The properties of all methods, in the order of [`Method`], which is also the order in which the program
+        /// lists them.
+        pub const METHODS: [MethodInfo; Method::ALL.len()] = [$(MethodInfo {
+            $($takes: true,)*
+            ..MethodInfo {
+                method: Method::$method,
+                name: Method::$method.name(),
+                summary: Method::$method.hint(),
+                solves: $solves,
+                source: $source,
+                order: $order,
+                takes_models: false,
+                takes_drives: false,
+                takes_shear: false,
+                takes_pairs: false,
+                takes_rolling: false,
+            }
+        }),*];
+    };
 }
 
-/// The properties of all methods, in the order of [`Method`], which is also the order in which the program lists them.
-pub const METHODS: [MethodInfo; Method::ALL.len()] = {
-    use MethodOrder::{AllAtOnce, Always, OfSettings};
-    [
-        MethodInfo {
-            takes_models: true,
-            takes_drives: true,
-            takes_rolling: true,
-            ..known(
-                Method::Nsgs,
-                OfSettings,
-                COULOMB,
-                "M. Jean, The non-smooth contact dynamics method (1999)",
-            )
-        },
-        MethodInfo {
-            takes_shear: false,
-            takes_pairs: false,
-            ..known(
-                Method::NsgsParallel,
-                Always(Ordering::Coloured),
-                COULOMB,
-                "M. Jean (1999); colours as in M. Renouf, F. Dubois, P. Alart (2004)",
-            )
-        },
-        MethodInfo {
-            takes_rolling: true,
-            ..known(
-                Method::Newton,
-                OfSettings,
-                COULOMB,
-                "P. Alart, A. Curnier, generalised Newton methods for contact with friction (1991)",
-            )
-        },
-        MethodInfo {
-            takes_drives: true,
-            takes_rolling: true,
-            ..known(
-                Method::Nncg,
-                OfSettings,
-                COULOMB,
-                "M. Silcowitz, S. Niebe, K. Erleben, non-smooth non-linear conjugate gradients (2010)",
-            )
-        },
-        MethodInfo {
-            takes_drives: true,
-            ..known(
-                Method::Apgd,
-                AllAtOnce,
-                BOUND_BY_BOUND,
-                "H. Mazhar, T. Heyn, D. Negrut, A. Tasora, Nesterov's method for contact (2015)",
-            )
-        },
-        known(
-            Method::Admm,
-            AllAtOnce,
-            BOUND_BY_BOUND,
-            "S. Boyd and others (2011); for contact V. Acary, M. Bremond, O. Huber (2018)",
-        ),
-        MethodInfo {
-            takes_drives: true,
-            ..known(
-                Method::Jacobi,
-                AllAtOnce,
-                COULOMB,
-                "R. Tonge, F. Benevolenski, A. Voroshilov, mass splitting (2012)",
-            )
-        },
-        MethodInfo {
-            takes_models: true,
-            takes_drives: true,
-            ..known(
-                Method::InteriorPoint,
-                OfSettings,
-                "a convex model of friction; Coulomb's law where its path leads there",
-                "S. Mehrotra, On the implementation of a primal-dual interior point method (1992)",
-            )
-        },
-        MethodInfo {
-            takes_models: true,
-            takes_drives: true,
-            takes_rolling: true,
-            ..known(
-                Method::Auto,
-                OfSettings,
-                "a convex model of friction, or Coulomb's law",
-                "the charts of speed against accuracy",
-            )
-        },
-    ]
-};
+methods! {
+    Nsgs, OfSettings, COULOMB, "M. Jean, The non-smooth contact dynamics method (1999)":
+        takes_models takes_drives takes_shear takes_pairs takes_rolling;
+    NsgsParallel, Always(Ordering::Coloured), COULOMB,
+        "M. Jean (1999); colours as in M. Renouf, F. Dubois, P. Alart (2004)":;
+    Newton, OfSettings, COULOMB, "P. Alart, A. Curnier, generalised Newton methods for contact with friction (1991)":
+        takes_shear takes_pairs takes_rolling;
+    Nncg, OfSettings, COULOMB, "M. Silcowitz, S. Niebe, K. Erleben, non-smooth non-linear conjugate gradients (2010)":
+        takes_drives takes_shear takes_pairs takes_rolling;
+    Apgd, AllAtOnce, BOUND_BY_BOUND, "H. Mazhar, T. Heyn, D. Negrut, A. Tasora, Nesterov's method for contact (2015)":
+        takes_drives takes_shear takes_pairs;
+    Admm, AllAtOnce, BOUND_BY_BOUND, "S. Boyd and others (2011); for contact V. Acary, M. Bremond, O. Huber (2018)":
+        takes_shear takes_pairs;
+    Jacobi, AllAtOnce, COULOMB, "R. Tonge, F. Benevolenski, A. Voroshilov, mass splitting (2012)":
+        takes_drives takes_shear takes_pairs;
+    InteriorPoint, OfSettings, "a convex model of friction; Coulomb's law where its path leads there",
+        "S. Mehrotra, On the implementation of a primal-dual interior point method (1992)":
+        takes_models takes_drives takes_shear takes_pairs;
+    Auto, OfSettings, "a convex model of friction, or Coulomb's law", "the charts of speed against accuracy":
+        takes_models takes_drives takes_shear takes_pairs takes_rolling;
+}
 
 impl Method {
     /// Returns the properties of this method.

@@ -77,9 +77,8 @@ fn check_drive(motion: &Motion, field: &str, periodic: Option<Periodic>) -> Resu
 }
 
 fn check_numbers(motion: &Motion, field: &str) -> Result<()> {
-    let check = |is_sound: bool, name: &str, value: &dyn Display, allowed: &str| match is_sound {
-        true => Ok(()),
-        false => Err(Error::value(format!("{field}.{name}"), value, allowed)),
+    let check = |is_sound: bool, name: &str, value: &dyn Display, allowed: &str| {
+        error::check(is_sound, format!("{field}.{name}"), value, allowed)
     };
     let finite = |name: &str, value: f64| check(value.is_finite(), name, &value, "finite");
     let finite_point = |name: &str, value: DVec2| check(value.is_finite(), name, &value, "finite");
@@ -156,47 +155,34 @@ impl Drive {
     /// Checks the numerical values of a drive (a force or pressure that moves boundaries or fixed discs). `field` is
     /// the name of the drive in error messages.
     fn check(&self, field: &str, periodic: Option<Periodic>) -> Result<()> {
-        let refuse = |name: &str, found: String, allowed: &str| {
-            Err(Error::value(format!("{field}.{name}"), found, allowed))
+        let check = |is_sound: bool, name: &str, found: &dyn Display, allowed: &str| {
+            error::check(is_sound, format!("{field}.{name}"), found, allowed)
         };
         let Self { direction, force, pressure, width, mass, damping, speed } = self;
-        if !(direction.is_finite() && direction.length() > 0.0) {
-            return refuse("direction", direction.to_string(), "finite, and not 0");
-        }
-        if !(*mass > 0.0 && mass.is_finite()) {
-            return refuse("mass", mass.to_string(), "a finite number of kg > 0");
-        }
-        if !(*damping >= 0.0 && damping.is_finite()) {
-            return refuse("damping", damping.to_string(), "a finite number of kg/s ≥ 0");
-        }
-        if !speed.is_finite() {
-            return refuse("speed", speed.to_string(), "finite");
-        }
+        let is_direction = direction.is_finite() && direction.length() > 0.0;
+        check(is_direction, "direction", direction, "finite, and not 0")?;
+        let is_mass = *mass > 0.0 && mass.is_finite();
+        check(is_mass, "mass", mass, "a finite number of kg > 0")?;
+        let is_damping = *damping >= 0.0 && damping.is_finite();
+        check(is_damping, "damping", damping, "a finite number of kg/s ≥ 0")?;
+        check(speed.is_finite(), "speed", speed, "finite")?;
         match (force, pressure) {
-            (Some(force), None) if !force.is_finite() => {
-                refuse("force", force.to_string(), "a finite number of N")
+            (Some(force), None) => {
+                check(force.is_finite(), "force", force, "a finite number of N")?;
+                let allowed = "left out where no pressure is given";
+                check(width.is_none(), "width", &"given", allowed)
             }
-            (None, Some(pressure)) if !pressure.is_finite() => {
-                refuse("pressure", pressure.to_string(), "a finite number of N/m")
+            (None, Some(pressure)) => {
+                check(pressure.is_finite(), "pressure", pressure, "a finite number of N/m")?;
+                let is_width = width.is_none_or(|width| width > 0.0 && width.is_finite());
+                check(is_width, "width", &width.unwrap_or(0.0), "a finite number of m > 0")?;
+                let is_known = width.is_some() || self.period_across(periodic).is_some();
+                let allowed = "given with a pressure, unless borders are periodic and it acts across their axis";
+                check(is_known, "width", &"left out", allowed)
             }
-            (Some(_), None) if width.is_some() => {
-                refuse("width", "given".into(), "left out where no pressure is given")
-            }
-            (Some(_), None) => Ok(()),
-            (None, Some(_)) => match width {
-                Some(width) if !(*width > 0.0 && width.is_finite()) => {
-                    refuse("width", width.to_string(), "a finite number of m > 0")
-                }
-                None if self.period_across(periodic).is_none() => refuse(
-                    "width",
-                    "left out".into(),
-                    "given with a pressure, unless borders are periodic and it acts across their axis",
-                ),
-                _ => Ok(()),
-            },
             (Some(_), Some(_)) | (None, None) => {
                 let found = if force.is_some() { "given with a pressure" } else { "left out" };
-                refuse("force", found.into(), "given, or else a pressure, and not both")
+                check(false, "force", &found, "given, or else a pressure, and not both")
             }
         }
     }

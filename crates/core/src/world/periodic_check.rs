@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::{Boundary, Gravity, Motion, Periodic, Physics};
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 
 /// Smallest allowed width or height of a periodic cell, in diameters of its largest disc. Then two discs of this size
 /// fit side by side between a disc and the periodic image of this disc. In a narrower cell they could not pass each
@@ -35,13 +35,10 @@ impl Periodic {
         physics: Physics,
         lengths: [f64; 2],
     ) -> Result<()> {
-        if self.x.is_none() && self.y.is_none() && !self.is_sheared() {
-            return Err(Error::value("periodic", "without borders", "given with x, y or both"));
-        }
-        if self.y.is_some() && physics.axes == 1 {
-            let allowed = "left out where physics.axes is 1";
-            return Err(Error::value("periodic.y", "given", allowed));
-        }
+        let has_borders = self.x.is_some() || self.y.is_some() || self.is_sheared();
+        error::check(has_borders, "periodic", "without borders", "given with x, y or both")?;
+        let allowed = "left out where physics.axes is 1";
+        error::check(self.y.is_none() || physics.axes != 1, "periodic.y", "given", allowed)?;
         for wrapping in self.wrapping() {
             wrapping.check_period(lengths)?;
         }
@@ -65,10 +62,8 @@ impl Periodic {
         if let Some((field, found)) = numbers.into_iter().find(|(_, number)| !number.is_finite()) {
             return Err(Error::value(field, found, "a finite number"));
         }
-        if !self.border_speed().is_finite() {
-            let allowed = "so small that the border's speed is a finite number";
-            return Err(Error::value("periodic.shear_rate", shear_rate, allowed));
-        }
+        let allowed = "so small that the border's speed is a finite number";
+        error::check(self.border_speed().is_finite(), "periodic.shear_rate", shear_rate, allowed)?;
         let Some((field, found)) = numbers.into_iter().find(|(_, number)| *number != 0.0) else {
             return Ok(());
         };
@@ -84,11 +79,8 @@ impl Periodic {
             let allowed = "0 unless physics has friction and rotation; mu = 0 is no matter";
             return Err(Error::value(field, found, allowed));
         }
-        if fixed_bodies > 0 {
-            let allowed = "0 where there are boundaries or fixed discs, which cannot go with it";
-            return Err(Error::value(field, found, allowed));
-        }
-        Ok(())
+        let allowed = "0 where there are boundaries or fixed discs, which cannot go with it";
+        error::check(fixed_bodies == 0, field, found, allowed)
     }
 
     fn wrapping(self) -> impl Iterator<Item = Wrapping> {

@@ -12,7 +12,7 @@ use super::option_words::parser_of;
 use super::recorded_scene::check_starts_pile;
 use super::scene_file::{read_unsettled, unsettled};
 use crate::data::{RecordedGrains, read_grains};
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::scene::{
     Deposition, NewPile, Preset, Scene, SceneInfo, Settling, Sizes, built_in, cradle_from, pile_of,
     put_on_base, settle,
@@ -476,11 +476,9 @@ impl Config {
     /// options for another scene or initial state are not allowed.
     pub fn change_state(&self, state: &mut SavedState) -> Result<()> {
         let kept = SceneSource { duration: self.source.duration, ..SceneSource::default() };
-        if self.source != kept {
-            let allowed = "left out where scene, initial, initial-step, grains, box-width, base-width, \
-                           seed, deposition, sizes, start or preset is given: a continued run has its own";
-            return Err(Error::value("restart", "given", allowed));
-        }
+        let allowed = "left out where scene, initial, initial-step, grains, box-width, base-width, \
+                       seed, deposition, sizes, start or preset is given: a continued run has its own";
+        error::check(self.source == kept, "restart", "given", allowed)?;
         let mut scene = state.scene.clone();
         self.change_scene(&mut scene)?;
         if scene.settings() != *state.simulation.settings() {

@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::DVec2;
 
 use crate::data::{RecordedGrains, parse_grains, read_grains};
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::input::{MOST_OF_TOML, read_text};
 use crate::scene::{GrainSource, NewPile, Scene, settle, start_of};
 use crate::world::Grain;
@@ -46,10 +46,8 @@ pub(super) fn read_unsettled(path: &Path) -> Result<(Scene, Option<NewPile>)> {
 pub(super) fn unsettled(mut scene: Scene, folder: &Path) -> Result<(Scene, Option<NewPile>)> {
     let mut new_pile = None;
     if let Some(source) = scene.source.take() {
-        if !scene.grains.is_empty() {
-            let allowed = "left out where grains are listed";
-            return Err(Error::value("source", "given", allowed));
-        }
+        let allowed = "left out where grains are listed";
+        error::check(scene.grains.is_empty(), "source", "given", allowed)?;
         let grains = match source {
             GrainSource::Csv { path } => discs_of(&mut scene, &folder.join(path), None)?,
             GrainSource::Data { path, step } => discs_of(&mut scene, &folder.join(path), step)?,

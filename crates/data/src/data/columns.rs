@@ -2,11 +2,9 @@
 
 use super::means;
 use super::other_bodies::{OTHER_KINDS, OtherBodies};
-use super::step_columns::STEP_COLUMNS;
 use super::table::{Table, place_of};
 use super::walls::fixed_discs;
-use crate::column_spec::CellValue::{Count, Flag, Name, Number, SomeNumber, Word};
-use crate::column_spec::{ColumnSpec, column};
+use crate::column_spec::{ColumnSpec, table_columns};
 use crate::granular::{GrainMeasures, Histogram, PileMeasures, histograms};
 use crate::sim::{ContactState, ContactStatus, GrainState, Moment, Observables, Stepper};
 
@@ -34,7 +32,16 @@ impl Table {
 
     /// Makes the table of contacts of a snapshot: one row per contact.
     pub fn of_contacts(moment: &Moment) -> Self {
-        contacts(moment)
+        let (step, time_secs) = (moment.observables.step, moment.observables.time_secs);
+        let has_bonds = moment.settings.stepper == Stepper::Range;
+        let others = OtherBodies::of(moment);
+        let row = |state: &ContactState| {
+            let (kind, other_id, name) = others.told(state.other);
+            let id = moment.id(state.grain);
+            ContactTableRow { step, time_secs, id, other_id, kind, name, has_bonds, state: *state }
+        };
+        let rows: Vec<ContactTableRow> = moment.contacts.iter().map(row).collect();
+        Self::new(CONTACTS, CONTACT_COLUMNS, &rows, &others.names)
     }
 
     /// Makes the table of measures of a snapshot, such as stress and solid fraction: one row for the whole pile.
@@ -72,54 +79,24 @@ struct GrainTableRow {
 const UNWRAPPED: &str =
     "centre at the start plus all displacements since then, not wrapped at periodic borders";
 
-const GRAIN_COLUMNS: &[ColumnSpec<GrainTableRow>] = &[
-    ColumnSpec::step(|row| row.step),
-    ColumnSpec::time(|row| row.time_secs),
-    column(
-        "id",
-        "",
-        "number of the disc, the same in all frames: grains first, then fixed discs, boundaries, and grains that \
-         were added later",
-        Count(|row| row.state.id.into()),
-    ),
-    column("x", "m", "centre", Number(|row| row.state.position.x)),
-    column("y", "m", "centre", Number(|row| row.state.position.y)),
-    column(
-        "angle",
-        "rad",
-        "rotation since the start, anticlockwise",
-        Number(|row| row.state.angle),
-    ),
-    column("vx", "m/s", "velocity of the centre", Number(|row| row.state.velocity.x)),
-    column("vy", "m/s", "velocity of the centre", Number(|row| row.state.velocity.y)),
-    column(
-        "omega",
-        "rad/s",
-        "angular velocity, anticlockwise",
-        Number(|row| row.state.angular_velocity),
-    ),
-    column("radius", "m", "radius", Number(|row| row.state.radius)),
-    column(
-        "mass",
-        "kg",
-        "mass; missing for fixed discs",
-        SomeNumber(|row| (row.kind != FIXED).then_some(row.state.mass)),
-    ),
-    column(
-        "kind",
-        "",
-        "grain, fixed (a fixed disc), or lost: a grain that went through a wall or left the world",
-        Word(KINDS, |row| row.kind as u32),
-    ),
-    column("x_unwrapped", "m", UNWRAPPED, Number(|row| row.state.unwrapped.x)),
-    column("y_unwrapped", "m", UNWRAPPED, Number(|row| row.state.unwrapped.y)),
-    column(
-        "material",
-        "",
-        "name of the material; empty in a scene without materials",
-        Name(|row| row.state.material.into()),
-    ),
-];
+const GRAIN_COLUMNS: &[ColumnSpec<GrainTableRow>] = table_columns! { step and time of row;
+    "id", "", Count(row.state.id.into()),
+        "number of the disc, the same in all frames: grains first, then fixed discs, boundaries, and grains that were \
+         added later";
+    "x", "m", Number(row.state.position.x), "centre";
+    "y", "m", Number(row.state.position.y), "centre";
+    "angle", "rad", Number(row.state.angle), "rotation since the start, anticlockwise";
+    "vx", "m/s", Number(row.state.velocity.x), "velocity of the centre";
+    "vy", "m/s", Number(row.state.velocity.y), "velocity of the centre";
+    "omega", "rad/s", Number(row.state.angular_velocity), "angular velocity, anticlockwise";
+    "radius", "m", Number(row.state.radius), "radius";
+    "mass", "kg", SomeNumber((row.kind != FIXED).then_some(row.state.mass)), "mass; missing for fixed discs";
+    "kind", "", Word(KINDS, row.kind as u32),
+        "grain, fixed (a fixed disc), or lost: a grain that went through a wall or left the world";
+    "x_unwrapped", "m", Number(row.state.unwrapped.x), UNWRAPPED;
+    "y_unwrapped", "m", Number(row.state.unwrapped.y), UNWRAPPED;
+    "material", "", Name(row.state.material.into()), "name of the material; empty in a scene without materials";
+};
 
 pub(super) fn empty_grains() -> Table {
     grains_of(&[], &[], &[]).beside(means::of_grains(&[]))
@@ -161,98 +138,40 @@ struct ContactTableRow {
     state: ContactState,
 }
 
-const CONTACT_COLUMNS: &[ColumnSpec<ContactTableRow>] = &[
-    ColumnSpec::step(|row| row.step),
-    ColumnSpec::time(|row| row.time_secs),
-    column("id_i", "", "grain i", Count(|row| row.id.into())),
-    column(
-        "id_j",
-        "",
-        "id of body j: grains first, then fixed discs, then boundaries",
-        Count(|row| row.other_id),
-    ),
-    column("kind_j", "", "kind of body j", Word(OTHER_KINDS, |row| row.kind)),
-    column("name_j", "", "shape and number of a boundary", Name(|row| row.name)),
-    column("x", "m", "contact point", Number(|row| row.state.point.x)),
-    column("y", "m", "contact point", Number(|row| row.state.point.y)),
-    column("nx", "1", "normal, from j to i", Number(|row| row.state.normal.x)),
-    column("ny", "1", "normal, from j to i", Number(|row| row.state.normal.y)),
-    column(
-        "gap",
-        "m",
-        "distance of the surfaces at the beginning of the step; negative for an overlap",
-        Number(|row| row.state.gap),
-    ),
-    column(
-        "normal_force",
-        "N",
-        "force on i along the normal at the beginning of the step, mean over the step with its shocks; negative \
-         pulls",
-        Number(|row| row.state.normal_force),
-    ),
-    column(
-        "tangential_force",
-        "N",
-        "force on i along (-ny, nx), mean over the step with its shocks; multiplied by -radius, the torque on \
-         either grain",
-        Number(|row| row.state.tangential_force),
-    ),
-    column(
-        "status",
-        "",
-        "status under the contact law and friction",
-        Word(STATUSES, |row| match row.state.status {
-            ContactStatus::Open => 0,
-            ContactStatus::Stick => 1,
-            ContactStatus::Slip => 2,
-        }),
-    ),
-    column(
-        "bond",
-        "",
-        "true if the pair is bonded; missing under laws without bonds",
-        Flag(|row| row.has_bonds.then_some(row.state.bond_stretch.is_some())),
-    ),
-    column(
-        "stretch",
-        "m",
-        "stretch of the bond; missing without a bond",
-        SomeNumber(|row| row.state.bond_stretch),
-    ),
-    column("age", "", "steps since the pair began to touch", Count(|row| row.state.age_steps)),
-    column(
-        "fx",
-        "N",
-        "force on i, mean over the step with its shocks",
-        Number(|row| row.state.force.x),
-    ),
-    column(
-        "fy",
-        "N",
-        "force on i, mean over the step with its shocks",
-        Number(|row| row.state.force.y),
-    ),
-];
+const CONTACT_COLUMNS: &[ColumnSpec<ContactTableRow>] = table_columns! { step and time of row;
+    "id_i", "", Count(row.id.into()), "grain i";
+    "id_j", "", Count(row.other_id), "id of body j: grains first, then fixed discs, then boundaries";
+    "kind_j", "", Word(OTHER_KINDS, row.kind), "kind of body j";
+    "name_j", "", Name(row.name), "shape and number of a boundary";
+    "x", "m", Number(row.state.point.x), "contact point";
+    "y", "m", Number(row.state.point.y), "contact point";
+    "nx", "1", Number(row.state.normal.x), "normal, from j to i";
+    "ny", "1", Number(row.state.normal.y), "normal, from j to i";
+    "gap", "m", Number(row.state.gap), "distance of the surfaces at the beginning of the step; negative for an overlap";
+    "normal_force", "N", Number(row.state.normal_force),
+        "force on i along the normal at the beginning of the step, mean over the step with its shocks; negative pulls";
+    "tangential_force", "N", Number(row.state.tangential_force),
+        "force on i along (-ny, nx), mean over the step with its shocks; multiplied by -radius, the torque on either \
+         grain";
+    "status", "", Word(STATUSES, match row.state.status {
+        ContactStatus::Open => 0,
+        ContactStatus::Stick => 1,
+        ContactStatus::Slip => 2,
+    }), "status under the contact law and friction";
+    "bond", "", Flag(row.has_bonds.then_some(row.state.bond_stretch.is_some())),
+        "true if the pair is bonded; missing under laws without bonds";
+    "stretch", "m", SomeNumber(row.state.bond_stretch), "stretch of the bond; missing without a bond";
+    "age", "", Count(row.state.age_steps), "steps since the pair began to touch";
+    "fx", "N", Number(row.state.force.x), "force on i, mean over the step with its shocks";
+    "fy", "N", Number(row.state.force.y), "force on i, mean over the step with its shocks";
+};
 
-pub(super) fn contacts(moment: &Moment) -> Table {
-    let (step, time_secs) = (moment.observables.step, moment.observables.time_secs);
-    let has_bonds = moment.settings.stepper == Stepper::Range;
-    let others = OtherBodies::of(moment);
-    let row = |state: &ContactState| {
-        let (kind, other_id, name) = others.told(state.other);
-        let id = moment.id(state.grain);
-        ContactTableRow { step, time_secs, id, other_id, kind, name, has_bonds, state: *state }
-    };
-    let rows: Vec<ContactTableRow> = moment.contacts.iter().map(row).collect();
-    Table::new(CONTACTS, CONTACT_COLUMNS, &rows, &others.names)
-}
+const TIME_COLUMNS: &[ColumnSpec<Observables>] = table_columns! { step and time of now; };
 
 /// Makes the table of measures of the whole pile: one row for the given step, or no rows if `row` is `None`.
 pub(super) fn measures(row: Option<(&Observables, &PileMeasures)>) -> Table {
     let (now, pile): (Vec<_>, Vec<_>) = row.into_iter().map(|(now, pile)| (*now, *pile)).unzip();
-    let of_step =
-        [ColumnSpec::step(|now: &Observables| now.step), ColumnSpec::time(|now| now.time_secs)];
-    let mut measures = Table::new("measures", &of_step, &now, &[]);
+    let mut measures = Table::new("measures", TIME_COLUMNS, &now, &[]);
     measures.columns.extend(Table::new("measures", PileMeasures::COLUMNS, &pile, &[]).columns);
     measures
 }
@@ -267,15 +186,13 @@ struct Bin {
     count: u64,
 }
 
-const BIN_COLUMNS: &[ColumnSpec<Bin>] = &[
-    ColumnSpec::step(|bin| bin.step),
-    ColumnSpec::time(|bin| bin.time_secs),
-    column("quantity", "", "counted quantity", Name(|bin| bin.quantity)),
-    column("unit", "", "unit of from and to", Name(|bin| bin.unit)),
-    column("from", "", "lower end of the bin, which belongs to it", Number(|bin| bin.from)),
-    column("to", "", "upper end of the bin, which belongs to the next", Number(|bin| bin.to)),
-    column("count", "", "number in the bin", Count(|bin| bin.count)),
-];
+const BIN_COLUMNS: &[ColumnSpec<Bin>] = table_columns! { step and time of bin;
+    "quantity", "", Name(bin.quantity), "counted quantity";
+    "unit", "", Name(bin.unit), "unit of from and to";
+    "from", "", Number(bin.from), "lower end of the bin, which belongs to it";
+    "to", "", Number(bin.to), "upper end of the bin, which belongs to the next";
+    "count", "", Count(bin.count), "number in the bin";
+};
 
 pub(super) fn histogram_table(now: &Observables, histograms: &[Histogram]) -> Table {
     let mut words: Vec<String> = Vec::new();
@@ -299,15 +216,56 @@ pub(super) struct FrameRow {
     pub number: u64,
 }
 
-const FRAME_COLUMNS: &[ColumnSpec<FrameRow>] = &[
-    ColumnSpec::step(|row| row.step),
-    ColumnSpec::time(|row| row.time_secs),
-    column("number", "", "frames before this one", Count(|row| row.number)),
-];
+const FRAME_COLUMNS: &[ColumnSpec<FrameRow>] = table_columns! { step and time of row;
+    "number", "", Count(row.number), "frames before this one";
+};
 
 pub(super) fn frames(rows: &[FrameRow]) -> Table {
     Table::new("frames", FRAME_COLUMNS, rows, &[])
 }
+
+/// Columns of the table of steps, which has one row per step.
+pub const STEP_COLUMNS: &[ColumnSpec<Observables>] = table_columns! { step and time of row;
+    "time_step", "s", Number(row.time_step_secs), "time step";
+    "sweeps", "", Count(row.sweeps.into()), "sweeps of the solver";
+    "factorisations", "", Count(row.factorisations.into()), "matrices that the solver factorised";
+    "converged", "", Flag(Some(row.converged)), "true if the stopping test was met";
+    "stalled", "", Flag(Some(row.stalled)), "true if more sweeps would not help";
+    "residual", "1", Number(row.residual), "common residual of the step's problem";
+    "model_residual", "1", SomeNumber(row.model_residual),
+        "residual of the friction model, if one was solved in place of Coulomb friction";
+    "velocity_error", "m/s", Number(row.velocity_error),
+        "estimated distance of the velocities from those of Coulomb friction: root mean square, weighted with mass, \
+         over the grains in contact";
+    "contacts", "", Count(row.contacts.into()), "contacts";
+    "compressive_contacts", "", Count(row.compressive_contacts.into()), "contacts that push";
+    "tensile_contacts", "", Count(row.tensile_contacts.into()), "contacts that pull";
+    "mean_overlap", "1", Number(row.mean_overlap), "mean overlap of grains in touch, in mean diameters";
+    "max_overlap", "1", Number(row.max_overlap), "largest overlap, in mean diameters";
+    "kinetic_energy", "J", Number(row.kinetic_energy), "kinetic energy";
+    "potential_energy", "J", Number(row.potential_energy),
+        "potential energy of the grains in the gravity field at their positions; a step of moreau, which moves grains \
+         by their velocities at its end, changes it by -gravity_work plus half the time step times -g times the change \
+         of momentum";
+    "normal_work", "J", Number(row.normal_work), "work of the normal contact forces in the step";
+    "tangential_work", "J", Number(row.tangential_work),
+        "work of the tangential contact forces and of the moments against rolling in the step";
+    "wall_work", "J", Number(row.wall_work), "part of normal_work and tangential_work that moving surfaces did";
+    "drive_energy", "J", SomeNumber(row.drive_energy), "kinetic energy of walls that a force drives";
+    "drive_work", "J", SomeNumber(row.drive_work),
+        "work in the step of the forces that drive walls, minus the work of their damping";
+    "border_work", "J", SomeNumber(row.border_work),
+        "work of shearing borders in the step, in addition to the other works";
+    "gravity_work", "J", Number(row.gravity_work),
+        "work of gravity and external forces: their impulse in the step times the mean of the velocities before and \
+         after; together with the other works it is the change of kinetic energy";
+    "slump", "1", Number(row.slump),
+        "decrease of the mean height of the grains, divided by its initial value; NaN if all grains are lost";
+    "bond_work", "J", SomeNumber(row.bond_work), "work of the bonds in the step";
+    "bond_energy", "J", SomeNumber(row.bond_energy), "energy that stretched the present bonds";
+    "broken_bond_energy", "J", SomeNumber(row.broken_bond_energy), "energy that stretched the bonds that have broken";
+    "lost_grains", "", Count(row.lost_grains.into()), "grains that went through a wall or left the world";
+};
 
 /// A quantity that is measured in every step, with its column in the table of steps.
 pub struct Observed(&'static ColumnSpec<Observables>);

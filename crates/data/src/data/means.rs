@@ -7,8 +7,7 @@ use glam::{DMat2, DVec2};
 use super::other_bodies::{OTHER_KINDS, OtherBodies};
 use super::table::Table;
 use super::walls::{is_of, place_of, walls};
-use crate::column_spec::CellValue::{Count, Name, Number, SomeNumber, Word};
-use crate::column_spec::{ColumnSpec, column};
+use crate::column_spec::{ColumnSpec, table_columns};
 use crate::granular::GrainMeasures;
 use crate::sim::{ForceSums, Moment, PairSum, Surroundings};
 
@@ -56,7 +55,7 @@ impl Means {
             }
         };
         Self {
-            pairs: pairs_table(sums, moment),
+            pairs: Table::of_pairs(sums, moment),
             grains: self::of_grains(&of_grains),
             walls: of_walls(
                 &walls(&moment.surroundings).into_iter().map(of_wall).collect::<Vec<_>>(),
@@ -81,59 +80,34 @@ struct PairTableRow {
 const OVER: &str =
     "time over which means are taken: since the previous frame, or since the recording began";
 
-const PAIR_COLUMNS: &[ColumnSpec<PairTableRow>] = &[
-    ColumnSpec::step(|row| row.step),
-    ColumnSpec::time(|row| row.time_secs),
-    column("mean_time", "s", OVER, Number(|row| row.secs)),
-    column("id_i", "", "grain i", Count(|row| row.id.into())),
-    column("id_j", "", "id of body j, as in contacts", Count(|row| row.other_id)),
-    column("kind_j", "", "kind of body j", Word(OTHER_KINDS, |row| row.kind)),
-    column("name_j", "", "shape and number of a boundary", Name(|row| row.name)),
-    column("steps", "", "steps in which the pair transmitted a force", Count(|row| row.sum.steps)),
-    column(
-        "normal_force",
-        "N",
-        "force on i along the normal of each step, mean over mean_time, with 0 while the pair is apart; negative \
-         pulls",
-        Number(|row| row.sum.normal / row.secs),
-    ),
-    column(
-        "tangential_force",
-        "N",
-        "force on i along (-ny, nx), mean over mean_time; multiplied by -radius, the torque on either grain",
-        Number(|row| row.sum.tangential / row.secs),
-    ),
-    column(
-        "fx",
-        "N",
-        "force on i, mean over mean_time",
-        Number(|row| row.sum.impulse.x / row.secs),
-    ),
-    column(
-        "fy",
-        "N",
-        "force on i, mean over mean_time",
-        Number(|row| row.sum.impulse.y / row.secs),
-    ),
-];
-
-fn pairs_table(sums: &ForceSums, moment: &Moment) -> Table {
-    let (step, time_secs) = (moment.observables.step, moment.observables.time_secs);
-    let others = OtherBodies::of(moment);
-    let row = |&sum: &PairSum| {
-        let (kind, other_id, name) = others.told(sum.other);
-        let id = moment.id(sum.grain);
-        PairTableRow { step, time_secs, secs: sums.secs, id, other_id, kind, name, sum }
-    };
-    let rows: Vec<PairTableRow> = sums.pairs.iter().map(row).collect();
-    Table::new("pairs", PAIR_COLUMNS, &rows, &others.names)
-}
+const PAIR_COLUMNS: &[ColumnSpec<PairTableRow>] = table_columns! { step and time of row;
+    "mean_time", "s", Number(row.secs), OVER;
+    "id_i", "", Count(row.id.into()), "grain i";
+    "id_j", "", Count(row.other_id), "id of body j, as in contacts";
+    "kind_j", "", Word(OTHER_KINDS, row.kind), "kind of body j";
+    "name_j", "", Name(row.name), "shape and number of a boundary";
+    "steps", "", Count(row.sum.steps), "steps in which the pair transmitted a force";
+    "normal_force", "N", Number(row.sum.normal / row.secs),
+        "force on i along the normal of each step, mean over mean_time, with 0 while the pair is apart; negative pulls";
+    "tangential_force", "N", Number(row.sum.tangential / row.secs),
+        "force on i along (-ny, nx), mean over mean_time; multiplied by -radius, the torque on either grain";
+    "fx", "N", Number(row.sum.impulse.x / row.secs), "force on i, mean over mean_time";
+    "fy", "N", Number(row.sum.impulse.y / row.secs), "force on i, mean over mean_time";
+};
 
 impl Table {
     /// Makes the table of pairs: one row per pair of bodies between which a contact force acted since the previous
     /// frame.
     pub fn of_pairs(sums: &ForceSums, moment: &Moment) -> Self {
-        pairs_table(sums, moment)
+        let (step, time_secs) = (moment.observables.step, moment.observables.time_secs);
+        let others = OtherBodies::of(moment);
+        let row = |&sum: &PairSum| {
+            let (kind, other_id, name) = others.told(sum.other);
+            let id = moment.id(sum.grain);
+            PairTableRow { step, time_secs, secs: sums.secs, id, other_id, kind, name, sum }
+        };
+        let rows: Vec<PairTableRow> = sums.pairs.iter().map(row).collect();
+        Self::new("pairs", PAIR_COLUMNS, &rows, &others.names)
     }
 }
 
@@ -148,32 +122,16 @@ fn some(number: f64) -> Option<f64> {
 /// Columns of the mean stress σ, N/m: Σ f ⊗ ℓ over contacts, averaged over the time since the previous frame and
 /// divided by the area, with the contact force f (N) and the branch vector ℓ (m), which leads to the centre of grain i
 /// from the centre of grain j, or from the touched point of a wall or fixed disc.
-const STRESS_COLUMNS: &[ColumnSpec<DMat2>] = &[
-    column(
-        "mean_stress_xx",
-        "N/m",
-        "mean of stress_xx over mean_time, with the area of this frame",
-        SomeNumber(|stress| some(stress.x_axis.x)),
-    ),
-    column(
-        "mean_stress_xy",
-        "N/m",
-        "mean of stress_xy over mean_time, with the area of this frame",
-        SomeNumber(|stress| some(stress.y_axis.x)),
-    ),
-    column(
-        "mean_stress_yx",
-        "N/m",
-        "mean of stress_yx over mean_time, with the area of this frame",
-        SomeNumber(|stress| some(stress.x_axis.y)),
-    ),
-    column(
-        "mean_stress_yy",
-        "N/m",
-        "mean of stress_yy over mean_time, with the area of this frame",
-        SomeNumber(|stress| some(stress.y_axis.y)),
-    ),
-];
+const STRESS_COLUMNS: &[ColumnSpec<DMat2>] = table_columns! { stress;
+    "mean_stress_xx", "N/m", SomeNumber(some(stress.x_axis.x)),
+        "mean of stress_xx over mean_time, with the area of this frame";
+    "mean_stress_xy", "N/m", SomeNumber(some(stress.y_axis.x)),
+        "mean of stress_xy over mean_time, with the area of this frame";
+    "mean_stress_yx", "N/m", SomeNumber(some(stress.x_axis.y)),
+        "mean of stress_yx over mean_time, with the area of this frame";
+    "mean_stress_yy", "N/m", SomeNumber(some(stress.y_axis.y)),
+        "mean of stress_yy over mean_time, with the area of this frame";
+};
 
 pub(super) fn of_grains(stresses: &[DMat2]) -> Table {
     Table::new("grains", STRESS_COLUMNS, stresses, &[])
@@ -186,10 +144,12 @@ pub(super) struct PileMeans {
 }
 
 pub(super) fn of_pile(means: &[PileMeans]) -> Table {
-    let secs = [column("mean_time", "s", OVER, Number(|means: &PileMeans| means.secs))];
+    const SECS: &[ColumnSpec<PileMeans>] = table_columns! { means;
+        "mean_time", "s", Number(means.secs), OVER;
+    };
     let stresses: Vec<DMat2> = means.iter().map(|means| means.stress).collect();
     let stresses = Table::new("measures", STRESS_COLUMNS, &stresses, &[]);
-    Table::new("measures", &secs, means, &[]).beside(stresses)
+    Table::new("measures", SECS, means, &[]).beside(stresses)
 }
 
 pub(super) struct WallMeans {
@@ -199,32 +159,16 @@ pub(super) struct WallMeans {
 }
 
 pub(super) fn of_walls(means: &[WallMeans]) -> Table {
-    const COLUMNS: &[ColumnSpec<WallMeans>] = &[
-        column(
-            "mean_fx",
-            "N",
-            "force of the grains on the wall, mean over the time since the previous frame",
-            SomeNumber(|means| some(means.force.x)),
-        ),
-        column(
-            "mean_fy",
-            "N",
-            "force of the grains on the wall, mean over the time since the previous frame",
-            SomeNumber(|means| some(means.force.y)),
-        ),
-        column(
-            "mean_torque",
-            "N m",
-            "torque of the grains on the wall about the present (x, y), mean over the same time; missing with \
-             periodic borders",
-            SomeNumber(|means| some(means.torque)),
-        ),
-        column(
-            "work_between",
-            "J",
-            "work on grains since the previous frame, with the wall's velocity at the end of each step",
-            SomeNumber(|means| some(means.work)),
-        ),
-    ];
+    const COLUMNS: &[ColumnSpec<WallMeans>] = table_columns! { means;
+        "mean_fx", "N", SomeNumber(some(means.force.x)),
+            "force of the grains on the wall, mean over the time since the previous frame";
+        "mean_fy", "N", SomeNumber(some(means.force.y)),
+            "force of the grains on the wall, mean over the time since the previous frame";
+        "mean_torque", "N m", SomeNumber(some(means.torque)),
+            "torque of the grains on the wall about the present (x, y), mean over the same time; missing with periodic \
+             borders";
+        "work_between", "J", SomeNumber(some(means.work)),
+            "work on grains since the previous frame, with the wall's velocity at the end of each step";
+    };
     Table::new("walls", COLUMNS, means, &[])
 }

@@ -6,10 +6,9 @@
 use glam::DVec2;
 
 use super::table::Table;
-use crate::column_spec::CellValue::{Count, Name, Number, SomeNumber};
-use crate::column_spec::{ColumnSpec, column};
-use crate::sim::{GrainState, Moment, MotionView, OtherBody, Surroundings};
-use crate::world::{Boundary, Edge, materials_of};
+use crate::column_spec::{ColumnSpec, table_columns};
+use crate::sim::{self, GrainState, Moment, MotionView, OtherBody, Surroundings};
+use crate::world::{Boundary, materials_of};
 
 struct WallTableRow {
     step: u64,
@@ -26,83 +25,21 @@ struct WallTableRow {
     work: f64,
 }
 
-const WALL_COLUMNS: &[ColumnSpec<WallTableRow>] = &[
-    ColumnSpec::step(|row| row.step),
-    ColumnSpec::time(|row| row.time_secs),
-    column("id", "", "number of the wall", Count(|row| row.id)),
-    column(
-        "name",
-        "",
-        "shape and number of each of its boundaries, and number of its fixed discs",
-        Name(|row| row.name),
-    ),
-    column(
-        "motion",
-        "",
-        "number of the motion; missing for pistons and walls at rest",
-        SomeNumber(|row| row.motion),
-    ),
-    column(
-        "x",
-        "m",
-        "pivot, or a point of the first boundary, or the centre of the first disc",
-        Number(|row| row.place.x),
-    ),
-    column(
-        "y",
-        "m",
-        "pivot, or a point of the first boundary, or the centre of the first disc",
-        Number(|row| row.place.y),
-    ),
-    column(
-        "angle",
-        "rad",
-        "rotation since the start, anticlockwise",
-        Number(|row| row.wall.turned),
-    ),
-    column(
-        "vx",
-        "m/s",
-        "velocity; for a turning wall, velocity of the pivot",
-        Number(|row| row.wall.velocity.x),
-    ),
-    column(
-        "vy",
-        "m/s",
-        "velocity; for a turning wall, velocity of the pivot",
-        Number(|row| row.wall.velocity.y),
-    ),
-    column(
-        "omega",
-        "rad/s",
-        "angular velocity, anticlockwise",
-        Number(|row| row.wall.angular_velocity),
-    ),
-    column(
-        "fx",
-        "N",
-        "force of the grains on the wall, mean over the step",
-        Number(|row| row.force.x),
-    ),
-    column(
-        "fy",
-        "N",
-        "force of the grains on the wall, mean over the step",
-        Number(|row| row.force.y),
-    ),
-    column(
-        "torque",
-        "N m",
-        "torque of the grains on the wall about (x, y), anticlockwise",
-        Number(|row| row.torque),
-    ),
-    column(
-        "work",
-        "J",
-        "work on grains in the step, from these forces and the wall's velocity",
-        Number(|row| row.work),
-    ),
-];
+const WALL_COLUMNS: &[ColumnSpec<WallTableRow>] = table_columns! { step and time of row;
+    "id", "", Count(row.id), "number of the wall";
+    "name", "", Name(row.name), "shape and number of each of its boundaries, and number of its fixed discs";
+    "motion", "", SomeNumber(row.motion), "number of the motion; missing for pistons and walls at rest";
+    "x", "m", Number(row.place.x), "pivot, or a point of the first boundary, or the centre of the first disc";
+    "y", "m", Number(row.place.y), "pivot, or a point of the first boundary, or the centre of the first disc";
+    "angle", "rad", Number(row.wall.turned), "rotation since the start, anticlockwise";
+    "vx", "m/s", Number(row.wall.velocity.x), "velocity; for a turning wall, velocity of the pivot";
+    "vy", "m/s", Number(row.wall.velocity.y), "velocity; for a turning wall, velocity of the pivot";
+    "omega", "rad/s", Number(row.wall.angular_velocity), "angular velocity, anticlockwise";
+    "fx", "N", Number(row.force.x), "force of the grains on the wall, mean over the step";
+    "fy", "N", Number(row.force.y), "force of the grains on the wall, mean over the step";
+    "torque", "N m", Number(row.torque), "torque of the grains on the wall about (x, y), anticlockwise";
+    "work", "J", Number(row.work), "work on grains in the step, from these forces and the wall's velocity";
+};
 
 impl Table {
     /// Makes the table of walls of a snapshot: one row per wall.
@@ -214,7 +151,7 @@ fn row(
 /// first boundary, else the centre of its first disc.
 pub(super) fn place_of(wall: &MotionView, surroundings: &Surroundings) -> DVec2 {
     let Surroundings { boundaries, fixed_discs, .. } = surroundings;
-    let of_boundary = wall.boundaries.first().and_then(|&it| point_of(&boundaries[it]));
+    let of_boundary = wall.boundaries.first().map(|&it| sim::place_of(&boundaries[it]));
     let of_disc = || wall.fixed_discs.first().map(|&it| fixed_discs[it].position);
     let turns = wall.angular_velocity != 0.0;
     if turns { wall.pivot } else { of_boundary.or_else(of_disc).unwrap_or_default() }
@@ -227,11 +164,4 @@ pub(super) fn is_of(body: OtherBody, wall: &MotionView) -> bool {
         OtherBody::FixedDisc(disc) => wall.fixed_discs.contains(&(disc as usize)),
         OtherBody::Boundary(boundary) => wall.boundaries.contains(&(boundary as usize)),
     }
-}
-
-fn point_of(boundary: &Boundary) -> Option<DVec2> {
-    boundary.edges().first().map(|edge| match *edge {
-        Edge::Endless { point, .. } => point,
-        Edge::Wall([from, _]) | Edge::Side([from, _]) => from,
-    })
 }

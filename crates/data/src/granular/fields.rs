@@ -21,7 +21,7 @@
 use glam::{DMat2, DVec2};
 
 use super::network::Network;
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::sim::{GrainState, Moment};
 use crate::world::Periodic;
 
@@ -83,17 +83,13 @@ impl Fields {
     /// If the smoothing width is not a finite length > 0 or is so small that the grid would have too many cells, or if
     /// the mass, position or velocity of a grain is not finite.
     pub fn in_box(moment: &Moment, width: f64, [least, most]: [DVec2; 2]) -> Result<Self> {
-        if !(width > 0.0 && width.is_finite()) {
-            return Err(Error::value("width", width, "a finite length > 0 in m"));
-        }
+        error::check(width > 0.0 && width.is_finite(), "width", width, "a finite length > 0 in m")?;
         let is_finite = |grain: &GrainState| {
             let energy = grain.mass * grain.velocity.length_squared();
             grain.position.is_finite() && energy.is_finite()
         };
-        if !moment.grains.iter().all(is_finite) {
-            let allowed = "finite to have fields";
-            return Err(Error::value("state", "no longer finite", allowed));
-        }
+        let allowed = "finite to have fields";
+        error::check(moment.grains.iter().all(is_finite), "state", "no longer finite", allowed)?;
         let network = Network::of(moment);
         let periodic = moment.surroundings.periodic.unwrap_or_default();
         let centres = network.grains().map(|(_, grain)| grain.position);

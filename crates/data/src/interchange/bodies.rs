@@ -10,7 +10,7 @@ use slump_core::with_model;
 
 use super::{Friction, ProblemFile, pairs};
 use crate::contact::{ContactLaw, ContactList};
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::scene::Scene;
 use crate::sim::{ProblemVisitor, RunEnding, Simulation};
 use crate::solver::{Assembled, FixedRow, Model, ModelParts, PairRow, Row, StepProblem};
@@ -83,13 +83,10 @@ impl BodyForm {
                 return Err(Error::value(field, found, wanted.to_string()));
             }
         }
-        if !matches!((self.axes, self.rotation), (1, false) | (2, _)) {
-            return Err(Error::value("bodies.axes", self.axes, "2, or 1 without rotation"));
-        }
-        if !(self.capture_speed >= 0.0 && self.capture_speed.is_finite()) {
-            let allowed = "a finite number ≥ 0";
-            return Err(Error::value("bodies.capture_speed", self.capture_speed, allowed));
-        }
+        let are_axes = matches!((self.axes, self.rotation), (1, false) | (2, _));
+        error::check(are_axes, "bodies.axes", self.axes, "2, or 1 without rotation")?;
+        let (speed, allowed) = (self.capture_speed, "a finite number ≥ 0");
+        error::check(speed >= 0.0 && speed.is_finite(), "bodies.capture_speed", speed, allowed)?;
         for (body, (&mass, &radius)) in self.mass.iter().zip(&self.radius).enumerate() {
             for (field, value) in [("mass", mass), ("radius", radius)] {
                 if !(value > 0.0 && value.is_finite()) {
@@ -244,9 +241,8 @@ fn agree(found: f64, expected: f64, scale: f64) -> bool {
 /// If the time is before the start, if there are no contacts at that time, if a file cannot represent the problem
 /// ([`problem_file_of`]), or if the state or a number of the problem is not finite.
 pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> Result<ProblemFile> {
-    if !(at_secs >= 0.0 && at_secs.is_finite()) {
-        return Err(Error::value("at", at_secs, "a finite number of seconds ≥ 0"));
-    }
+    let is_time = at_secs >= 0.0 && at_secs.is_finite();
+    error::check(is_time, "at", at_secs, "a finite number of seconds ≥ 0")?;
     scene.parameters.check_steps("at", at_secs)?;
     let mut simulation = scene.simulation()?;
     let ended = simulation.run(scene.parameters.steps_in(at_secs), |simulation| {
@@ -257,9 +253,7 @@ pub fn problem_file_at(scene: &Scene, at_secs: f64, progress: impl Fn(f64)) -> R
         return Err(failure);
     }
     let file = problem_file_of(&simulation)?;
-    if file.nc == 0 {
-        return Err(Error::value("at", at_secs, "a time at which there are contacts"));
-    }
+    error::check(file.nc != 0, "at", at_secs, "a time at which there are contacts")?;
     // Contact laws of a finite scene can still overflow, and a file cannot contain infinite numbers.
     file.delassus()?;
     file.bodies.as_ref().map_or(Ok(()), |bodies| bodies.check(&file))?;

@@ -23,7 +23,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::input::{MOST_BYTES, read_text};
 use crate::output::write_file;
 use crate::solver::{DelassusProblem, Triplets};
@@ -92,10 +92,9 @@ impl ProblemFile {
     /// If the file would be larger than the largest file that Slump reads, or the system refuses to write it.
     pub fn write(&self, path: &Path) -> Result<()> {
         let text = self.text();
-        if text.len() as u64 > MOST_BYTES {
-            let field = "the length of the problem's file";
-            return Err(Error::value(field, text.len(), format!("at most {MOST_BYTES} bytes")));
-        }
+        let (length, allowed) = (text.len(), format!("at most {MOST_BYTES} bytes"));
+        let is_small = length as u64 <= MOST_BYTES;
+        error::check(is_small, "the length of the problem's file", length, allowed)?;
         write_file(path, text.as_bytes())
     }
 
@@ -148,27 +147,20 @@ impl ProblemFile {
     /// # Errors
     /// The error names the field whose length or value is not valid.
     pub fn delassus(&self) -> Result<DelassusProblem> {
-        if self.nc == 0 {
-            return Err(Error::value("nc", 0, "at least 1"));
-        }
+        error::check(self.nc != 0, "nc", 0, "at least 1")?;
         // This is checked before any memory is allocated whose size is given by `nc` and not by the size of the file.
-        if Some(self.q.len()) != self.nc.checked_mul(2) {
-            let allowed = format!("{} (2 nc)", 2 * self.nc as u128);
-            return Err(Error::value("the length of q", self.q.len(), allowed));
-        }
+        let (length, allowed) = (self.q.len(), format!("{} (2 nc)", 2 * self.nc as u128));
+        let is_whole = Some(length) == self.nc.checked_mul(2);
+        error::check(is_whole, "the length of q", length, allowed)?;
         let friction = self.friction();
-        if friction.len() != self.nc {
-            let allowed = format!("{} (nc)", self.nc);
-            return Err(Error::value("the length of mu", friction.len(), allowed));
-        }
+        let allowed = format!("{} (nc)", self.nc);
+        error::check(friction.len() == self.nc, "the length of mu", friction.len(), allowed)?;
         let cohesion = self.cohesion_impulses();
         let mut problem =
             DelassusProblem::new(&self.matrix, &self.q, &friction, &cohesion, self.cone)?;
         if let Some(start) = &self.start {
-            if start.len() != 2 * self.nc {
-                let allowed = format!("{} (2 nc)", 2 * self.nc);
-                return Err(Error::value("the length of start", start.len(), allowed));
-            }
+            let allowed = format!("{} (2 nc)", 2 * self.nc);
+            error::check(start.len() == 2 * self.nc, "the length of start", start.len(), allowed)?;
             if let Some(at) = start.iter().position(|value| !value.is_finite()) {
                 return Err(Error::value(format!("start[{at}]"), start[at], "a finite number"));
             }

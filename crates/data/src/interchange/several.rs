@@ -5,7 +5,7 @@ use slump_core::with_model;
 
 use super::solution::body_velocities;
 use super::{BodyForm, ProblemFile};
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::solver::{Method, Model, SolutionSearch, SolverSettings, velocity_distance};
 
 /// One of several solutions of the contact problem in a file.
@@ -42,9 +42,8 @@ pub fn solutions_of_file(
     file: &ProblemFile,
     search: &SolutionSearch,
 ) -> Result<Vec<FoundSolution>> {
-    if !(1..=MOST_STARTS).contains(&search.starts) {
-        return Err(Error::value("starts", search.starts, format!("1 to {MOST_STARTS}")));
-    }
+    let (starts, allowed) = (search.starts, format!("1 to {MOST_STARTS}"));
+    error::check((1..=MOST_STARTS).contains(&starts), "starts", starts, allowed)?;
     SolverSettings::to_residual(Method::Nncg, search.tolerance, search.max_sweeps).validate()?;
     // This call only checks the file.
     file.delassus()?;

@@ -6,7 +6,7 @@
 use std::str::{FromStr, Lines};
 
 use super::{Friction, ProblemFile};
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::solver::Triplets;
 use crate::world::FrictionCone;
 
@@ -21,10 +21,8 @@ pub(super) fn parse(text: &str) -> Result<ProblemFile> {
     let mut number = |what: &str| first_word::<usize>(&mut lines, what);
     only("the dimension", number("the dimension")?, 2)?;
     let nc = number("the number of contacts")?;
-    if nc > text.len() {
-        let allowed = format!("no more than the file of {} bytes has room for", text.len());
-        return Err(Error::value("the number of contacts", nc, allowed));
-    }
+    let allowed = format!("no more than the file of {} bytes has room for", text.len());
+    error::check(nc <= text.len(), "the number of contacts", nc, allowed)?;
     only("the kind of storage", number("the kind of storage")?, SPARSE)?;
     for what in ["the number of rows", "the number of columns"] {
         only(what, number(what)?, 2 * nc)?;

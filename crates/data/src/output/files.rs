@@ -11,7 +11,7 @@ use std::io::{
 use std::path::{Path, PathBuf};
 
 use crate::draft::{DraftFile, nameless_file};
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 
 /// Ending of the name of a draft, a file that is not complete yet.
 const ENDING_OF_DRAFT: &str = ".part";
@@ -182,9 +182,7 @@ impl Destination {
 /// # Errors
 /// The error names the option and the folder, and gives the system's message.
 pub fn check_writable(field: &str, folder: &Path) -> Result<()> {
-    if folder.as_os_str().is_empty() {
-        return Err(Error::value(field, "''", "the name of a folder"));
-    }
+    error::check(!folder.as_os_str().is_empty(), field, "''", "the name of a folder")?;
     try_to_write(folder).map_err(|error| {
         let allowed = format!("a folder that can be written to ({error})");
         Error::value(field, folder.display(), allowed)

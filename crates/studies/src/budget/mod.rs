@@ -150,14 +150,8 @@ fn made_showing(
     let quantities: Vec<BudgetQuantity> =
         asked.iter().map(|text| text.parse()).collect::<Result<_>>()?;
     error::check(*cost_secs > 0.0, "cost", format!("{cost_secs} s"), "a time > 0")?;
-    if let Some(within) = within {
-        error::check(
-            *within > 0.0 && within.is_finite(),
-            "within",
-            *within,
-            "a finite number > 0",
-        )?;
-    }
+    let is_size = within.is_none_or(|within| within > 0.0 && within.is_finite());
+    error::check(is_size, "within", within.unwrap_or(0.0), "a finite number > 0")?;
     check_writable("out", folder)?;
     let starts = Starts::of(config, states)?;
     let window = window_of(options, &starts)?;
@@ -270,24 +264,14 @@ fn command_of(options: &BudgetOptions, settings: &Settings) -> Result<String> {
 
 fn window_of(options: &BudgetOptions, starts: &Starts) -> Result<Window> {
     let duration_secs = starts.scene.duration_secs;
-    let (from_secs, to_secs) =
-        (options.from_secs.unwrap_or(0.0), options.to_secs.unwrap_or(duration_secs));
-    let allowed =
-        |from: f64| format!("above {from} s and at most the duration of {duration_secs} s");
-    if !(from_secs >= 0.0 && from_secs < duration_secs) {
-        let allowed = format!("at least 0 and below the duration of {duration_secs} s");
-        return Err(Error::value("from", from_secs, allowed));
-    }
-    if !(to_secs > from_secs && to_secs <= duration_secs) {
-        return Err(Error::value("to", to_secs, allowed(from_secs)));
-    }
+    let from_secs = options.from_secs.unwrap_or(0.0);
+    let to_secs = options.to_secs.unwrap_or(duration_secs);
+    let allowed = format!("at least 0 and below the duration of {duration_secs} s");
+    error::check(from_secs >= 0.0 && from_secs < duration_secs, "from", from_secs, allowed)?;
+    let allowed = format!("above {from_secs} s and at most the duration of {duration_secs} s");
+    error::check(to_secs > from_secs && to_secs <= duration_secs, "to", to_secs, allowed)?;
     let step = starts.scene.parameters.time_step_secs;
-    if to_secs - from_secs < 0.5 * step {
-        return Err(Error::value(
-            "to",
-            to_secs,
-            format!("at least a time step of {step} s after from"),
-        ));
-    }
+    let allowed = format!("at least a time step of {step} s after from");
+    error::check(to_secs - from_secs >= 0.5 * step, "to", to_secs, allowed)?;
     Ok(Window { from_secs, to_secs })
 }

@@ -99,11 +99,7 @@ fn sheet(budget: &ErrorBudget, one: &QuantityBudget) -> Sheet {
     let title = format!("{}: {}", budget.scene, budget.stepped);
     let mut chart = Chart::new(title, Axis::linear(&*label, -reach, reach), y);
     for share in [Share::Method, Share::Law, Share::Grains] {
-        let name = match share {
-            Share::Method => "of the method",
-            Share::Law => "of the law",
-            Share::Grains => "of the grains",
-        };
+        let name = format!("of the {}", share.word());
         let of_share = rows.iter().zip(0..).filter(|((row, _), _)| row.share == share);
         let bars: Vec<Point> = of_share
             .map(|((_, [mean, low, high]), at)| Point {

@@ -92,24 +92,16 @@ impl Challenge {
         Some(SeenVerdict { name, error, limit: self.limits[0] })
     }
 
-    const fn seen(self, right: &'static str, error: SeenError) -> Self {
-        Self { seen: Some((right, error)), ..self }
-    }
-
     /// Returns the stability test with the given name.
     ///
     /// # Errors
     /// If no test has this name.
     pub fn named(name: &str) -> Result<&'static Self> {
-        let names = || CHALLENGES.map(|challenge| challenge.name).join(", ");
+        let names = || CHALLENGES.iter().map(|it| it.name).collect::<Vec<_>>().join(", ");
         CHALLENGES
             .iter()
             .find(|challenge| challenge.name == name)
             .ok_or_else(|| Error::value("scene", name, format!("one of {}", names())))
-    }
-
-    const fn further(self, further: &'static [f64]) -> Self {
-        Self { further, ..self }
     }
 
     /// Runs this stability test with one solver variant and one value of the driving parameter (a trial), and returns
@@ -140,110 +132,73 @@ const SHORT_STEPS: &[f64] = &[1e-4, 1e-3, 5e-3];
 /// masses.
 const RATIOS: &[f64] = &[10.0, 100.0, 1e3, 1e4];
 
-const fn challenge(
-    name: &'static str,
-    driver: &'static str,
-    quick: &'static [f64],
-    limits: [f64; 2],
-    error: fn(&Trial) -> Result<f64>,
-) -> Challenge {
-    Challenge { name, driver, quick, further: &[], limits, error, seen: None }
+/// Makes [`CHALLENGES`]. Each row has the values of the fields of a [`Challenge`], in their order.
+macro_rules! challenges {
+    ($($name:literal, $driver:expr, $quick:expr, $further:expr, $limits:expr, $error:expr, $seen:expr;)*) => {
+        /// All stability tests.
+        pub static CHALLENGES: &[Challenge] = &[$(Challenge {
+            name: $name,
+            driver: $driver,
+            quick: $quick,
+            further: $further,
+            limits: $limits,
+            error: $error,
+            seen: $seen,
+        }),*];
+    };
 }
 
-/// All stability tests.
-pub static CHALLENGES: [Challenge; 29] = [
-    challenge("column", "discs", &[5.0, 20.0, 80.0, 200.0], [0.01, 0.2], rest::column)
-        .further(&[500.0]),
-    challenge("sag", "sweeps a step", &[2000.0, 200.0, 20.0, 4.0], [0.01, 0.2], rest::sag)
-        .seen("The floor carries the column, and no disc sinks.", seen::MOVED),
-    challenge("mass-ratio", MASSES, RATIOS, [0.01, 0.2], rest::mass_ratio)
-        .seen("The light disc carries the heavy disc, and neither sinks.", seen::MOVED),
-    challenge(
-        "size-ratio",
-        "ratio of radii",
-        &[2.0, 5.0, 20.0, 100.0],
-        [0.01, 0.2],
-        rest::size_ratio,
-    )
-    .seen("The small discs carry the large disc, and none moves.", seen::MOVED),
-    challenge("chain", TIME_STEP, STEPS, [0.02, 0.2], rest::chain)
-        .seen("The chain holds: its Bond is 1.2 times the one that breaks it.", seen::MOVED),
-    challenge("cantilever", TIME_STEP, STEPS, [0.1, 1.0], rest::cantilever)
-        .seen("The two rows hold at the wall.", seen::MOVED),
-    challenge("bridge", TIME_STEP, STEPS, [0.1, 1.0], rest::bridge)
-        .seen("The two rows hold between the walls.", seen::MOVED),
-    challenge("shock", "tolerance (m/s)", &[1e-12, 1e-6, 2.2e-3], [0.01, 0.1], rest::shock),
-    challenge("overlap", "overlap (d)", &[0.01, 0.1, 0.5], [0.05, 1.1], rest::overlap)
-        .seen("The overlap disappears without a jump of the discs.", seen::OVERLAP),
-    challenge("squeeze", "strain", &[1e-4, 1e-2, 5e-2], [1e-3, 0.1], rest::squeeze)
-        .seen("The discs come to rest, although the box is too small for them.", seen::RESTLESS),
-    challenge("moving-walls", TIME_STEP, &[5e-4, 3e-3, 2e-2], [0.05, 0.5], rest::moving_walls)
-        .seen("The walls push each disc to its one possible place.", seen::PRESSED),
-    challenge("friction-limit", TIME_STEP, LONG_STEPS, [0.05, 0.3], rest::friction_limit),
-    challenge("arch", TIME_STEP, LONG_STEPS, [0.05, 0.3], rest::arch)
-        .seen("The arch stands: its friction is 1.05 times the least that holds it.", seen::MOVED),
-    challenge(
-        "leaning-column",
-        "discs",
-        &[2.0, 5.0, 20.0, 80.0],
-        [0.05, 0.3],
-        rest::leaning_column,
-    )
-    .seen(
-        "The column holds: its rolling friction is 1.05 times the least that holds it.",
-        seen::MOVED,
-    ),
-    challenge("repose", TIME_STEP, LONG_STEPS, [0.01, 0.2], rest::repose)
-        .seen("The heap stands still.", seen::MOVED),
-    challenge("repose-angle", "rows", &[2.0, 6.0, 12.0], [0.02, 0.2], rest::repose_angle)
-        .further(&[24.0])
-        .seen("The heap stands still: up to 30 degrees it holds.", seen::MOVED),
-    challenge("rest", "steps", &[300.0, 10000.0], [0.01, 0.2], rest::rest).further(&[1e5]),
-    challenge("bounce", "restitution", &[0.0, 0.5, 0.9, 1.0], [0.01, 0.1], motion::bounce)
-        .seen("Each bounce leaves ρ² of the energy.", seen::BOUNCED),
-    challenge("newtons-cradle", "balls", &[2.0, 3.0, 20.0], [0.05, 0.5], motion::newtons_cradle)
-        .seen("The last ball flies off alone, as fast as the first ball came.", seen::LAST_BALL),
-    challenge("thin-wall", "travel a step (d)", &[0.4, 1.0, 4.0], [0.0, 0.3], motion::thin_wall)
-        .seen("The disc does not pass the wall.", seen::THROUGH),
-    challenge(
-        "far",
-        "distance from the origin (d)",
-        &[1e3, 1e6, 1e9, 1e13],
-        [0.01, 0.2],
-        motion::far,
-    )
-    .seen("The heap stands still, as at the origin.", seen::MOVED),
-    challenge("shuffle", "tolerance", &[1e-9, 1e-6, 1e-3, 1e-1], [1e-4, 0.1], motion::shuffle),
-    challenge("lift-off", MASSES, RATIOS, [1e-3, 0.1], motion::lift_off)
-        .seen("The column carries the heavy disc, and no disc jumps.", seen::KINETIC),
-    challenge(
-        "time-step-switch",
-        "factor on 2e-4 s",
-        &[2.0, 10.0, 50.0, 200.0],
-        [0.01, 0.2],
-        motion::time_step_switch,
-    ),
-    challenge(
-        "sliders",
-        "seconds of sliders at random",
-        &[0.5, 2.0, 8.0],
-        [0.0, 0.0],
-        motion::sliders,
-    )
-    .further(&[60.0]),
-    challenge("dilatancy", TIME_STEP, SHORT_STEPS, [0.01, 0.1], motion::dilatancy)
-        .further(&[2e-2])
-        .seen("Friction does not lift the disc: it slides on the floor.", seen::OFF_LEVEL),
-    challenge("blow", TIME_STEP, SHORT_STEPS, [0.01, 0.1], motion::blow).seen(
-        "Friction takes μ times the impulse of the blow, in the step of the blow.",
-        seen::BLOWN,
-    ),
-    challenge("hyperstatic", "displacement (d)", &[1e-4], [0.01, 0.2], rest::hyperstatic)
-        .further(&[1e-6])
-        .seen("The discs stay at rest.", seen::MOVED),
-    challenge("size", "grains", &[138.0, 500.0], [1e-3, 0.1], rest::size)
-        .further(&[2000.0, 10000.0]),
-];
+challenges! {
+    "column", "discs", &[5.0, 20.0, 80.0, 200.0], &[500.0], [0.01, 0.2], rest::column, None;
+    "sag", "sweeps a step", &[2000.0, 200.0, 20.0, 4.0], &[], [0.01, 0.2], rest::sag,
+        Some(("The floor carries the column, and no disc sinks.", seen::MOVED));
+    "mass-ratio", MASSES, RATIOS, &[], [0.01, 0.2], rest::mass_ratio,
+        Some(("The light disc carries the heavy disc, and neither sinks.", seen::MOVED));
+    "size-ratio", "ratio of radii", &[2.0, 5.0, 20.0, 100.0], &[], [0.01, 0.2], rest::size_ratio,
+        Some(("The small discs carry the large disc, and none moves.", seen::MOVED));
+    "chain", TIME_STEP, STEPS, &[], [0.02, 0.2], rest::chain,
+        Some(("The chain holds: its Bond is 1.2 times the one that breaks it.", seen::MOVED));
+    "cantilever", TIME_STEP, STEPS, &[], [0.1, 1.0], rest::cantilever,
+        Some(("The two rows hold at the wall.", seen::MOVED));
+    "bridge", TIME_STEP, STEPS, &[], [0.1, 1.0], rest::bridge,
+        Some(("The two rows hold between the walls.", seen::MOVED));
+    "shock", "tolerance (m/s)", &[1e-12, 1e-6, 2.2e-3], &[], [0.01, 0.1], rest::shock, None;
+    "overlap", "overlap (d)", &[0.01, 0.1, 0.5], &[], [0.05, 1.1], rest::overlap,
+        Some(("The overlap disappears without a jump of the discs.", seen::OVERLAP));
+    "squeeze", "strain", &[1e-4, 1e-2, 5e-2], &[], [1e-3, 0.1], rest::squeeze,
+        Some(("The discs come to rest, although the box is too small for them.", seen::RESTLESS));
+    "moving-walls", TIME_STEP, &[5e-4, 3e-3, 2e-2], &[], [0.05, 0.5], rest::moving_walls,
+        Some(("The walls push each disc to its one possible place.", seen::PRESSED));
+    "friction-limit", TIME_STEP, LONG_STEPS, &[], [0.05, 0.3], rest::friction_limit, None;
+    "arch", TIME_STEP, LONG_STEPS, &[], [0.05, 0.3], rest::arch,
+        Some(("The arch stands: its friction is 1.05 times the least that holds it.", seen::MOVED));
+    "leaning-column", "discs", &[2.0, 5.0, 20.0, 80.0], &[], [0.05, 0.3], rest::leaning_column,
+        Some(("The column holds: its rolling friction is 1.05 times the least that holds it.", seen::MOVED));
+    "repose", TIME_STEP, LONG_STEPS, &[], [0.01, 0.2], rest::repose, Some(("The heap stands still.", seen::MOVED));
+    "repose-angle", "rows", &[2.0, 6.0, 12.0], &[24.0], [0.02, 0.2], rest::repose_angle,
+        Some(("The heap stands still: up to 30 degrees it holds.", seen::MOVED));
+    "rest", "steps", &[300.0, 10000.0], &[1e5], [0.01, 0.2], rest::rest, None;
+    "bounce", "restitution", &[0.0, 0.5, 0.9, 1.0], &[], [0.01, 0.1], motion::bounce,
+        Some(("Each bounce leaves ρ² of the energy.", seen::BOUNCED));
+    "newtons-cradle", "balls", &[2.0, 3.0, 20.0], &[], [0.05, 0.5], motion::newtons_cradle,
+        Some(("The last ball flies off alone, as fast as the first ball came.", seen::LAST_BALL));
+    "thin-wall", "travel a step (d)", &[0.4, 1.0, 4.0], &[], [0.0, 0.3], motion::thin_wall,
+        Some(("The disc does not pass the wall.", seen::THROUGH));
+    "far", "distance from the origin (d)", &[1e3, 1e6, 1e9, 1e13], &[], [0.01, 0.2], motion::far,
+        Some(("The heap stands still, as at the origin.", seen::MOVED));
+    "shuffle", "tolerance", &[1e-9, 1e-6, 1e-3, 1e-1], &[], [1e-4, 0.1], motion::shuffle, None;
+    "lift-off", MASSES, RATIOS, &[], [1e-3, 0.1], motion::lift_off,
+        Some(("The column carries the heavy disc, and no disc jumps.", seen::KINETIC));
+    "time-step-switch", "factor on 2e-4 s", &[2.0, 10.0, 50.0, 200.0], &[], [0.01, 0.2], motion::time_step_switch, None;
+    "sliders", "seconds of sliders at random", &[0.5, 2.0, 8.0], &[60.0], [0.0, 0.0], motion::sliders, None;
+    "dilatancy", TIME_STEP, SHORT_STEPS, &[2e-2], [0.01, 0.1], motion::dilatancy,
+        Some(("Friction does not lift the disc: it slides on the floor.", seen::OFF_LEVEL));
+    "blow", TIME_STEP, SHORT_STEPS, &[], [0.01, 0.1], motion::blow,
+        Some(("Friction takes μ times the impulse of the blow, in the step of the blow.", seen::BLOWN));
+    "hyperstatic", "displacement (d)", &[1e-4], &[1e-6], [0.01, 0.2], rest::hyperstatic,
+        Some(("The discs stay at rest.", seen::MOVED));
+    "size", "grains", &[138.0, 500.0], &[2000.0, 10000.0], [1e-3, 0.1], rest::size, None;
+}
 
 /// Name of the variant that runs a scene with its own settings.
 const DEFAULT: &str = "default";

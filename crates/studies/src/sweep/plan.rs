@@ -11,7 +11,7 @@ use super::drawing_choice::SweepChart;
 use super::ranges::values;
 use crate::config::{BaseScene, Config};
 use crate::data::DataSettings;
-use crate::error::{Error, Result, in_words};
+use crate::error::{self, Error, Result, in_words};
 use crate::input::{MOST_OF_TOML, read_text};
 
 /// Largest number of runs of a study. A larger number is probably a mistake. Each run takes about 2 kB of memory.
@@ -166,10 +166,8 @@ fn lay_out(file: &StudyFile, folder: &Path) -> Result<Vec<PlannedRun>> {
     let varied = file.vary.keys().flat_map(|key| key.split_whitespace());
     let mut given: Vec<&str> = file.base.keys().map(String::as_str).collect();
     for name in varied {
-        if given.contains(&name) {
-            let field = format!("vary.{name}");
-            return Err(Error::value(field, "given twice", "in one place alone"));
-        }
+        let field = format!("vary.{name}");
+        error::check(!given.contains(&name), field, "given twice", "in one place alone")?;
         given.push(name);
     }
     // Wrong names and types are found here, before combinations are formed, so that the error names the table and the

@@ -5,7 +5,7 @@ use std::fmt::Display;
 
 use toml::{Table, Value};
 
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 
 /// Number of significant digits to which the values of a range are rounded, so that they are short and the same on
 /// every machine.
@@ -27,9 +27,7 @@ pub(super) fn values(field: &str, said: &Value) -> Result<Vec<Value>> {
             return Err(Error::value(field, other, allowed));
         }
     };
-    if values.is_empty() {
-        return Err(Error::value(field, "empty", "at least one value"));
-    }
+    error::check(!values.is_empty(), field, "empty", "at least one value")?;
     let mut earlier = HashSet::with_capacity(values.len());
     if let Some(value) = values.iter().find(|value| !earlier.insert(meaning(value))) {
         return Err(Error::value(field, format!("{value} twice"), "a list of different values"));
@@ -107,10 +105,8 @@ fn whole_numbers(field: &str, range: &Table) -> Result<Vec<Value>> {
     if to < from {
         return Err(not_above(field, "at least", from, to));
     }
-    if to.saturating_sub(*from) >= MOST_VALUES {
-        let allowed = format!("no more than {MOST_VALUES} above from");
-        return Err(Error::value(format!("{field}.to"), to, allowed));
-    }
+    let allowed = format!("no more than {MOST_VALUES} above from");
+    error::check(to.saturating_sub(*from) < MOST_VALUES, format!("{field}.to"), to, allowed)?;
     Ok((*from..=*to).map(Value::Integer).collect())
 }
 

@@ -3,7 +3,7 @@
 
 use std::fmt::{Debug, Display};
 
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::scene::Scene;
 use crate::sim::Stepper;
 use crate::solver::{Method, SolverSettings};
@@ -87,9 +87,7 @@ pub(super) fn step_variants(
 ) -> Result<Vec<StepVariant>> {
     check_positive("time-steps", time_steps_secs, "a finite number of seconds > 0")?;
     check_positive("tolerances", tolerances, "a finite number > 0")?;
-    if sweeps.contains(&0) {
-        return Err(Error::value("sweeps", 0, "at least 1"));
-    }
+    error::check(!sweeps.contains(&0), "sweeps", 0, "at least 1")?;
     check_different("methods", methods)?;
     check_different("time-steps", time_steps_secs)?;
     check_different("sweeps", sweeps)?;

@@ -12,13 +12,11 @@ pub use spring_dashpot::SpringDashpot;
 pub(super) use spring_dashpot::stable_substeps;
 pub use stepper::{Stepper, StepperInfo};
 
-use std::fmt::Display;
-
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, check};
 use crate::setting::{About, Control, Group, Needs, Settable, Value};
-use crate::solver::{FrictionModel, METHODS, SolverSettings};
+use crate::solver::{FrictionModel, METHODS, MethodInfo, SolverSettings};
 use crate::world::{
     FrictionCone, Gravity, MaterialPair, Motion, Parameters, Periodic, Physics, World,
 };
@@ -168,26 +166,45 @@ impl Settings {
         Ok(())
     }
 
+    /// Checks that the stepper and the solver support a part of a scene. `said` names the part in the error, and the two
+    /// functions tell which steppers and solvers support it.
+    fn check_support(
+        &self,
+        said: &str,
+        by_stepper: fn(&StepperInfo) -> bool,
+        by_method: fn(&MethodInfo) -> bool,
+    ) -> Result<()> {
+        let (stepper, method) = (self.stepper, self.solver.method);
+        let allowed = |takers: Vec<&str>| format!("{} {said}", takers.join(" or "));
+        if !by_stepper(stepper.info()) {
+            let takers = Stepper::ALL.iter().filter(|stepper| by_stepper(stepper.info()));
+            return Err(Error::value("stepper", stepper, allowed(names_of(takers))));
+        }
+        if stepper.uses_method() && !by_method(method.info()) {
+            let takers = METHODS.iter().filter(|info| by_method(info)).map(|info| info.name);
+            return Err(Error::value("solver", method, allowed(takers.collect())));
+        }
+        Ok(())
+    }
+
+    /// Checks that neither a convex friction model nor the remedy `sequential-impacts` is chosen, for a part of a scene
+    /// that both do not support. `said` names the part in the error.
+    fn check_neither_convex_nor_sequential(&self, said: &str) -> Result<()> {
+        let (model, is_sequential) = (self.solver.friction_model, self.remedies.sequential_impacts);
+        check(!model.is_on_cone(), "friction-model", model, format!("coulomb or tresca {said}"))?;
+        check(!is_sequential, "sequential-impacts", "given", format!("left out {said}"))
+    }
+
     /// Checks that the solver and the friction model support rolling friction. Checks nothing if `is_given` is false,
     /// that is if no contact has rolling friction.
     fn check_rolling(&self, is_given: bool) -> Result<()> {
-        let SolverSettings { method, friction_model, .. } = self.solver;
-        let refuse = |field: &str, found: String, allowed: &str| {
-            let allowed = format!("{allowed} where rolling-friction is above 0");
-            Err(Error::value(field, found, allowed))
-        };
         if !is_given {
             return Ok(());
         }
-        if !method.info().takes_rolling {
-            let takers = METHODS.iter().filter(|info| info.takes_rolling).map(|info| info.name);
-            let takers: Vec<_> = takers.collect();
-            return refuse("solver", method.to_string(), &takers.join(" or "));
-        }
-        if friction_model != FrictionModel::Coulomb {
-            return refuse("friction-model", friction_model.to_string(), "coulomb");
-        }
-        Ok(())
+        let (said, model) = ("where rolling-friction is above 0", self.solver.friction_model);
+        self.check_support(said, |_| true, |info| info.takes_rolling)?;
+        let is_coulomb = model == FrictionModel::Coulomb;
+        check(is_coulomb, "friction-model", model, format!("coulomb {said}"))
     }
 
     /// Checks that the settings support the features of a world: its walls driven by a force, gravity, periodic
@@ -225,67 +242,28 @@ impl Settings {
         if motions.iter().all(|motion| motion.drive.is_none()) {
             return Ok(());
         }
-        let refuse = |field: &str, found: String, takers: Vec<&str>| {
-            let allowed = format!("{} where a motion has a drive", takers.join(" or "));
-            Err(Error::value(field, found, allowed))
-        };
-        if !self.stepper.info().takes_drives {
-            let takers = Stepper::ALL.iter().filter(|stepper| stepper.info().takes_drives);
-            return refuse("stepper", self.stepper.to_string(), names_of(takers));
-        }
-        if self.stepper.uses_method() && !self.solver.method.info().takes_drives {
-            let takers = METHODS.iter().filter(|info| info.takes_drives).map(|info| info.name);
-            return refuse("solver", self.solver.method.to_string(), takers.collect());
-        }
-        let model = self.solver.friction_model;
-        if model.is_on_cone() {
-            return refuse("friction-model", model.to_string(), vec!["coulomb", "tresca"]);
-        }
-        if self.remedies.sequential_impacts {
-            return refuse("sequential-impacts", "given".into(), vec!["left out"]);
-        }
-        Ok(())
+        let said = "where a motion has a drive";
+        self.check_support(said, |info| info.takes_drives, |info| info.takes_drives)?;
+        self.check_neither_convex_nor_sequential(said)
     }
 
     /// Checks that the solver supports sheared periodic borders, if the borders are sheared.
     pub(crate) fn check_shear(&self, periodic: Option<Periodic>) -> Result<()> {
-        let method = self.solver.method;
-        let is_taken = !self.stepper.uses_method() || method.info().takes_shear;
-        if is_taken || !periodic.is_some_and(Periodic::is_sheared) {
+        if !periodic.is_some_and(Periodic::is_sheared) {
             return Ok(());
         }
-        let takers = METHODS.iter().filter(|info| info.takes_shear).map(|info| info.name);
-        let takers: Vec<_> = takers.collect();
-        let allowed = format!("{} where periodic borders shear", takers.join(" or "));
-        Err(Error::value("solver", method, allowed))
+        self.check_support("where periodic borders shear", |_| true, |info| info.takes_shear)
     }
 
     /// Checks that the stepper, the solver and the remedies (optional corrections of a step) support separate contact
     /// laws for pairs of materials, if `pairs` is not empty.
     fn check_pairs(&self, pairs: &[MaterialPair]) -> Result<()> {
-        let refuse = |field: &str, found: &dyn Display, takers: Vec<&str>| {
-            let allowed = format!("{} where the scene has pairs of materials", takers.join(" or "));
-            Err(Error::value(field, found, allowed))
-        };
-        let SolverSettings { method, friction_model, .. } = self.solver;
-        match self.stepper.info().takes_pairs {
-            _ if pairs.is_empty() => Ok(()),
-            false => {
-                let takers = Stepper::ALL.iter().filter(|stepper| stepper.info().takes_pairs);
-                refuse("stepper", &self.stepper, names_of(takers))
-            }
-            true if !method.info().takes_pairs => {
-                let takers = METHODS.iter().filter(|info| info.takes_pairs).map(|info| info.name);
-                refuse("solver", &method, takers.collect())
-            }
-            true if friction_model.is_on_cone() => {
-                refuse("friction-model", &friction_model, vec!["coulomb", "tresca"])
-            }
-            true if self.remedies.sequential_impacts => {
-                refuse("sequential-impacts", &"given", vec!["left out"])
-            }
-            true => Ok(()),
+        if pairs.is_empty() {
+            return Ok(());
         }
+        let said = "where the scene has pairs of materials";
+        self.check_support(said, |info| info.takes_pairs, |info| info.takes_pairs)?;
+        self.check_neither_convex_nor_sequential(said)
     }
 
     /// Returns a copy of these settings without unsupported parts. Remedies (optional corrections of a step) that the

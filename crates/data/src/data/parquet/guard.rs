@@ -52,128 +52,56 @@ enum FieldShape {
     /// bytes.
     Plain,
     List(&'static FieldShape),
-    Fields(&'static [(i64, FieldShape)]),
+    /// Types of the fields of a structure, in the order of their numbers from 1 on.
+    Fields(&'static [FieldShape]),
+    /// A field that the decoder does not know. It may have any type.
+    Any,
     /// A field that is refused because no table of discs has it, such as encryption keys.
     Refused,
 }
 
-use FieldShape::{Fields, List, Plain, Refused, Switch, Text, Whole};
+use FieldShape::{Any, Fields, List, Plain, Refused, Switch, Text, Whole};
 
-const STATISTICS: FieldShape = Fields(&[
-    (1, Text),
-    (2, Text),
-    (3, Whole),
-    (4, Whole),
-    (5, Text),
-    (6, Text),
-    (7, Switch),
-    (8, Switch),
+const NONE: FieldShape = Fields(&[]);
+const WHOLES: FieldShape = List(&Whole);
+const TEXTS: FieldShape = List(&Text);
+const PAIRS: FieldShape = List(&Fields(&[Text, Text]));
+const STATISTICS: FieldShape = Fields(&[Text, Text, Whole, Whole, Text, Text, Switch, Switch]);
+const DECIMAL: FieldShape = Fields(&[Whole, Whole]);
+const TIME: FieldShape = Fields(&[Switch, NONE]);
+const INTEGER: FieldShape = Fields(&[Plain, Switch]);
+const LOGICAL: FieldShape = Fields(&[
+    Any, Any, Any, Any, DECIMAL, Any, TIME, TIME, Any, INTEGER, Any, Any, Any, Any, Any, Refused,
+    Refused, Refused,
 ]);
-const TIME: FieldShape = Fields(&[(1, Switch), (2, Fields(&[]))]);
-const LOGICAL_TYPE: FieldShape = Fields(&[
-    (5, Fields(&[(1, Whole), (2, Whole)])),
-    (7, TIME),
-    (8, TIME),
-    (10, Fields(&[(1, Plain), (2, Switch)])),
-    (16, Refused),
-    (17, Refused),
-    (18, Refused),
-]);
-const PAIR: FieldShape = Fields(&[(1, Text), (2, Text)]);
-const SORTED: FieldShape = Fields(&[(1, Whole), (2, Switch), (3, Switch)]);
-const PAGE_COUNT: FieldShape = Fields(&[(1, Whole), (2, Whole), (3, Whole)]);
-const SIZES: FieldShape = Fields(&[(1, Whole), (2, List(&Whole)), (3, List(&Whole))]);
+const SORTED: FieldShape = List(&Fields(&[Whole, Switch, Switch]));
+const PAGES: FieldShape = List(&Fields(&[Whole, Whole, Whole]));
+const SIZES: FieldShape = Fields(&[Whole, WHOLES, WHOLES]);
 const COLUMN: FieldShape = Fields(&[
-    (1, Whole),
-    (2, List(&Whole)),
-    (3, List(&Text)),
-    (4, Whole),
-    (5, Whole),
-    (6, Whole),
-    (7, Whole),
-    (8, List(&PAIR)),
-    (9, Whole),
-    (10, Whole),
-    (11, Whole),
-    (12, STATISTICS),
-    (13, List(&PAGE_COUNT)),
-    (14, Whole),
-    (15, Whole),
-    (16, SIZES),
-    (17, Refused),
+    Whole, WHOLES, TEXTS, Whole, Whole, Whole, Whole, PAIRS, Whole, Whole, Whole, STATISTICS,
+    PAGES, Whole, Whole, SIZES, Refused,
 ]);
-const CHUNK: FieldShape = Fields(&[
-    (1, Text),
-    (2, Whole),
-    (3, COLUMN),
-    (4, Whole),
-    (5, Whole),
-    (6, Whole),
-    (7, Whole),
-    (8, Refused),
-    (9, Text),
-]);
-const ROW_GROUP: FieldShape = Fields(&[
-    (1, List(&CHUNK)),
-    (2, Whole),
-    (3, Whole),
-    (4, List(&SORTED)),
-    (5, Whole),
-    (6, Whole),
-    (7, Whole),
-]);
-const SCHEMA_ELEMENT: FieldShape = Fields(&[
-    (1, Whole),
-    (2, Whole),
-    (3, Whole),
-    (4, Text),
-    (5, Whole),
-    (6, Whole),
-    (7, Whole),
-    (8, Whole),
-    (9, Whole),
-    (10, LOGICAL_TYPE),
-]);
-const FOOTER: FieldShape = Fields(&[
-    (1, Whole),
-    (2, List(&SCHEMA_ELEMENT)),
-    (3, Whole),
-    (4, List(&ROW_GROUP)),
-    (5, List(&PAIR)),
-    (6, Text),
-    (7, List(&Fields(&[]))),
-    (8, Refused),
-    (9, Text),
-]);
-const PAGE_HEADER: FieldShape = Fields(&[
-    (1, Whole),
-    (2, Whole),
-    (3, Whole),
-    (4, Whole),
-    (5, Fields(&[(1, Whole), (2, Whole), (3, Whole), (4, Whole), (5, STATISTICS)])),
-    (6, Fields(&[])),
-    (7, Fields(&[(1, Whole), (2, Whole), (3, Switch)])),
-    (
-        8,
-        Fields(&[
-            (1, Whole),
-            (2, Whole),
-            (3, Whole),
-            (4, Whole),
-            (5, Whole),
-            (6, Whole),
-            (7, Switch),
-            (8, STATISTICS),
-        ]),
-    ),
-]);
+const CHUNKS: FieldShape =
+    List(&Fields(&[Text, Whole, COLUMN, Whole, Whole, Whole, Whole, Refused, Text]));
+const ROW_GROUPS: FieldShape = List(&Fields(&[CHUNKS, Whole, Whole, SORTED, Whole, Whole, Whole]));
+const SCHEMA: FieldShape =
+    List(&Fields(&[Whole, Whole, Whole, Text, Whole, Whole, Whole, Whole, Whole, LOGICAL]));
+const FOOTER: FieldShape =
+    Fields(&[Whole, SCHEMA, Whole, ROW_GROUPS, PAIRS, Text, List(&NONE), Refused, Text]);
+const DATA_PAGE: FieldShape = Fields(&[Whole, Whole, Whole, Whole, STATISTICS]);
+const DICTIONARY: FieldShape = Fields(&[Whole, Whole, Switch]);
+const DATA_PAGE_2: FieldShape =
+    Fields(&[Whole, Whole, Whole, Whole, Whole, Whole, Switch, STATISTICS]);
+const PAGE_HEADER: FieldShape =
+    Fields(&[Whole, Whole, Whole, Whole, DATA_PAGE, NONE, DICTIONARY, DATA_PAGE_2]);
 
 impl FieldShape {
     /// True if a value in a header has this type. A structure fits if each of its fields occurs only once, and if each
-    /// field that the decoder knows has the type that the decoder expects. Other fields may have any type.
+    /// field that the decoder knows has the type that the decoder expects.
     fn fits(&self, value: &FieldValue) -> bool {
         match (self, value) {
-            (Whole, FieldValue::Whole(_))
+            (Any, _)
+            | (Whole, FieldValue::Whole(_))
             | (Text, FieldValue::Text)
             | (Switch, FieldValue::Switch)
             | (Plain, FieldValue::Other) => true,
@@ -181,8 +109,9 @@ impl FieldShape {
             (Fields(shapes), FieldValue::Fields(fields)) => {
                 let mut seen = BTreeSet::new();
                 fields.iter().all(|(id, value)| {
-                    let shape = shapes.iter().find(|(known, _)| known == id);
-                    seen.insert(id) && shape.is_none_or(|(_, shape)| shape.fits(value))
+                    let place = id.checked_sub(1).and_then(|place| usize::try_from(place).ok());
+                    let shape = place.and_then(|place| shapes.get(place)).unwrap_or(&Any);
+                    seen.insert(id) && shape.fits(value)
                 })
             }
             _ => false,
