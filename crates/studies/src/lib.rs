@@ -26,7 +26,8 @@ mod sweep;
 mod validate;
 
 pub use budget::{
-    BudgetAnswer, BudgetEffect, BudgetOptions, ErrorBudget, Trust, budget, made as made_budget,
+    BudgetAnswer, BudgetEffect, BudgetOptions, ErrorBudget, FEW_UNSOLVED, Trust, budget,
+    made as made_budget,
 };
 pub use calibrate::{CalibrateOptions, Region, calibrate};
 pub use figures::{figure_names, reproduce};

@@ -27,15 +27,14 @@ use crate::error::Error;
 use crate::live::WorldFrame;
 use crate::output::counted;
 use crate::sim::{AlarmKind, Settings};
-use crate::study::{BudgetAnswer, BudgetEffect, BudgetOptions, ErrorBudget, Trust, made_budget};
+use crate::study::{
+    BudgetAnswer, BudgetEffect, BudgetOptions, ErrorBudget, FEW_UNSOLVED, Trust, made_budget,
+};
 
 /// Time limit for the computation of an error budget on the idle cores, s.
 const COST_SECS: f64 = 300.0;
 /// Quantity whose error is estimated in scenes that are not heaps, because slump is meaningful only for heaps.
 const OTHERWISE: &str = "mean(kinetic_energy)";
-/// Largest fraction of the steps that may be unsolved (miss their tolerance) in a run that can be trusted. With a
-/// larger value, the verdict would trust runs whose result may be changed by unsolved steps.
-const FEW: f64 = 0.01;
 
 /// Text that the panel shows until the error budget has its first result.
 const UNDER_WAY: &str = "Idle cores compute an error budget. The first answer takes a minute for a hundred grains, \
@@ -88,7 +87,7 @@ impl TrustPanel {
             return (Trust::No, warning);
         }
         let (steps, unsolved) = (world.snapshot.observables.step, world.unconverged_steps);
-        if unsolved as f64 > FEW * steps.max(1) as f64 {
+        if unsolved as f64 > FEW_UNSOLVED * steps.max(1) as f64 {
             return (
                 Trust::No,
                 format!("{unsolved} of {} were not solved.", counted(steps, "step")),

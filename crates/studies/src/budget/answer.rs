@@ -2,7 +2,7 @@
 //! contact law), the limit of the quantity for small time steps, and a verdict.
 
 use super::causes::{Cause, Variant};
-use super::collect::{BudgetEnd, Runs};
+use super::collect::{BudgetEnd, Ran, Runs};
 use super::quantity::BudgetQuantity;
 use super::rows::{CauseRow, Design, QuantityBudget, Trust};
 use super::words::paragraph;
@@ -42,6 +42,7 @@ pub(super) fn budget_of(
         left_by_time_step: Vec::new(),
         trust: Trust::NotKnownYet,
         answer: String::new(),
+        unsolved: unsolved(&runs.all[0]),
         causes: if failure.is_none() { rows } else { Vec::new() },
     };
     if let Some(failure) = failure {
@@ -67,6 +68,11 @@ fn ends(mean: &Mean) -> [f64; 3] {
     [mean.mean, mean.low, mean.high]
 }
 
+/// Returns the fraction of the steps of these runs that were not solved to their tolerance.
+fn unsolved(ran: &[Ran]) -> f64 {
+    ran.iter().map(|ran| ran.values.unsolved).sum::<f64>() / ran.len().max(1) as f64
+}
+
 fn row(runs: &Runs, variant: &Variant, series: usize, quantity: usize) -> CauseRow {
     let ran = &runs.all[series];
     let failure = match ran[..] {
@@ -84,7 +90,7 @@ fn row(runs: &Runs, variant: &Variant, series: usize, quantity: usize) -> CauseR
         changed: variant.label.clone(),
         starts: if failure.is_none() { adds.count } else { 0 },
         adds: failure.is_none().then_some(ends(&adds)),
-        unsolved: ran.iter().map(|ran| ran.values.unsolved).sum::<f64>() / ran.len().max(1) as f64,
+        unsolved: unsolved(ran),
         cost: runs.is_begun(series).then(|| runs.cost_ratio(series)),
         failure,
         kind: variant.cause,
@@ -134,7 +140,7 @@ mod tests {
     use rand_pcg::Pcg64;
 
     use super::super::causes::variants;
-    use super::super::collect::{Limits, Ran, SeriesRun, collect};
+    use super::super::collect::{Limits, SeriesRun, collect};
     use super::super::rows::is_seen;
     use super::super::starts::RunValues;
     use super::*;
@@ -292,6 +298,24 @@ mod tests {
             "{}",
             budget.answer
         );
+    }
+
+    #[test]
+    fn a_result_is_not_trusted_if_a_better_solver_leaves_as_many_steps_unsolved() {
+        let limits = Limits { within: Some(0.02), ..FREE };
+        let mut budget = made_up(1, 1e-3, limits, &|_| 0.0);
+        assert_eq!(budget.judged(), Trust::Yes);
+        let better = |row: &CauseRow| row.kind == Cause::Unsolved;
+        let better = budget.causes.iter().position(better).expect("a better solver is tried");
+        for (unsolved, by_better, trust) in [
+            (0.03, 0.14, Trust::NotKnownYet),
+            (0.03, 0.02, Trust::NotKnownYet),
+            (0.03, 0.01, Trust::Yes),
+            (0.009, 0.14, Trust::Yes),
+        ] {
+            (budget.unsolved, budget.causes[better].unsolved) = (unsolved, by_better);
+            assert_eq!(budget.judged(), trust, "{unsolved} and {by_better}");
+        }
     }
 
     #[test]

@@ -24,7 +24,7 @@ use self::answer::budget_of;
 pub(crate) use self::causes::{Cause, Variant, short, variants};
 use self::collect::{BudgetEnd, Limits, Ran, SeriesRun, collect};
 pub(crate) use self::quantity::{BudgetQuantity, Window, measures_of_moment};
-pub use self::rows::{BudgetAnswer, BudgetEffect, Trust};
+pub use self::rows::{BudgetAnswer, BudgetEffect, FEW_UNSOLVED, Trust};
 use self::rows::{Design, QuantityBudget};
 use self::starts::said_of;
 pub(crate) use self::starts::{RunValues, Starts, run};

@@ -70,7 +70,7 @@ pub(super) fn table(budget: &QuantityBudget) -> ReportTable {
         row.extend(rest);
         row
     };
-    let rest = ["", "1.00", ""].map(str::to_owned);
+    let rest = [format!("{:.4}", budget.unsolved), "1.00".into(), String::new()];
     let mut rows = vec![row(["grains", "value itself", ""], budget.starts, budget.value, rest)];
     rows.extend(budget.causes.iter().map(|it| {
         let cost = it.cost.map_or_else(String::new, |cost| format!("{cost:.2}"));

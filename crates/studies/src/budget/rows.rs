@@ -29,6 +29,12 @@ pub(crate) struct CauseRow {
     pub(super) kind: Cause,
 }
 
+/// Largest fraction of the steps that may be unsolved (miss their tolerance) in a run that can be trusted. With a
+/// larger value, the verdict would trust runs whose result may be changed by unsolved steps.
+pub const FEW_UNSOLVED: f64 = 0.01;
+/// Fraction of the unsolved steps that a better solver must solve, so that its effect counts as that of unsolved steps.
+const SOLVED_BETTER: f64 = 0.5;
+
 /// Verdict on a simulated result: says whether the result comes from the grains and their contact law, or from the
 /// numerical method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -41,7 +47,7 @@ pub enum Trust {
     Mostly,
     /// The numerical method changes the result by more than the user's limit.
     No,
-    /// The confidence intervals are too wide to decide.
+    /// The confidence intervals are too wide to decide, or too many steps are unsolved ([`FEW_UNSOLVED`]).
     NotKnownYet,
 }
 
@@ -84,6 +90,8 @@ pub(crate) struct QuantityBudget {
     pub left_by_time_step: Vec<(f64, [f64; 3])>,
     pub trust: Trust,
     pub answer: String,
+    /// Fraction of the steps of the unchanged scene that were not solved to their tolerance.
+    pub unsolved: f64,
     pub causes: Vec<CauseRow>,
 }
 
@@ -193,6 +201,15 @@ impl QuantityBudget {
         if self.unit.is_empty() { number.to_owned() } else { format!("{number} {}", self.unit) }
     }
 
+    /// Returns the fraction of the steps that the better solver leaves unsolved, if both solvers leave so many that the
+    /// difference of their results does not show the effect of unsolved steps.
+    pub(super) fn unsolved_by_both(&self) -> Option<f64> {
+        let better = self.causes.iter().find(|row| row.kind == Cause::Unsolved)?;
+        let is_known = self.unsolved <= FEW_UNSOLVED
+            || better.unsolved <= (1.0 - SOLVED_BETTER) * self.unsolved;
+        (!is_known).then_some(better.unsolved)
+    }
+
     pub(super) fn judged(&self) -> Trust {
         let of = |share: Share| self.causes.iter().filter(move |row| row.share == share);
         // Of all time steps only the smallest counts, because it shows most of the effect of Δt. If the scene fails
@@ -210,6 +227,7 @@ impl QuantityBudget {
         };
         match (is_all_inside(Share::Method), is_all_inside(Share::Law)) {
             _ if self.is_any_outside(Share::Method) => Trust::No,
+            _ if self.unsolved_by_both().is_some() => Trust::NotKnownYet,
             (true, true) => Trust::Yes,
             (true, false) => Trust::Mostly,
             _ => Trust::NotKnownYet,

@@ -219,6 +219,12 @@ impl QuantityBudget {
             }
             Trust::Mostly => format!("So the method moves it by no more than {within}; {law}."),
             Trust::No => format!("So the method moves it by more than {within}."),
+            Trust::NotKnownYet if let Some(by_better) = self.unsolved_by_both() => format!(
+                "{:.1} % of the steps are unsolved, and {:.1} % are if they are to be solved better: what unsolved \
+                    steps do is not known.",
+                100.0 * self.unsolved,
+                100.0 * by_better
+            ),
             Trust::NotKnownYet => {
                 format!("Whether the method moves it by more than {within} is not known yet.")
             }
