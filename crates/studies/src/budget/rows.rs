@@ -201,8 +201,8 @@ impl QuantityBudget {
         if self.unit.is_empty() { number.to_owned() } else { format!("{number} {}", self.unit) }
     }
 
-    /// Returns the fraction of the steps that the better solver leaves unsolved, if both solvers leave so many that the
-    /// difference of their results does not show the effect of unsolved steps.
+    /// Returns the fraction of steps that are unsolved with the better solver, if so many are unsolved with both solvers
+    /// that the difference of their results does not show the effect of unsolved steps.
     pub(super) fn unsolved_by_both(&self) -> Option<f64> {
         let better = self.causes.iter().find(|row| row.kind == Cause::Unsolved)?;
         let is_known = self.unsolved <= FEW_UNSOLVED
