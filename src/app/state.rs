@@ -285,7 +285,8 @@ impl AppState {
         self.exports.copy_link(context, self.run.take_all());
     }
 
-    /// Restores the arrangement of the window from a session, except the window's size and the folder of files.
+    /// Restores the arrangement of the window from a session, except the window's size and the folder in which file
+    /// dialogs open.
     fn arrange(&mut self, arrangement: Arrangement) {
         let Arrangement { stored, touring, selected, camera } = arrangement;
         let Preferences { window_points, folder, .. } = self.preferences.clone();

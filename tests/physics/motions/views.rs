@@ -1,5 +1,5 @@
-//! Tests of invariance: a run is the same in a moving frame of reference, with a piston (a half-space that moves by
-//! itself at a given speed) in place of an equally moving wall, and in a mirror image.
+//! Tests of invariance: a run is the same in a moving frame of reference, with a piston (a half-space whose speed
+//! is a field of the boundary) in place of an equally moving wall, and in a mirror image.
 
 use crate::common::*;
 

@@ -305,7 +305,8 @@ fn a_state_that_is_not_finite_is_told_of_with_what_helps() {
     assert!(words.contains("try 0 substeps"), "{words}");
 }
 
-/// Returns the scene with the stepper `range` and parameters with which bonds break within a short time.
+/// Returns the scene under the contact law `range` (a bond breaks when it has opened by the debonding distance), with
+/// parameters with which bonds break within a short time.
 fn brittle(mut scene: Scene, bond: f64, time_step_secs: f64) -> Scene {
     scene.stepper = Stepper::Range;
     scene.solver.method = Method::Newton;

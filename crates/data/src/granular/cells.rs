@@ -41,7 +41,7 @@ const LARGEST_POWER: f64 = 3.0;
 /// Relative margin for rounding errors in the test whether a cell (the region nearer to a grain than to any other disc)
 /// is closed, which means that all corners of the cell are in the packing. A cell counts as closed if the squared
 /// distance of each corner from the centre of the grain is less than (1 − this margin) times the largest squared
-/// distance of a point in the packing.
+/// distance from that centre at which a point still counts as being in the packing.
 const CLOSED_WITHIN: f64 = 1e-9;
 
 pub(super) struct PowerCells {

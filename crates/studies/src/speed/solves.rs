@@ -27,7 +27,7 @@ const MOST_REPEATS: usize = 12;
 /// Computing time of a solve, s, above which its timing is not repeated, because disturbances average out within the
 /// solve.
 pub(super) const LONG_SOLVE_SECS: f64 = 0.1;
-/// Largest number of sweeps with which a step is solved, even if the solve takes little time.
+/// Largest number of sweeps with which a step is solved, even if the limit on the time of a solve is not reached.
 const MOST_SWEEPS: u32 = 1 << 20;
 /// Factor by which the number of sweeps is increased from one timed solve of a step to the next.
 const GROWTH: u32 = 2;

@@ -5,7 +5,7 @@
 //! `validate::cohesive_shear` finds more friction at η = 1 than without cohesion. Three causes are possible. First, the
 //! shifted cone bounds friction by μ(N + C₀) with the friction coefficient μ and the normal force N (the compressive
 //! cone by μ max(N, 0)), so that sliding contacts bear up to μC₀ more. Second, at touch tolerance 0 cohesion acts
-//! within one step only, so its effect depends on Δt. Third, with a larger touch tolerance, contacts that are slightly
+//! on an opening contact within one step only, so its effect depends on Δt. Third, with a larger touch tolerance, contacts that are slightly
 //! open pull, and in the shifted cone they also bear friction.
 
 use super::cohesive_shear::{INERTIAL, WEAK};
