@@ -39,7 +39,7 @@ const TIMES: f64 = 6.0;
 const RELEASE_SECS: f64 = 0.02;
 /// Level of the rough floor from which heights are measured, in diameters: the height of the lowest points of grains
 /// that lie in the hollows between the discs of the floor.
-const FLOOR: f64 = 0.37;
+pub(super) const FLOOR: f64 = 0.37;
 /// Widths of the two windows in which the roughness of a heap's surface is measured, as the deviation from a straight
 /// line, in diameters.
 const WINDOWS: [f64; 2] = [4.0, 12.0];
@@ -66,12 +66,23 @@ pub(super) struct CollapsingColumn {
 }
 
 impl CollapsingColumn {
-    /// Lets the grains of the column fall and come to rest between two walls, pulls the walls away (then called gates),
-    /// and measures the final heap.
     pub(super) fn run(&self, variant: StepVariant) -> Result<RunReadings> {
+        self.released(&self.settled(variant)?, variant)
+    }
+
+    /// Lets the grains of the column fall and come to rest between two walls.
+    pub(super) fn settled(&self, variant: StepVariant) -> Result<WatchedRun> {
+        settled(&self.between_walls(half_width(self.grains, self.aspect), variant))
+    }
+
+    /// Pulls the walls (then called gates) away from the grains at rest, and measures the final heap.
+    pub(super) fn released(
+        &self,
+        settled: &WatchedRun,
+        variant: StepVariant,
+    ) -> Result<RunReadings> {
         let half = half_width(self.grains, self.aspect);
-        let settled = settled(&self.between_walls(half, variant))?;
-        let mut scene = column_scene(at_rest(&settled));
+        let mut scene = column_scene(at_rest(settled));
         scene.parameters.bond = self.bond;
         let mut scene = collapse_of(scene, half, RELEASE_SECS);
         variant.apply(&mut scene);

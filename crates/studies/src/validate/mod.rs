@@ -27,6 +27,7 @@ mod runs;
 mod shear;
 mod silo;
 mod surface;
+mod three_cohesions;
 mod variants;
 mod watched;
 mod weak_cohesion;
@@ -47,7 +48,7 @@ use crate::sim::Stepper;
 use crate::solver::Method;
 
 /// All experiments (comparisons with publications), in the order of the report.
-static EXPERIMENTS: [Experiment; 12] = [
+static EXPERIMENTS: [Experiment; 13] = [
     elasticity::EXPERIMENT,
     cooling::EXPERIMENT,
     cohesive_cooling::EXPERIMENT,
@@ -59,6 +60,7 @@ static EXPERIMENTS: [Experiment; 12] = [
     shear::EXPERIMENT,
     cohesive_shear::EXPERIMENT,
     weak_cohesion::EXPERIMENT,
+    three_cohesions::EXPERIMENT,
     janssen::EXPERIMENT,
 ];
 

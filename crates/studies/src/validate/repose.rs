@@ -35,7 +35,7 @@ const INCLINE: f64 = 1.0;
 const STEADY_SECS: f64 = 1.5;
 /// Displacement along the tilted plane, in diameters. A layer of grains counts as flowing if its centre of mass has
 /// moved by this distance.
-const FLOWN: f64 = 0.5;
+pub(super) const FLOWN: f64 = 0.5;
 
 fn cases(effort: Effort, variant: StepVariant) -> Vec<ExperimentCase> {
     let seeds = effort.pick(4, 8);

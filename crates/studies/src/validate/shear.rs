@@ -52,7 +52,7 @@ const RESTITUTION: f64 = 0.1;
 /// inertial number is then 0.03 s.
 pub(super) const PRESSURE: f64 = 1.0;
 /// Approximate solid fraction of the layers, from which their height is computed.
-const DENSE: f64 = 0.79;
+pub(super) const DENSE: f64 = 0.79;
 /// Time at the start of a run in which the plate compresses the loose grains, s. The shear of the layer is counted from
 /// the end of this time.
 const PRESSING_SECS: f64 = 0.5;
@@ -222,7 +222,7 @@ fn inertial_secs() -> f64 {
 
 /// Returns the forces of the lower and of the upper plate on the grains, N. The plates consist of fixed discs; the
 /// discs of the upper plate have the indices from `of_plate` on.
-fn on_plates(moment: &Moment, of_plate: u32) -> [DVec2; 2] {
+pub(super) fn on_plates(moment: &Moment, of_plate: u32) -> [DVec2; 2] {
     let on = |is_upper: bool| -> DVec2 {
         let of_it = moment.contacts.iter().filter(|contact| {
             matches!(contact.other, OtherBody::FixedDisc(disc) if (disc >= of_plate) == is_upper)
@@ -233,14 +233,14 @@ fn on_plates(moment: &Moment, of_plate: u32) -> [DVec2; 2] {
 }
 
 /// Returns the lower and the upper height between which shear rate and solid fraction of a layer are measured, m.
-fn inside(moment: &Moment) -> [f64; 2] {
+pub(super) fn inside(moment: &Moment) -> [f64; 2] {
     let top = moment.surroundings.fixed_discs.iter().map(|disc| disc.position.y);
     [MARGIN * DIAMETER, top.fold(0.0, f64::max) - MARGIN * DIAMETER]
 }
 
 /// Returns the measured shear rate γ̇ of a layer, 1/s: the slope of the grains' velocity along the layer over their
 /// height.
-fn rate(moment: &Moment) -> f64 {
+pub(super) fn rate(moment: &Moment) -> f64 {
     let [low, high] = inside(moment);
     let grains = moment.grains.iter().filter(|grain| (low..high).contains(&grain.position.y));
     let points: Vec<(f64, f64)> =
