@@ -228,8 +228,9 @@ mod tests {
 
     #[test]
     fn tables_have_a_row_for_each_quantity() {
-        // Some rows only concern layers with a prescribed bond energy, so the case has such an energy.
-        let at = vec![("energy", 1.0)];
+        // Some rows only concern layers with a prescribed bond energy, others cliffs under the second law (`way` 1 and
+        // `law` 1 of `three_cohesions`), so the case has these parameters.
+        let at = vec![("energy", 1.0), ("way", 1.0), ("law", 1.0), ("seed", 1.0)];
         let case = MeasuredCase { at, run: RunReadings::default(), wall_secs: 0.0 };
         for experiment in &super::super::EXPERIMENTS {
             let judged = (experiment.judge)(&Measurements(vec![&case])).len();
