@@ -149,7 +149,7 @@ impl Material {
         let [pack_secs, begin_secs, watch_secs] = TIMES_SECS;
         let mut run = WatchedRun::start(&scene)?;
         run.run_until(pack_secs, |_| ())?;
-        let parameters = Parameters { bond: self.bond, ..run.simulation.parameters().clone() };
+        let parameters = Parameters { bond: self.bond, ..*run.simulation.parameters() };
         run.simulation.set_parameters(parameters)?;
         run.run_until(pack_secs + begin_secs, |_| ())?;
         let (mut forces, mut steps) = ([DVec2::ZERO; 2], 0.0);
