@@ -74,7 +74,8 @@ pub(crate) fn cone_of(physics: Physics, parameters: &Parameters) -> FrictionCone
     if physics.cohesion && parameters.bond > 0.0 { parameters.cone } else { FrictionCone::Shifted }
 }
 
-/// The contact problem of a scene's present step under one model (which axes, rotation and friction it computes), and the memory of the methods that solve it.
+/// The contact problem of a scene's present step under one model (which axes, rotation and friction it computes), and
+/// the memory of the methods that solve it.
 #[derive(Clone, Debug, Default)]
 pub struct Slot<M: Model> {
     /// The contact problem, including its impulses and velocities.
