@@ -215,3 +215,16 @@ pub fn heed_signals() {
 /// Does nothing, because the browser version receives no signals.
 #[cfg(not(any(unix, windows)))]
 pub fn heed_signals() {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_said_of_the_time_left_before_anything_is_done() {
+        let said = |done, secs| left(done, Duration::from_secs_f64(secs));
+        assert_eq!(said(0, 0.0), "");
+        assert_eq!(said(1, 0.2), "less than a second left");
+        assert_eq!(said(1, 30.0), "30 seconds left");
+    }
+}

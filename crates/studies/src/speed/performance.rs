@@ -44,6 +44,14 @@ mod tests {
     }
 
     #[test]
+    fn geometric_means() {
+        let mean = geometric_mean([1.0, 10.0, 100.0]).expect("a mean");
+        assert!((mean - 10.0).abs() < 1e-12);
+        assert_eq!(geometric_mean([]), None);
+        assert_eq!(share_solved(&[solved(1.0), failed(1.0), solved(2.0), solved(9.0)]), 0.75);
+    }
+
+    #[test]
     fn a_ratio_counts_failures_of_the_base_as_a_bound_and_leaves_out_the_methods_own() {
         let base = [solved(8.0), failed(50.0), solved(4.0), failed(50.0)];
         let method = [solved(2.0), solved(1.0), failed(0.1), failed(0.1)];
