@@ -255,3 +255,13 @@ fn rounded(value: f64) -> f64 {
     let digits = SLIDER_DIGITS - 1;
     format!("{value:.digits$e}").parse().unwrap_or(value)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slider_gives_three_digits() {
+        assert_eq!(rounded(1.23456e-4), 1.23e-4);
+    }
+}

@@ -141,6 +141,14 @@ mod tests {
     }
 
     #[test]
+    fn contrast_is_that_of_the_guidelines() {
+        assert!((contrast(Color32::BLACK, Color32::WHITE) - 21.0).abs() < 1e-9);
+        // Example of the guidelines (WCAG): the contrast of #777777 on white is just below 4.5.
+        let grey = contrast(Color32::from_gray(0x77), Color32::WHITE);
+        assert!((4.47..4.49).contains(&grey), "{grey}");
+    }
+
+    #[test]
     fn words_can_be_read_on_every_ground() {
         /// Smallest contrast ratio that level AA of the guidelines (WCAG) allows for text of any size.
         const LEAST: f64 = 4.5;

@@ -115,6 +115,12 @@ mod tests {
     use super::*;
 
     #[test]
+    fn hex_digits_become_bytes() {
+        assert_eq!(Colour::hex(0xd55e00).to_rgba8().0, [0xd5, 0x5e, 0, 255]);
+        assert_eq!(Colour::grey(205).to_rgba8().0, [205, 205, 205, 255]);
+    }
+
+    #[test]
     fn half_coverage_is_the_mean_in_gamma_space() {
         let mut pixel = Colour::WHITE.to_rgba8();
         blend_pixel(&mut pixel, Colour::BLACK, 0.5);
@@ -127,5 +133,19 @@ mod tests {
         assert_eq!(map_colour(f64::NAN), VIRIDIS[0]);
         assert_eq!(map_colour(0.5), VIRIDIS[4]);
         assert_eq!(map_colour(7.0).to_rgba8(), VIRIDIS[8].to_rgba8());
+    }
+
+    #[test]
+    fn brightness_rises_along_the_map() {
+        let brightness = |part: f64| {
+            let colour = map_colour(part);
+            0.2126 * colour.red.powf(2.2)
+                + 0.7152 * colour.green.powf(2.2)
+                + 0.0722 * colour.blue.powf(2.2)
+        };
+        assert!(
+            (0..100)
+                .all(|k| brightness(f64::from(k) / 100.0) < brightness(f64::from(k + 1) / 100.0))
+        );
     }
 }

@@ -32,3 +32,16 @@ pub(super) fn shown_settings(run: &WatchedRun, settings: &Settings) -> Vec<&'sta
     };
     Parameters::ABOUT.iter().filter(is_shown).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_slider_of_the_front_is_a_declared_setting() {
+        for name in FRONT_SETTINGS {
+            let about = Parameters::ABOUT.iter().find(|about| about.name == name);
+            assert!(about.is_some_and(|about| about.control.is_some()), "{name}");
+        }
+    }
+}
