@@ -16,9 +16,10 @@ use crate::data::{
 };
 use crate::error::{Result, check};
 use crate::headless::recording_sentence;
-use crate::live::WorldRecord;
+use crate::live::{ControlsChange, HandEdit, WorldRecord};
 use crate::number::millis_text;
-use crate::sim::{RunEnding, Simulation};
+use crate::sim::{Edit, Pull, RunEnding, Simulation};
+use crate::world::Disc;
 
 /// The user's choices for exported recordings (files of the grains and contacts of a run).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -143,15 +144,56 @@ fn facts(run: &TakenRun, simulation: &Simulation, until_secs: f64) -> Result<Run
         .iter()
         .map(|change| (change.after_step, change.time_secs, change.controls.settings));
     let mut about = run_facts(&scene, &settings.collect::<Vec<_>>())?;
-    let mut tell = |name: &str, said: String| about.facts.push((name.to_owned(), said));
+    let mut tell = |name: &str, said: String| {
+        if !said.is_empty() {
+            about.facts.push((name.to_owned(), said));
+        }
+    };
     tell("exported", format!("from the window, from step {step} to {until_secs} s"));
     let start = record.start().observables();
     if start.step > 0 {
         tell("restarted_from", format!("step {}, {} s", start.step, start.time_secs));
     }
-    let pulls = changes.iter().any(|change| change.controls.pull.is_some());
-    if pulls || simulation.pull().is_some() || !record.edits().is_empty() {
-        tell("changed_by_hand", "grains were pulled, added or removed, or walls were moved".into());
-    }
+    tell("pulled_by_hand", pulls(simulation.pull(), step, &changes).join(", "));
+    tell("changed_by_hand", edits(record.edits()).join(", "));
     Ok(about)
+}
+
+/// Returns phrases for the description of a run that state which grains the user pulled with the mouse, and in which
+/// steps.
+fn pulls(mut pull: Option<Pull>, first_step: u64, changes: &[&ControlsChange]) -> Vec<String> {
+    let mut told = Vec::new();
+    let mut since = first_step;
+    for change in changes {
+        let next = change.controls.pull;
+        let grain = |pull: Option<Pull>| pull.map(|pull| pull.grain);
+        if grain(next) != grain(pull) {
+            if let Some(Pull { grain, .. }) = pull {
+                told.push(format!("grain {grain} in steps {since} to {}", change.after_step));
+            }
+            since = change.after_step + 1;
+        }
+        pull = next;
+    }
+    told.extend(pull.map(|Pull { grain, .. }| format!("grain {grain} from step {since} on")));
+    told
+}
+
+/// Returns phrases for the description of a run that state which grains the user added or removed and which walls the
+/// user moved, and after which steps.
+fn edits(all: &[HandEdit]) -> Vec<String> {
+    let told = |HandEdit { after_step, edit }: &HandEdit| {
+        let told = match edit {
+            Edit::Add(Disc { position, radius }) => {
+                format!("a grain of radius {radius} m added at {}, {} m", position.x, position.y)
+            }
+            Edit::Remove(grain) => format!("grain {grain} removed"),
+            Edit::Draw { boundary, to } => {
+                format!("boundary {boundary} drawn towards {}, {} m", to.x, to.y)
+            }
+            Edit::LetGo => return None,
+        };
+        Some(format!("{told} after step {after_step}"))
+    };
+    all.iter().filter_map(told).collect()
 }

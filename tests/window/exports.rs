@@ -140,7 +140,7 @@ fn a_stretch_has_its_own_moments_and_tells_what_was_changed_in_it() {
         { "after_step": 50, "time": times[50], "parameters.bond": 80.0 },
     ]);
     assert_eq!(changes, expected);
-    assert!(about.contains_key("changed_by_hand"));
+    assert_eq!(about["pulled_by_hand"], "grain 100 in steps 46 to 55");
     assert_eq!(about["exported"], format!("from the window, from step 33 to {} s", times[60]));
     // A change after the interval is not in the list of changes, even if the interval ends at the change.
     choose(&mut robot, [times[20], times[40]]);
@@ -149,7 +149,7 @@ fn a_stretch_has_its_own_moments_and_tells_what_was_changed_in_it() {
     assert!(told.starts_with("21 frames of data in"), "{told}");
     let about = facts(folder.path());
     assert_eq!(about.get("changes"), None);
-    assert_eq!(about.get("changed_by_hand"), None);
+    assert_eq!(about.get("pulled_by_hand"), None);
     // An empty interval leaves existing files unchanged.
     choose(&mut robot, [times[41], times[40]]);
     robot.click("Overwrite");

@@ -200,7 +200,7 @@ fn the_panel_says_how_and_how_large() {
 }
 
 #[test]
-fn exported_data_has_the_new_grain_and_tells_of_changes_by_hand() {
+fn exported_data_has_the_new_grain_and_says_who_put_it_there() {
     let folder = folder();
     let mut robot = crate::recordings::open(pile(), folder.path(), slump::data::FormatName::ALL);
     robot.take_steps(5);
@@ -220,7 +220,9 @@ fn exported_data_has_the_new_grain_and_tells_of_changes_by_hand() {
         [at(Some(5)), at(Some(6)), at(Some(10)), at(None)],
         [grains, grains + 1, grains + 1, grains]
     );
-    assert!(crate::recordings::facts(folder.path()).contains_key("changed_by_hand"));
+    let told = &crate::recordings::facts(folder.path())["changed_by_hand"];
+    assert!(told.contains("a grain of radius 0.002 m added at 0, 0.2 m after step 5"), "{told}");
+    assert!(told.ends_with("grain 3 removed after step 10"), "{told}");
 }
 
 /// Writes a scene with one grain in the middle of its view. Returns the folder of its file, and the configuration that
