@@ -81,7 +81,7 @@ fn waits_at_start(run: &WatchedRun) -> bool {
 
 /// Seed of the lessons' pile. In lessons 1 and 3 the slump of this pile is within the interquartile range of the slumps
 /// of sixteen piles with other seeds. The slump of the built-in pile is not, because the seed of that pile was chosen so
-/// that its slump depends on Bond number and time step as the mean slump in Abramian & Staron (2020) does.
+/// that its slump depends on Bond number and time step as in Abramian & Staron (2020).
 const SEED: u64 = 15;
 /// CSV list of the grains at rest in the pile made from [`SEED`]. The list is stored because computing the deposition
 /// of this pile takes seconds.

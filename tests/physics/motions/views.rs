@@ -8,6 +8,8 @@ const VELOCITY: DVec2 = DVec2::new(0.25, 0.15);
 /// Returns a scene of grains that rest, fall, overlap and are bonded, on one of five kinds of floor.
 fn on_a_floor(shape: usize) -> Scene {
     let mut scene = at_rest_and_falling();
+    // Rounding errors decide whether a contact at the threshold bounces, and they depend on the frame.
+    scene.parameters.restitution_threshold = 0.0;
     scene.grains[3].velocity = 0.02 * DVec2::X;
     let far = 1.0;
     let at = |x: f64, y: f64| DVec2::new(x, y);
@@ -74,7 +76,7 @@ fn nothing_depends_on_whether_all_that_is_fixed_goes_past_or_the_onlooker() {
                 let off = difference_of_views(&scene);
                 // If the surface speed were missing in a single step, the distance would be 0.02 d. Under `range` a gap
                 // of up to 1e-4 d counts as a contact, so the gap of a grain at rest can differ by 1e-4 d.
-                let rests = if stepper == Stepper::Range { 1.1e-4 } else { 1e-5 };
+                let rests = if stepper == Stepper::Range && shape == 3 { 1.1e-4 } else { 1e-5 };
                 if off > rests {
                     differences.push((shape, stepper, method, push_out, off));
                 }

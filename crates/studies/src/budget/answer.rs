@@ -316,6 +316,10 @@ mod tests {
             (budget.unsolved, budget.causes[better].unsolved) = (unsolved, by_better);
             assert_eq!(budget.judged(), trust, "{unsolved} and {by_better}");
         }
+        budget.causes.remove(better);
+        assert_eq!(budget.judged(), Trust::Yes);
+        budget.unsolved = 0.03;
+        assert_eq!(budget.judged(), Trust::NotKnownYet, "no better solver was tried");
     }
 
     #[test]

@@ -201,13 +201,15 @@ impl QuantityBudget {
         if self.unit.is_empty() { number.to_owned() } else { format!("{number} {}", self.unit) }
     }
 
-    /// Returns the fraction of steps that are unsolved with the better solver, if so many are unsolved with both solvers
-    /// that the difference of their results does not show the effect of unsolved steps.
-    pub(super) fn unsolved_by_both(&self) -> Option<f64> {
-        let better = self.causes.iter().find(|row| row.kind == Cause::Unsolved)?;
-        let is_known = self.unsolved <= FEW_UNSOLVED
-            || better.unsolved <= (1.0 - SOLVED_BETTER) * self.unsolved;
-        (!is_known).then_some(better.unsolved)
+    /// Returns the fraction of steps that are unsolved with the better solver; `None` if no better solver was tried.
+    pub(super) fn unsolved_by_better(&self) -> Option<f64> {
+        self.causes.iter().find(|row| row.kind == Cause::Unsolved).map(|row| row.unsolved)
+    }
+
+    /// True if many steps are unsolved, and no solver that solves most of them shows what they do to the result.
+    pub(super) fn is_solver_in_doubt(&self) -> bool {
+        let most = (1.0 - SOLVED_BETTER) * self.unsolved;
+        self.unsolved > FEW_UNSOLVED && self.unsolved_by_better().is_none_or(|left| left > most)
     }
 
     pub(super) fn judged(&self) -> Trust {
@@ -227,7 +229,7 @@ impl QuantityBudget {
         };
         match (is_all_inside(Share::Method), is_all_inside(Share::Law)) {
             _ if self.is_any_outside(Share::Method) => Trust::No,
-            _ if self.unsolved_by_both().is_some() => Trust::NotKnownYet,
+            _ if self.is_solver_in_doubt() => Trust::NotKnownYet,
             (true, true) => Trust::Yes,
             (true, false) => Trust::Mostly,
             _ => Trust::NotKnownYet,

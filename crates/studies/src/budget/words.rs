@@ -219,12 +219,14 @@ impl QuantityBudget {
             }
             Trust::Mostly => format!("So the method moves it by no more than {within}; {law}."),
             Trust::No => format!("So the method moves it by more than {within}."),
-            Trust::NotKnownYet if let Some(by_better) = self.unsolved_by_both() => format!(
-                "{:.1} % of the steps are unsolved, and {:.1} % are if they are to be solved better: what unsolved \
-                    steps do is not known.",
-                100.0 * self.unsolved,
-                100.0 * by_better
-            ),
+            Trust::NotKnownYet if self.is_solver_in_doubt() => {
+                let better = |left: f64| format!(" ({:.1} % with a better solver)", 100.0 * left);
+                format!(
+                    "{:.1} % of the steps are unsolved{}: what these steps do is not known.",
+                    100.0 * self.unsolved,
+                    self.unsolved_by_better().map(better).unwrap_or_default()
+                )
+            }
             Trust::NotKnownYet => {
                 format!("Whether the method moves it by more than {within} is not known yet.")
             }
