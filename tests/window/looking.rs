@@ -138,39 +138,6 @@ fn a_scene_is_chosen_by_its_picture() {
     assert_eq!((start.scene.name.as_str(), robot.world().snapshot.grains.len()), ("drum", 150));
 }
 
-fn type_filter(robot: &mut Robot, text: &str) {
-    robot.harness.get_by_role_and_label(egui::Role::TextInput, "Filter").focus();
-    robot.harness.step();
-    robot.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
-    robot.harness.event(egui::Event::Text(text.to_owned()));
-    robot.frames(3);
-}
-
-#[test]
-fn grains_and_contacts_are_a_table_that_is_filtered_and_pins() {
-    let mut robot = Robot::open(pile());
-    robot.take_steps(5);
-    robot.clicks(&["Compare", "Grains and contacts"]);
-    assert!(robot.shows("138 of 138"));
-    type_filter(&mut robot, "n = 3");
-    let by_hand = robot.world().snapshot.grains.iter().filter(|grain| grain.coordination == 3);
-    let by_hand = by_hand.count();
-    assert!(by_hand > 0 && robot.shows(&format!("{by_hand} of 138")));
-    type_filter(&mut robot, "n = many");
-    assert!(robot.shows("“n = many” is not a comparison of grain, x, y, speed, overlap, force, n"));
-
-    robot.click("Contacts");
-    let contacts = robot.world().snapshot.contacts.clone();
-    let last = contacts.iter().rfind(|contact| contact.other_grain.is_some()).expect("a contact");
-    let (grain, other) = (last.grain, last.other_grain.expect("a grain"));
-    type_filter(&mut robot, &format!("grain = {grain} and with = {other}"));
-    assert!(robot.shows(&format!("1 of {}", contacts.len())));
-    robot.harness.get_by_label_contains(&format!("{grain:>5} {other:>5} ")).click();
-    robot.frames(2);
-    let pinned = robot.state().run.pinned;
-    assert_eq!(pinned, Some(GrainRef { world: 0, grain: grain as usize }));
-}
-
 /// Returns true if the window shows this residual as a text.
 fn tells(robot: &Robot, residual: f64) -> bool {
     robot.shows(&format!("{residual:.1e}"))

@@ -5,8 +5,7 @@ use egui::{CollapsingHeader, RichText, Ui};
 use super::distributions::Distributions;
 use super::gallery::Gallery;
 use super::speed::StepRace;
-use super::table::BodyTable;
-use super::{compare, data, grabbing, grain, physics, plots, run, see, solver, speed, table};
+use super::{compare, data, grabbing, grain, physics, plots, run, see, solver, speed};
 use crate::app::IN_BROWSER;
 use crate::app::context::PanelContext;
 use crate::app::page::Page;
@@ -18,7 +17,6 @@ pub(crate) struct Pages {
     gallery: Gallery,
     race: StepRace,
     distributions: Distributions,
-    table: BodyTable,
 }
 
 impl Pages {
@@ -54,9 +52,6 @@ impl Pages {
                 ui.separator();
                 plots::choices(ui, context);
                 folded(ui, "Distributions", |ui| self.distributions.show(ui, context));
-                folded(ui, "Grains and contacts", |ui| {
-                    table::show(ui, context.run, &mut self.table);
-                });
             }
             Page::Look => see::look(ui, context.preferences),
             Page::Save => {
