@@ -7,7 +7,7 @@ use egui::{Color32, Label, RichText, Ui};
 use egui_plot::{Line, VLine};
 use glam::DVec2;
 
-use super::axes::{plot_with_axes, with_least, with_room};
+use super::axes::{plot_with_axes, with_room};
 use super::theme;
 use crate::live::{LiveFrame, LiveStart};
 use crate::scene::Scene;
@@ -177,11 +177,9 @@ impl ExperimentSeries {
         let worlds: Vec<_> =
             (0..self.worlds.len()).map(|world| self.points(start, world)).collect();
         let values = worlds.iter().flatten().map(|point| point[1]);
-        let least = [[0.0, start.scene.duration_secs], with_room(values, false)];
-        let height = (ui.available_height() - 2.0).max(40.0);
-        let plot = plot_with_axes(ui, "experiment", height, [false, false], " ms");
+        let ends = [[0.0, start.scene.duration_secs], with_room(values, false)];
         let dark = ui.visuals().dark_mode;
-        with_least(plot, least).show(ui, |plot| {
+        plot_with_axes(ui, "experiment", [false; 2], " ms", ends).show(ui, |plot| {
             plot.vline(VLine::new("now", frame.time_secs()).color(Color32::GRAY).width(1.0));
             for (world, points) in worlds.into_iter().enumerate() {
                 let colour = theme::world_colour(world, dark);

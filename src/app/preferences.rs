@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 
 use super::data_export::DataChoices;
 use super::page::Page;
-use super::plots::ChosenPlot;
 use super::predictions::Prediction;
 use crate::config::Config;
 #[cfg(feature = "window")]
@@ -43,8 +42,6 @@ pub struct Preferences {
     pub plots: bool,
     /// Names of the plotted quantities.
     pub quantities: Vec<String>,
-    /// The two quantities on the axes of the plot of one quantity against another.
-    pub chosen_plot: ChosenPlot,
     /// Name of the displayed histogram, as in output files.
     pub histogram: String,
     /// True if an arrow in the scene always shows the direction of gravity.
@@ -83,7 +80,6 @@ impl Default for Preferences {
             ensemble: true,
             plots: true,
             quantities: vec!["slump".into()],
-            chosen_plot: ChosenPlot::default(),
             histogram: "normal_force".into(),
             gravity: false,
             window_points: None,

@@ -5,7 +5,7 @@
 use egui::{Color32, Label, RichText, Ui};
 use egui_plot::{HoverPosition, Line, Points};
 
-use super::axes::{plot_with_axes, with_least, with_room};
+use super::axes::{plot_with_axes, with_room};
 use super::ensemble::Released;
 use super::glossary::explained;
 use super::plots::LEAST_SLUMP;
@@ -141,9 +141,8 @@ impl TimeStepFigure {
             [point.mean - half, point.mean + half]
         });
         let least = [with_room(along, true), with_room(ends.chain([0.0, LEAST_SLUMP]), false)];
-        let height = (ui.available_height() - 2.0).max(40.0);
-        let plot = plot_with_axes(ui, "slump against time step", height, [true, false], " ms");
-        with_least(plot, least).label_formatter(hover_text).show(ui, |plot| {
+        let plot = plot_with_axes(ui, "slump against time step", [true, false], " ms", least);
+        plot.label_formatter(hover_text).show(ui, |plot| {
             for FigureSeries { name, colour, points, .. } in &self.0 {
                 let line = |ends: Vec<[f64; 2]>| Line::new("", ends).allow_hover(false);
                 let means = points.iter().map(|point| [point.decades(), point.mean]).collect();

@@ -5,7 +5,7 @@ use egui::{Color32, RichText, Ui};
 use egui_plot::{Line, LineStyle};
 
 use crate::Instant;
-use crate::app::axes::{plot_with_axes, with_least, with_room};
+use crate::app::axes::{plot_with_axes, with_room};
 use crate::app::number_text::clock_text;
 use crate::app::theme;
 use crate::app::watched_run::{TakenRun, WatchedRun};
@@ -158,7 +158,8 @@ fn draw(ui: &mut Ui, curves: &[RaceCurve]) {
         let points = curves.iter().flat_map(|curve| &curve.points);
         with_room(points.map(|point| point[axis].log10()), true)
     });
-    with_least(plot_with_axes(ui, "speed and accuracy", HEIGHT, [true; 2], ""), ends)
+    plot_with_axes(ui, "speed and accuracy", [true; 2], "", ends)
+        .height(HEIGHT)
         .allow_drag(false)
         .allow_zoom(false)
         .show(ui, |plot| {
