@@ -95,14 +95,13 @@ fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
     egui::Grid::new("formats").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
         for (index, &format) in FormatName::ALL.iter().enumerate() {
-            let (name, hint) = words(format);
             let was_wanted = choices.formats.contains(&format);
             let mut is_wanted = was_wanted;
             let is_built = check_format(format);
-            let check = egui::Checkbox::new(&mut is_wanted, name);
+            let check = egui::Checkbox::new(&mut is_wanted, format.name());
             // A format that this build lacks can still be deselected.
             let is_enabled = is_built.is_ok() || was_wanted;
-            let mut shown = ui.add_enabled(is_enabled, check).on_hover_text(hint);
+            let mut shown = ui.add_enabled(is_enabled, check).on_hover_text(format.hint());
             if let Err(refusal) = is_built {
                 shown = shown.on_disabled_hover_text(refusal.to_string());
             }
@@ -124,17 +123,6 @@ fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
             super::see::path_field(ui, &mut choices.folder, label.id);
         });
     });
-}
-
-/// Returns the name of a file format and a sentence on the programs that can read it.
-fn words(format: FormatName) -> (&'static str, &'static str) {
-    match format {
-        FormatName::Parquet => ("Parquet", "For pandas, polars and similar programs."),
-        FormatName::Csv => ("Text (CSV)", "The same tables as text."),
-        FormatName::Vtk => ("ParaView", "VTK files: open vtk/grains.pvd."),
-        FormatName::Ovito => ("OVITO", "LAMMPS dumps: open ovito/grains.dump."),
-        FormatName::Fields => ("Fields", "Smoothed fields for ParaView: open fields/fields.pvd."),
-    }
 }
 
 /// Shows the controls for the first and last simulated time of the part of the run that is exported.

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use clap::ValueEnum;
 use egui::{ComboBox, RichText, ThemePreference, Ui};
 use glam::DVec2;
 
@@ -15,16 +16,6 @@ use crate::app::work::Work;
 use crate::film::{Animation, VIDEO_RATES_HZ, check_ffmpeg};
 use crate::render::{ColourBy, Style, panel_size};
 use crate::study::png::write_png;
-
-/// Quantities that the colours of grains can show, with their names.
-const COLOURS: [(ColourBy, &str); 6] = [
-    (ColourBy::PaperGreys, "paper greys"),
-    (ColourBy::Speed, "speed"),
-    (ColourBy::Overlap, "overlap"),
-    (ColourBy::Force, "force Σ|N|"),
-    (ColourBy::Coordination, "contacts"),
-    (ColourBy::Material, "material"),
-];
 
 /// Duration of the GIF that the button "GIF of 5 s" saves, s.
 const SHORT_GIF_SECS: f64 = 5.0;
@@ -57,11 +48,12 @@ pub(super) fn look(ui: &mut Ui, preferences: &mut Preferences) {
     let style = &mut preferences.style;
     ui.horizontal(|ui| {
         let label = ui.label("Colour by");
-        let name = COLOURS.iter().find(|(by, _)| *by == style.colour_by).map_or("", |it| it.1);
-        let list = ComboBox::from_id_salt("colour by").width(130.0).selected_text(name);
+        let name = |by: ColourBy| by.to_possible_value().map(|value| value.get_name().to_owned());
+        let present = name(style.colour_by).unwrap_or_default();
+        let list = ComboBox::from_id_salt("colour by").width(130.0).selected_text(present);
         let shown = list.show_ui(ui, |ui| {
-            for (by, name) in COLOURS {
-                ui.selectable_value(&mut style.colour_by, by, name);
+            for &by in ColourBy::value_variants() {
+                ui.selectable_value(&mut style.colour_by, by, name(by).unwrap_or_default());
             }
         });
         shown.response.labelled_by(label.id);
