@@ -11,7 +11,6 @@ use super::glossary::explained;
 use super::plots::LEAST_SLUMP;
 use super::theme;
 use super::titles::title_among;
-use crate::live::Controls;
 use crate::number::millis_text;
 use crate::sim::Settings;
 
@@ -94,17 +93,15 @@ impl TimeStepFigure {
                 None => all.push((shared, vec![point])),
             }
         }
-        let controls: Vec<_> =
-            all.iter().map(|&(settings, _)| Controls { settings, pull: None }).collect();
+        let settings_of_all: Vec<_> = all.iter().map(|(settings, _)| *settings).collect();
         let worlds = if worlds.len() > 1 { worlds } else { &[] };
         let mut next = worlds.len();
         let series = all.into_iter().enumerate().map(|(index, (settings, mut points))| {
             points.sort_by(|one, other| one.time_step_secs.total_cmp(&other.time_step_secs));
             let bond = settings.parameters.bond;
-            let name = if controls.len() > 1 {
-                title_among(&controls, index)
-            } else {
-                format!("Bond {bond}")
+            let name = match settings_of_all.len() {
+                1 => format!("Bond {bond}"),
+                _ => title_among(&settings_of_all, index),
             };
             let is_of_series = |world: &Settings| without_time_step(world) == settings;
             let is_alone = worlds.iter().filter(|world| is_of_series(world)).count() == 1;

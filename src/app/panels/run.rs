@@ -11,7 +11,7 @@ use crate::app::provenance::CHANGED;
 use crate::app::titles::{settings_text, title_among};
 use crate::app::watched_run::WatchedRun;
 use crate::config::Config;
-use crate::live::{Command, Controls, PastRun};
+use crate::live::{Command, PastRun};
 use crate::scene::{Deposition, NewPile, SCENES, SceneGroup};
 
 /// Groups of scenes in the gallery. Stability scenes (scenes that are hard for solvers) are not among them, because
@@ -157,16 +157,16 @@ pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
 /// If it has two, the title contains the settings of both in which they differ; if it has more, their number and these
 /// settings of the first one.
 fn title(run: &PastRun, slumps: bool) -> String {
-    let controls: Vec<Controls> = run.worlds.iter().map(|world| world.controls).collect();
-    let first = title_among(&controls, 0);
-    match controls.len() {
+    let settings: Vec<_> = run.worlds.iter().map(|world| world.controls.settings).collect();
+    let first = title_among(&settings, 0);
+    match settings.len() {
         0 => String::new(),
         1 => {
             let last = run.worlds[0].curve.last().filter(|_| slumps);
             let slump = last.map_or(String::new(), |row| format!(", slump {:.3}", row.slump));
-            settings_text(&controls[0].settings, &FRONT_SETTINGS) + &slump
+            settings_text(&settings[0], &FRONT_SETTINGS) + &slump
         }
-        2 => format!("{first}; {}", title_among(&controls, 1)),
+        2 => format!("{first}; {}", title_among(&settings, 1)),
         count => format!("{count} worlds, {first}"),
     }
 }
