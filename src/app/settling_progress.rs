@@ -71,7 +71,7 @@ impl SettlingProgress {
 /// Estimates the finished fraction of a deposition, 0 to 1. If the grains fall together like rain, the estimate assumes
 /// that they fall for a quarter of the largest simulated time that the deposition may take, and then come to rest.
 /// While they come to rest, their speed is assumed to decrease by [`ORDERS_OF_SETTLING`] powers of ten.
-pub(super) fn settled_part(settling: &Settling) -> f64 {
+fn settled_part(settling: &Settling) -> f64 {
     let rained = match settling.rains {
         true => (4.0 * settling.time_secs / settling.limit_secs).min(1.0),
         false => 1.0,

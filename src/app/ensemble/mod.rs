@@ -246,12 +246,9 @@ impl Ensemble {
         let Some(summary) = self.summary(world) else {
             return if IN_BROWSER { RULE_IN_BROWSER } else { RULE }.into();
         };
-        let EnsembleSummary { seeds, settling, failed, .. } = summary;
+        let EnsembleSummary { seeds, failed, .. } = summary;
         let all: Vec<String> = seeds.iter().map(u64::to_string).collect();
         let mut text = format!("{RULE}\nSeeds {}.", all.join(", "));
-        if let Some((number, part)) = settling {
-            text += &format!(" Rain {number} of {}: {:.0} %.", seeds.len(), 100.0 * part);
-        }
         if failed > 0 {
             text += &format!(" {failed} of the runs failed and are left out.");
         }
@@ -318,7 +315,7 @@ fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
         }
         (Some((mean, _)), _) => format!("other piles {mean:.2} (n = {of})"),
         (None, _) if count > 0 => "other piles end earlier".into(),
-        (None, Some((number, _))) => {
+        (None, Some(number)) => {
             format!("other piles: making pile {number} of {}", summary.seeds.len())
         }
         (None, None) => "other piles: none yet".into(),
@@ -329,7 +326,7 @@ fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
 mod tests {
     use super::*;
 
-    fn told(slumps: &[f64], settling: Option<(usize, f32)>) -> EnsembleSummary {
+    fn told(slumps: &[f64], settling: Option<usize>) -> EnsembleSummary {
         let runs: Vec<_> = slumps.iter().map(|&slump| vec![[0.0, 0.0], [1.0, slump]]).collect();
         EnsembleSummary {
             band: Arc::new(Band::of(&runs.iter().enumerate().collect::<Vec<_>>())),
@@ -370,7 +367,7 @@ mod tests {
         assert_eq!(said(&told(&[0.2, 0.3, 0.4], None), 1.0), "other piles 0.30 ± 0.25 (n = 3)");
         assert_eq!(said(&told(&[0.3, 0.3], None), 1.0), "other piles 0.300 ± 0.000 (n = 2 of 3)");
         assert_eq!(said(&told(&[0.25], None), 1.0), "other piles 0.25 (n = 1 of 3)");
-        assert_eq!(said(&told(&[], Some((2, 0.5))), 0.0), "other piles: making pile 2 of 3");
+        assert_eq!(said(&told(&[], Some(2)), 0.0), "other piles: making pile 2 of 3");
         assert_eq!(said(&told(&[], None), 0.0), "other piles: none yet");
         assert_eq!(said(&told(&[0.25], None), 9.0), "other piles end earlier");
         assert_eq!(said(&told(&[0.25], None), 0.0), "other piles: 1 of 3 computed");
