@@ -112,8 +112,8 @@ impl AppState {
         match request {
             Request::Load(config) => self.load(*config),
             Request::LoadSaved(path) => self.load_saved(&path),
-            Request::ChooseFile => self.dialog.ask_for_file(context, &self.preferences.folder),
-            Request::ChooseFolder => self.dialog.ask_for_folder(context, &self.preferences.folder),
+            Request::ChooseFile => self.dialog.ask(context, &self.preferences.folder, true),
+            Request::ChooseFolder => self.dialog.ask(context, &self.preferences.folder, false),
             Request::Visit(at) => self.visit(at),
             Request::ForgetReleased => self.ensemble.forget_released(),
             Request::LeaveLessons => self.leave_lessons(),
