@@ -40,10 +40,19 @@ impl Pages {
                 grabbing::show(ui, context.preferences);
             }
             Page::Solver => {
-                physics::show(ui, context.run);
+                let Some((before, start)) = context.run.wanted_and_start() else { return };
+                let mut settings = before;
+                physics::show(ui, context.run, &mut settings, start.settings());
                 ui.separator();
-                solver::show(ui, context.run);
-                folded(ui, "Expert", |ui| self.expert(ui, context));
+                solver::show(ui, context.run, &mut settings);
+                folded(ui, "Expert", |ui| {
+                    solver::expert(ui, &mut settings, &start);
+                    ui.separator();
+                    self.expert(ui, context);
+                });
+                if settings != before {
+                    context.run.change(context.run.selected, settings);
+                }
             }
             Page::Compare => {
                 compare::show(ui, context.run);
@@ -66,10 +75,8 @@ impl Pages {
         }
     }
 
-    /// Shows settings, scenes and comparisons for users who study solvers.
+    /// Shows scenes and comparisons for users who study solvers.
     fn expert(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        solver::expert(ui, context.run);
-        ui.separator();
         let hint =
             "Each scene has a known right answer. A line at the top compares the run with it.";
         let label = ui.label(SceneGroup::Stability.hint()).on_hover_text(hint);
