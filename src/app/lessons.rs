@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use super::page::Page;
 use super::predictions::{self, Question};
-use super::preferences::{Choices, LessonPlace, Preferences};
+use super::preferences::{LessonPlace, Preferences};
 use super::watched_run::WatchedRun;
 use crate::config::{Config, parse_discs};
 use crate::error::Result;
@@ -102,17 +102,17 @@ impl Lesson {
         Ok((config.clone(), config.scene_from(grains)?))
     }
 
-    /// Returns the preferences that the lesson sets while it is open.
-    pub(super) fn choices(&self) -> Choices {
-        Choices {
-            quantities: self.plots.iter().map(|name| (*name).to_owned()).collect(),
-            speed: self.speed,
-            full_speed: false,
-            starts_again: self.starts_again,
-            page: self.page,
-            // The lessons on piles are about cohesion.
-            show_forces: self.scene == Config::DEFAULT_SCENE,
-        }
+    /// Begins this lesson, whose index is `at`: sets the preferences that the lesson needs.
+    pub(super) fn begin(&self, at: usize, preferences: &mut Preferences) {
+        let before = preferences.lesson.before.take();
+        let before = before.unwrap_or_else(|| Box::new(preferences.clone()));
+        let place = &mut preferences.lesson;
+        (place.at, place.on, place.before) = (at, true, Some(before));
+        preferences.quantities = self.plots.iter().map(|name| (*name).to_owned()).collect();
+        (preferences.speed, preferences.full_speed) = (self.speed, false);
+        (preferences.starts_again, preferences.page) = (self.starts_again, self.page);
+        // The lessons on piles are about cohesion.
+        preferences.style.show_forces = self.scene == Config::DEFAULT_SCENE;
     }
 }
 
@@ -306,9 +306,9 @@ mod tests {
             ..Preferences::default()
         };
         let mut preferences = chosen.clone();
-        preferences.begin_lesson(1, LESSONS[1].choices());
+        LESSONS[1].begin(1, &mut preferences);
         assert!(!preferences.starts_again && preferences.page.is_none());
-        preferences.begin_lesson(6, LESSONS[6].choices());
+        LESSONS[6].begin(6, &mut preferences);
         assert_ne!(preferences.quantities, chosen.quantities);
         preferences.put_lesson_away();
         let lesson = LessonPlace { at: LESSONS.len() - 1, ..LessonPlace::default() };

@@ -130,18 +130,12 @@ impl Preferences {
         if self.full_speed { Pace::Max } else { Pace::RealTime(self.speed) }
     }
 
-    /// Begins the lesson with the index `at`, and sets the preferences that the lesson needs.
-    pub(super) fn begin_lesson(&mut self, at: usize, choices: Choices) {
-        let replaced = choices.swap(self);
-        let before = self.lesson.before.take().unwrap_or(replaced);
-        let predictions = std::mem::take(&mut self.lesson.predictions);
-        self.lesson = LessonPlace { at, on: true, predictions, before: Some(before) };
-    }
-
     /// Restores the choices that the user had before the lessons.
     pub(super) fn put_lesson_away(&mut self) {
         if let Some(before) = self.lesson.before.take() {
-            before.swap(self);
+            self.style.show_forces = before.style.show_forces;
+            let Self { quantities, speed, full_speed, starts_again, page, .. } = *before;
+            *self = Self { quantities, speed, full_speed, starts_again, page, ..self.clone() };
         }
     }
 }
@@ -156,39 +150,13 @@ pub struct LessonPlace {
     pub on: bool,
     /// The user's predictions, by the index of the lesson.
     pub predictions: BTreeMap<usize, Prediction>,
-    /// The user's choices before the first lesson, which are restored after the lessons.
-    pub(super) before: Option<Choices>,
+    /// The preferences before the first lesson. After the lessons, those that lessons change are restored.
+    pub(super) before: Option<Box<Preferences>>,
 }
 
 impl Default for LessonPlace {
     fn default() -> Self {
         Self { at: 0, on: true, predictions: BTreeMap::new(), before: None }
-    }
-}
-
-/// The user's choices that a lesson replaces by its own while it is open.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Choices {
-    pub quantities: Vec<String>,
-    pub speed: f64,
-    pub full_speed: bool,
-    pub starts_again: bool,
-    pub page: Option<Page>,
-    /// True if the forces of bonds and contacts are drawn.
-    pub show_forces: bool,
-}
-
-impl Choices {
-    /// Writes these choices to the preferences and returns the choices that they replace.
-    fn swap(self, preferences: &mut Preferences) -> Self {
-        Self {
-            quantities: std::mem::replace(&mut preferences.quantities, self.quantities),
-            speed: std::mem::replace(&mut preferences.speed, self.speed),
-            full_speed: std::mem::replace(&mut preferences.full_speed, self.full_speed),
-            starts_again: std::mem::replace(&mut preferences.starts_again, self.starts_again),
-            page: std::mem::replace(&mut preferences.page, self.page),
-            show_forces: std::mem::replace(&mut preferences.style.show_forces, self.show_forces),
-        }
     }
 }
 

@@ -233,7 +233,7 @@ impl AppState {
     /// Opens the lesson with the index `at`, or the last lesson if `at` is too large.
     pub fn visit(&mut self, at: usize) {
         let at = at.min(LESSONS.len() - 1);
-        self.preferences.begin_lesson(at, LESSONS[at].choices());
+        LESSONS[at].begin(at, &mut self.preferences);
         self.touring = true;
         self.panels.lesson_bar.loads_before = self.run.frame.loads;
         self.panels.lesson_bar.shows_summary = false;
