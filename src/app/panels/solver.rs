@@ -122,21 +122,6 @@ fn budget_buttons(ui: &mut Ui, settings: &mut Settings, surroundings: &Surroundi
     });
 }
 
-/// Returns the text of the common residual of the last step (the error measure that is the same for all solvers), and a
-/// hover text. If the step was solved under another friction model than Coulomb's, the text also contains the residual
-/// under that model.
-fn residuals(last: &Observables) -> (String, &'static str) {
-    let common = format!("{:.1e}", last.residual);
-    match last.model_residual.filter(|_| last.is_of_a_model()) {
-        None => (common, "Common residual of the last step."),
-        Some(of_model) => (
-            format!("{common} ({of_model:.1e})"),
-            "Common residual of the last step under Coulomb friction; in brackets, the residual of the friction \
-             model that was solved.",
-        ),
-    }
-}
-
 /// Shows measured values of the last step, such as the numbers of sweeps and contacts and the residual.
 fn readings(ui: &mut Ui, run: &WatchedRun) {
     let Some(world) = run.world() else { return };
@@ -147,8 +132,8 @@ fn readings(ui: &mut Ui, run: &WatchedRun) {
             ui.label(RichText::new(value).monospace());
         };
         reading(ui, "sweeps", last.sweeps.to_string(), "Sweeps of the last step.");
-        let (value, hint) = residuals(last);
-        reading(ui, "residual", value, hint);
+        let residual = format!("{:.1e}", last.residual);
+        reading(ui, "residual", residual, "Common residual of the last step.");
         ui.end_row();
         if settings.solver.method == Method::Auto {
             let taken = world.picked_method.name();
