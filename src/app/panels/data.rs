@@ -7,7 +7,7 @@ use crate::app::context::{PanelContext, Request};
 use crate::app::data_export::{DataChoices, DataOrder};
 use crate::app::number_text::{clock_text, time_field};
 use crate::app::work::{Reporter, Work};
-use crate::data::{DataSettings, FormatName, check_format};
+use crate::data::{DataSettings, FormatName};
 
 /// Shortest and longest time that the user can enter as the simulated time between two exported states (frames) of the
 /// run, s. The limits are far outside useful values.
@@ -95,17 +95,9 @@ fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
     });
     egui::Grid::new("formats").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
         for (index, &format) in FormatName::ALL.iter().enumerate() {
-            let was_wanted = choices.formats.contains(&format);
-            let mut is_wanted = was_wanted;
-            let is_built = check_format(format);
-            let check = egui::Checkbox::new(&mut is_wanted, format.name());
-            // A format that this build lacks can still be deselected.
-            let is_enabled = is_built.is_ok() || was_wanted;
-            let mut shown = ui.add_enabled(is_enabled, check).on_hover_text(format.hint());
-            if let Err(refusal) = is_built {
-                shown = shown.on_disabled_hover_text(refusal.to_string());
-            }
-            if shown.changed() {
+            let mut is_wanted = choices.formats.contains(&format);
+            let check = ui.checkbox(&mut is_wanted, format.name());
+            if check.on_hover_text(format.hint()).changed() {
                 choices.formats.retain(|other| *other != format);
                 choices.formats.extend(is_wanted.then_some(format));
             }
