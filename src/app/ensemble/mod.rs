@@ -50,7 +50,6 @@ pub struct Ensemble {
     opened: Option<Arc<LiveStart>>,
     piles: Vec<NewPile>,
     pool: Option<WorkerPool>,
-    worlds: Vec<Option<Settings>>,
     /// Settings of runs that the user has started, each with the slumps of runs with these settings from other initial
     /// states. These results can be compared, because all of them belong to one scene and one set of initial states,
     /// which `kind` describes.
@@ -92,7 +91,6 @@ impl Ensemble {
     /// they were when the window drew its last frame.
     pub fn stop(&mut self) {
         self.pool = None;
-        self.worlds.clear();
     }
 
     /// True if runs from other initial states can be computed: the open scene was made from a seed and is not too
@@ -121,26 +119,20 @@ impl Ensemble {
             (world.is_even && is_from_the_start).then_some(world.controls.settings)
         });
         let all: Vec<_> = all.collect();
-        let is_new = self.note_released(frame, &all);
+        self.note_released(frame, &all);
         if !self.is_possible() {
             return self.note_own_slumps(frame, &all);
         }
         if !is_wanted {
             return self.stop();
         }
-        let Self {
-            folder: Some(folder), opened: Some(opened), piles, pool, worlds, released, ..
-        } = self
+        let Self { folder: Some(folder), opened: Some(opened), piles, pool, released, .. } = self
         else {
             return;
         };
         let pool =
             pool.get_or_insert_with(|| WorkerPool::start(folder, context, opened, piles, released));
-        pool.note_runs(released);
-        if *worlds != all || is_new {
-            pool.follow(all.clone(), released.iter().map(|(settings, _)| *settings).collect());
-            *worlds = all;
-        }
+        pool.follow(all, released);
     }
 
     /// Discards the settings and results of started runs if they belong to another scene, another duration, another
@@ -162,10 +154,9 @@ impl Ensemble {
     }
 
     /// Stores the settings of the simulations in `frame` (data from the solver's thread) that the user has started
-    /// (that have taken a step). Returns true if some of these settings are new. `all` contains the settings of each
-    /// simulation, or `None` if it has no ensemble (runs from other initial states).
-    fn note_released(&mut self, frame: &LiveFrame, all: &[Option<Settings>]) -> bool {
-        let before = self.released.len();
+    /// (that have taken a step). `all` contains the settings of each simulation, or `None` if it has no ensemble (runs
+    /// from other initial states).
+    fn note_released(&mut self, frame: &LiveFrame, all: &[Option<Settings>]) {
         for (world, settings) in frame.worlds.iter().zip(all) {
             if let Some(settings) = settings
                 && world.recorded_secs > 0.0
@@ -175,7 +166,6 @@ impl Ensemble {
                 self.released.push((*settings, Arc::default()));
             }
         }
-        self.released.len() > before
     }
 
     /// Stores the slump of each visible run that has reached the end of the scene, because no other piles are computed.

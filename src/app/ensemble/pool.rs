@@ -218,10 +218,20 @@ impl WorkerPool {
         Self { state, threads }
     }
 
-    /// Gives the threads their jobs: runs from other initial states, first with the settings of the visible simulations
-    /// (`worlds`), then with the settings `released`. Discards the results with all other settings.
-    pub(super) fn follow(&self, worlds: Vec<Option<Settings>>, released: Vec<Settings>) {
+    /// Copies the slumps of finished runs to the entries of `released` with the same settings. Gives the threads their
+    /// jobs: runs from other initial states, first with the settings of the visible simulations (`worlds`), then with
+    /// the settings in `released`. Discards the results with all other settings.
+    pub(super) fn follow(&self, worlds: Vec<Option<Settings>>, released: &mut [Released]) {
         let mut jobs = self.state.lock();
+        for (settings, band) in released.iter_mut() {
+            if let Some((_, newer)) = jobs.bands.iter().find(|(own, _)| own == settings) {
+                band.clone_from(newer);
+            }
+        }
+        let released: Vec<_> = released.iter().map(|(settings, _)| *settings).collect();
+        if (&jobs.worlds, &jobs.released) == (&worlds, &released) {
+            return;
+        }
         let is_wanted =
             |settings: &Settings| worlds.contains(&Some(*settings)) || released.contains(settings);
         jobs.begun.retain(|(job, _)| match job {
@@ -231,16 +241,6 @@ impl WorkerPool {
         jobs.bands.retain(|(settings, _)| is_wanted(settings));
         (jobs.worlds, jobs.released) = (worlds, released);
         self.state.news.notify_all();
-    }
-
-    /// Copies the slumps of finished runs to the entries of `released` with the same settings.
-    pub(super) fn note_runs(&self, released: &mut [Released]) {
-        let jobs = self.state.lock();
-        for (settings, band) in released {
-            if let Some((_, newer)) = jobs.bands.iter().find(|(own, _)| own == settings) {
-                band.clone_from(newer);
-            }
-        }
     }
 
     /// Returns the results of runs from other initial states with the settings of a simulation; `None` if the
