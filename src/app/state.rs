@@ -16,13 +16,14 @@ use super::experiment_plot::ExperimentSeries;
 use super::exports::Exports;
 use super::file_names::refused_file;
 use super::lessons::LESSONS;
+use super::link::link_of;
 use super::notice::Notice;
 use super::opening::{Opening, opening_of};
 use super::panels::Panels;
 use super::preferences::{Preferences, StoredWindow};
 use super::session::{Arrangement, arrangement_of, write_session, write_state};
 use super::watched_run::WatchedRun;
-use super::work::closed;
+use super::work::{Work, closed};
 use crate::config::{Config, SavedState};
 use crate::live::{Command, Live, LiveFrame, LiveStart};
 
@@ -140,12 +141,11 @@ impl AppState {
             self.load(Config::default());
         }
         // Each error message is a new allocation, so an equal text at another address is a new error.
-        let address = |refusal: &Option<Arc<str>>| refusal.as_ref().map(Arc::as_ptr);
-        if address(&self.run.frame.refusal) != address(&self.seen_refusal) {
-            self.seen_refusal.clone_from(&self.run.frame.refusal);
-            if let Some(refusal) = self.seen_refusal.clone() {
-                self.warn(refusal.to_string());
-            }
+        let refusal = self.run.frame.refusal.clone();
+        let seen = std::mem::replace(&mut self.seen_refusal, refusal.clone());
+        if let Some(refusal) = refusal.filter(|new| seen.is_none_or(|old| !Arc::ptr_eq(&old, new)))
+        {
+            self.warn(refusal.to_string());
         }
         self.run.follow_frame();
         if let Some(settings) = self.run.wanted_settings().filter(|_| !self.touring) {
@@ -282,7 +282,8 @@ impl AppState {
 
     /// Copies a link to the clipboard that reproduces the displayed state of all simulations.
     pub fn copy_link(&mut self, context: &Context) {
-        self.exports.copy_link(context, self.run.take_all());
+        let runs = self.run.take_all();
+        self.exports.link = Some(Work::start(context, runs, |runs, _| link_of(&runs)));
     }
 
     /// Restores the arrangement of the window from a session, except the window's size and the folder in which file
