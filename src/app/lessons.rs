@@ -295,23 +295,4 @@ mod tests {
         let (config, scene) = LESSONS[0].scene().unwrap();
         assert_eq!(scene, config.scene(|_| true).unwrap());
     }
-
-    #[test]
-    fn what_was_chosen_before_the_lessons_comes_back_after_them() {
-        let chosen = Preferences {
-            quantities: vec!["energy".into()],
-            speed: 3.0,
-            full_speed: true,
-            page: Some(Page::Look),
-            ..Preferences::default()
-        };
-        let mut preferences = chosen.clone();
-        LESSONS[1].begin(1, &mut preferences);
-        assert!(!preferences.starts_again && preferences.page.is_none());
-        LESSONS[6].begin(6, &mut preferences);
-        assert_ne!(preferences.quantities, chosen.quantities);
-        preferences.put_lesson_away();
-        let lesson = LessonPlace { at: LESSONS.len() - 1, ..LessonPlace::default() };
-        assert_eq!(preferences, Preferences { lesson, ..chosen });
-    }
 }

@@ -42,8 +42,6 @@ pub struct Preferences {
     pub plots: bool,
     /// Names of the plotted quantities.
     pub quantities: Vec<String>,
-    /// Name of the displayed histogram, as in output files.
-    pub histogram: String,
     /// True if an arrow in the scene always shows the direction of gravity.
     pub gravity: bool,
     /// Size of the window, points; `None` if no window has been opened yet.
@@ -80,7 +78,6 @@ impl Default for Preferences {
             ensemble: true,
             plots: true,
             quantities: vec!["slump".into()],
-            histogram: "normal_force".into(),
             gravity: false,
             window_points: None,
             speed: 0.2,
@@ -172,29 +169,5 @@ impl StoredWindow {
     /// Returns the present preferences and layout for storage.
     pub(super) fn of(preferences: &Preferences, context: &egui::Context) -> Self {
         Self { preferences: preferences.clone(), layout: context.memory(Clone::clone) }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_kept_reads_back() {
-        // The context must have drawn a frame, because it has no layout to store before.
-        let context = egui::Context::default();
-        for _ in 0..2 {
-            let _ = context.run_ui(egui::RawInput::default(), |ui| {
-                egui::Panel::left("side").show(ui, |ui| ui.collapsing("more", |ui| ui.label("x")));
-                egui::ScrollArea::vertical().show(ui, |ui| ui.label("y"));
-            });
-        }
-        let mut stored = StoredWindow::default();
-        stored.preferences.speed = 0.5;
-        stored.preferences.scene.source.grains = Some(40);
-        stored.layout = context.memory(Clone::clone);
-        let text = ron::to_string(&stored).unwrap();
-        let back: StoredWindow = ron::from_str(&text).unwrap();
-        assert_eq!(back.preferences, stored.preferences);
     }
 }
