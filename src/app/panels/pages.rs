@@ -59,7 +59,7 @@ impl Pages {
                 run::earlier_runs(ui, context);
                 ui.separator();
                 plots::choices(ui, context);
-                folded(ui, "Distributions", |ui| self.distributions.show(ui, context));
+                folded(ui, "Distributions", |ui| self.distributions.show(ui, context.run));
             }
             Page::Look => see::look(ui, context.preferences),
             Page::Save => {
@@ -87,9 +87,9 @@ impl Pages {
         compare::method_presets(ui, context.run);
         if IN_BROWSER {
             // The measurement would block the browser version for seconds.
-            let text =
-                "Only the program measures the speed and accuracy of all solvers: slump chart.";
-            ui.label(RichText::new(text).weak());
+            ui.weak(
+                "Only the program measures the speed and accuracy of all solvers: slump chart.",
+            );
         } else {
             let race = &mut self.race;
             folded(ui, "Speed and accuracy", |ui| speed::show(ui, context.run, race));
