@@ -102,8 +102,9 @@ impl WorldCell<'_> {
         };
         let grains = &self.frame.snapshot.grains;
         if let Some(pinned) = context.run.pinned.filter(|pinned| pinned.world == self.index) {
-            for partner in super::grain::partners(&self.frame.snapshot, pinned.grain) {
-                ring(&grains[partner], 1.5);
+            let contacts = super::grain::contacts_of(&self.frame.snapshot, pinned.grain);
+            for other in contacts.filter_map(|(other, _)| other) {
+                ring(&grains[other as usize], 1.5);
             }
             ring(&grains[pinned.grain], 3.0);
         }
