@@ -9,10 +9,6 @@ use crate::app::number_text::{clock_text, time_field};
 use crate::app::work::{Reporter, Work};
 use crate::data::{DataSettings, FormatName};
 
-/// Shortest and longest time that the user can enter as the simulated time between two exported states (frames) of the
-/// run, s. The limits are far outside useful values.
-const EVERY: [f64; 2] = [1e-9, 1e9];
-
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let is_ready = context.run.is_ready();
     ui.add_enabled_ui(is_ready, |ui| saved_runs(ui, context));
@@ -89,20 +85,18 @@ fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let hint = "Simulated time between two frames of grains and contacts. Measures of whole piles always have \
                     one row per step.";
         let label = ui.label("A frame every").on_hover_text(hint);
-        let every = time_field(&mut choices.every_secs).range(EVERY[0]..=EVERY[1]).speed(1e-3);
+        // The limits are far outside useful values.
+        let every = time_field(&mut choices.every_secs).range(1e-9..=1e9).speed(1e-3);
         ui.add_enabled(!choices.each_step, every).labelled_by(label.id);
         ui.toggle_value(&mut choices.each_step, "step").on_hover_text("A frame after each step.");
     });
-    egui::Grid::new("formats").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
-        for (index, &format) in FormatName::ALL.iter().enumerate() {
+    ui.horizontal_wrapped(|ui| {
+        for &format in FormatName::ALL {
             let mut is_wanted = choices.formats.contains(&format);
             let check = ui.checkbox(&mut is_wanted, format.name());
             if check.on_hover_text(format.hint()).changed() {
                 choices.formats.retain(|other| *other != format);
                 choices.formats.extend(is_wanted.then_some(format));
-            }
-            if index % 2 == 1 {
-                ui.end_row();
             }
         }
     });

@@ -141,33 +141,29 @@ fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
             "Saves {RECORD} as a GIF, which all slides and web pages can show: 256 colours per picture, and larger \
              files."
         );
-        let missing = check_ffmpeg("given").err();
-        let formats = [
-            (FilmFormat::Video, "Save video", missing, video_hint),
-            (FilmFormat::Gif, "Save GIF", None, gif_hint),
-        ];
-        // The browser version has no ffmpeg, so it offers no video.
-        for (format, name, missing, hint) in formats.into_iter().skip(usize::from(IN_BROWSER)) {
-            let save = ui.add_enabled(context.run.is_ready() && missing.is_none(), egui::Button::new(name));
-            context.note_control(name, save.rect);
-            if save.clicked() {
-                let speed = context.preferences.speed;
-                save_film(ui.ctx(), context, format, speed);
-            }
-            let save = save.on_hover_text(hint);
-            if let Some(missing) = missing {
-                save.on_disabled_hover_text(missing.to_string());
-            }
-        }
+        let short_hint = format!("Saves {RECORD} as a GIF that lasts 5 s.");
         let recorded_from = context.run.world().map_or(0.0, |world| world.recorded_from_secs);
         let whole = [recorded_from, context.run.frame.recorded_secs()];
         let [from, until] = context.exports.data.stretch.unwrap_or(whole);
-        let is_possible = context.run.is_ready() && until > from;
-        let hint = format!("Saves {RECORD} as a GIF that lasts 5 s.");
-        let save = ui.add_enabled(is_possible, egui::Button::new("GIF of 5 s"));
-        context.note_control("GIF of 5 s", save.rect);
-        if save.on_hover_text(hint).clicked() {
-            save_film(ui.ctx(), context, FilmFormat::Gif, (until - from) / SHORT_GIF_SECS);
+        let speed = context.preferences.speed;
+        let short_speed = (until - from) / SHORT_GIF_SECS;
+        let missing = check_ffmpeg("given").err();
+        let films = [
+            (FilmFormat::Video, "Save video", missing, speed, video_hint),
+            (FilmFormat::Gif, "Save GIF", None, speed, gif_hint),
+            (FilmFormat::Gif, "GIF of 5 s", None, short_speed, short_hint),
+        ];
+        // The browser version has no ffmpeg, so it offers no video.
+        for (format, name, missing, speed, hint) in films.into_iter().skip(usize::from(IN_BROWSER)) {
+            let is_possible = context.run.is_ready() && missing.is_none() && speed > 0.0;
+            let save = ui.add_enabled(is_possible, egui::Button::new(name)).on_hover_text(hint);
+            context.note_control(name, save.rect);
+            if save.clicked() {
+                save_film(ui.ctx(), context, format, speed);
+            }
+            if let Some(missing) = missing {
+                save.on_disabled_hover_text(missing.to_string());
+            }
         }
     });
 }
