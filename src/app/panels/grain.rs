@@ -1,15 +1,34 @@
-//! The state and contacts of the pinned grain (the grain that the user selected), in a corner of the scene.
+//! The state and contacts of the pinned grain (the grain that the user selected), in the sidebar or in a corner of the
+//! scene.
 
 use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::context::PanelContext;
+use crate::app::page::Page;
+use crate::app::watched_run::WatchedRun;
 use crate::live::WorldFrame;
 use crate::render::numbers::si_prefix;
 use crate::sim::{ContactView, Snapshot};
 
-/// Shows the state and contacts of the pinned grain (which the user selected with a click) in a corner of the scene, if
-/// a grain is pinned.
-pub(super) fn show(ui: &Ui, context: &mut PanelContext<'_>) {
+/// Shows the state and contacts of the pinned grain (which the user selected with a click), if a grain is pinned.
+pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
+    let Some(pinned) = run.pinned else { return };
+    let Some(world) = run.frame.worlds.get(pinned.world) else { return };
+    describe(ui, world, pinned.grain);
+    ui.add_space(4.0);
+    contacts(ui, world, pinned.grain);
+    if ui.button("Unpin").clicked() {
+        run.pinned = None;
+    }
+    ui.separator();
+}
+
+/// Shows the state of the pinned grain (which the user selected with a click) in a corner of the scene, unless the
+/// sidebar shows this grain.
+pub(super) fn show_over_scene(ui: &Ui, context: &mut PanelContext<'_>) {
+    if context.preferences.page == Some(Page::Pile) {
+        return;
+    }
     let Some(pinned) = context.run.pinned else { return };
     let Some(world) = context.run.frame.worlds.get(pinned.world) else { return };
     let corner = context.controls.get("scene").map_or(egui::Pos2::ZERO, egui::Rect::right_top);
@@ -20,8 +39,8 @@ pub(super) fn show(ui: &Ui, context: &mut PanelContext<'_>) {
         .show(ui.ctx(), |ui| {
             egui::Frame::popup(ui.style()).show(ui, |ui| {
                 describe(ui, world, pinned.grain);
-                ui.collapsing("Contacts", |ui| contacts(ui, world, pinned.grain));
-                unpins = ui.button("Unpin").clicked();
+                let unpin = ui.button("Unpin");
+                unpins = unpin.on_hover_text("Its contacts are listed under More, Pile").clicked();
             });
         });
     if unpins {

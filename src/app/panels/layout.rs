@@ -64,7 +64,7 @@ impl Panels {
         } else {
             lesson_bar::light(ui, context);
         }
-        grain::show(ui, context);
+        grain::show_over_scene(ui, context);
         self.trust.follow(ui, context);
         help::show(ui, &mut self.help);
     }

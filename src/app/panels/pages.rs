@@ -5,7 +5,7 @@ use egui::{CollapsingHeader, RichText, Ui};
 use super::distributions::Distributions;
 use super::gallery::Gallery;
 use super::speed::StepRace;
-use super::{compare, data, grabbing, physics, plots, run, see, solver, speed};
+use super::{compare, data, grabbing, grain, physics, plots, run, see, solver, speed};
 use crate::app::IN_BROWSER;
 use crate::app::context::PanelContext;
 use crate::app::page::Page;
@@ -37,6 +37,7 @@ impl Pages {
             Page::Pile => {
                 run::show(ui, context, &mut self.gallery);
                 ui.separator();
+                grain::show(ui, context.run);
                 grabbing::show(ui, context.preferences);
             }
             Page::Solver => {
