@@ -126,11 +126,6 @@ fn sweeps(base: Settings, count: u32) -> Settings {
     Settings { solver: SolverSettings::to_residual(Method::Nsgs, 1e-6, count), ..base }
 }
 
-fn in_cone(mut settings: Settings, cone: FrictionCone) -> Settings {
-    settings.parameters.cone = cone;
-    settings
-}
-
 /// All lessons, in their order.
 pub const LESSONS: [Lesson; 7] = [
     Lesson {
@@ -226,10 +221,10 @@ pub const LESSONS: [Lesson; 7] = [
         }),
         learnt: "Strong bonds hold a pile only if cohesion adds to friction. The paper can be read both ways.",
         worlds: |base| {
-            let base = base.with_bond(100.0).over(1e-4);
-            [FrictionCone::Shifted, FrictionCone::Compressive]
-                .map(|cone| in_cone(base, cone))
-                .into()
+            let mut worlds = [base.with_bond(100.0).over(1e-4); 2];
+            worlds[0].parameters.cone = FrictionCone::Shifted;
+            worlds[1].parameters.cone = FrictionCone::Compressive;
+            worlds.into()
         },
         sliders: &["bond", "dt", "mu"],
         ..PILE

@@ -44,7 +44,7 @@ const RULE_IN_BROWSER: &str = "Other piles with the same settings show how far o
 #[derive(Default)]
 pub struct Ensemble {
     /// Folder in which the computed initial states are stored; `None` if the user has no folder for such files.
-    folder: Option<PathBuf>,
+    pub(super) folder: Option<PathBuf>,
     /// The open scene as the window loaded it. The field `piles` describes the other initial states: the same pile made
     /// from other seeds.
     opened: Option<Arc<LiveStart>>,
@@ -80,11 +80,6 @@ impl Ensemble {
     pub fn keep_in(&mut self, folder: PathBuf) {
         self.stop();
         self.folder = Some(folder);
-    }
-
-    /// Folder in which the computed initial states are stored, if there is one.
-    pub(super) fn folder(&self) -> Option<PathBuf> {
-        self.folder.clone()
     }
 
     /// Ends all threads that compute runs from other initial states. Keeps the results of started runs (`released`) as

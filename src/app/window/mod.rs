@@ -233,7 +233,7 @@ impl ApplicationHandler<()> for App {
     }
 
     fn user_event(&mut self, _events: &ActiveEventLoop, _repaint: ()) {
-        let software = self.open.as_ref().is_some_and(|open| open.surface.is_software());
+        let software = self.open.as_ref().is_some_and(|open| open.surface.is_software);
         let interval = if software { SOFTWARE_FRAME_INTERVAL } else { FRAME_INTERVAL };
         let at = self.drawn + interval;
         self.next_repaint = Some(self.next_repaint.map_or(at, |planned| planned.min(at)));

@@ -35,7 +35,8 @@ pub(super) struct WindowSurface {
     window: Arc<Window>,
     configuration: wgpu::SurfaceConfiguration,
     screen: Screen,
-    software: bool,
+    /// True if the graphics device is a software driver, so that the processor draws.
+    pub is_software: bool,
     lost: Arc<AtomicBool>,
     /// Textures that the graphics device has not received yet, because their frames were not drawn.
     textures: egui::TexturesDelta,
@@ -103,7 +104,7 @@ impl WindowSurface {
             .unwrap_or(configuration.format);
         configuration.present_mode = wgpu::PresentMode::AutoVsync;
         surface.configure(&device, &configuration);
-        let software = adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+        let is_software = adapter.get_info().device_type == wgpu::DeviceType::Cpu;
         let screen = Screen::new(&device, &queue, configuration.format);
         Ok(Self {
             surface,
@@ -111,15 +112,10 @@ impl WindowSurface {
             window: Arc::clone(window),
             configuration,
             screen,
-            software,
+            is_software,
             lost,
             textures: egui::TexturesDelta::default(),
         })
-    }
-
-    /// True if the graphics device is a software driver, so that the processor draws.
-    pub(super) fn is_software(&self) -> bool {
-        self.software
     }
 
     /// Largest side that egui's font textures may have on this graphics device, pixels.
