@@ -28,28 +28,28 @@ pub(super) fn bare_plot<'a>(
 /// Returns an empty plot with numbered axes; the x axis has the unit `x_unit`. `log` states which axes (x, y) are
 /// logarithmic. Along a logarithmic axis with a unit, the labels are decimal numbers; without a unit they are powers of
 /// ten. If `x_unit` is " ms" and the x axis is linear, the x values are times in seconds, and their labels are in
-/// milliseconds.
+/// milliseconds. The plot fills the remaining height, and shows at least the ranges `ends`: the lowest and highest x,
+/// then the lowest and highest y.
 pub(super) fn plot_with_axes<'a>(
     ui: &Ui,
     id: impl std::hash::Hash + std::fmt::Debug,
-    height: f32,
     log: [bool; 2],
     x_unit: &'static str,
+    ends: [[f64; 2]; 2],
 ) -> Plot<'a> {
     let y_hints = AxisHints::new_y().min_thickness(34.0);
-    bare_plot(ui, id, height)
+    let [[left, right], [bottom, top]] = ends;
+    bare_plot(ui, id, (ui.available_height() - 2.0).max(40.0))
         // Half of the last label is to the right of the plot.
         .width(ui.available_width() - 10.0)
         .x_grid_spacer(move |grid| round_marks(grid, log[0]))
         .y_grid_spacer(move |grid| round_marks(grid, log[1]))
         .custom_x_axes(vec![axis(AxisHints::new_x(), log[0], x_unit)])
         .custom_y_axes(vec![axis(y_hints, log[1], "")])
-}
-
-/// Extends a plot so that it shows at least the ranges `ends`: the lowest and highest x, then the lowest and highest y.
-pub(super) fn with_least(plot: Plot<'_>, ends: [[f64; 2]; 2]) -> Plot<'_> {
-    let [[left, right], [bottom, top]] = ends;
-    plot.include_x(left).include_x(right).include_y(bottom).include_y(top)
+        .include_x(left)
+        .include_x(right)
+        .include_y(bottom)
+        .include_y(top)
 }
 
 /// Returns the lowest and highest value of an axis that contains all finite `values`, which are decimal logarithms if

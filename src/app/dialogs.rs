@@ -22,17 +22,9 @@ pub(crate) struct FileDialog {
 }
 
 impl FileDialog {
-    /// Shows a dialog in which the user chooses a file to be opened. The dialog begins in `folder`.
-    pub(super) fn ask_for_file(&mut self, context: &egui::Context, folder: &Path) {
-        self.ask(context, folder, true);
-    }
-
-    /// Shows a dialog in which the user chooses the folder of saved files. The dialog begins in `folder`.
-    pub(super) fn ask_for_folder(&mut self, context: &egui::Context, folder: &Path) {
-        self.ask(context, folder, false);
-    }
-
-    fn ask(&mut self, context: &egui::Context, folder: &Path, for_file: bool) {
+    /// Shows a dialog in which the user chooses a file to be opened or, if `for_file` is false, the folder of saved
+    /// files. The dialog begins in `folder`.
+    pub(super) fn ask(&mut self, context: &egui::Context, folder: &Path, for_file: bool) {
         if self.waiting.is_some() {
             return;
         }

@@ -7,15 +7,14 @@ use egui::{Color32, Label, RichText, Ui};
 use egui_plot::{Line, VLine};
 use glam::DVec2;
 
-use super::axes::{plot_with_axes, with_least, with_room};
+use super::axes::{plot_with_axes, with_room};
 use super::theme;
-use crate::live::{LiveFrame, LiveStart};
+use crate::live::LiveFrame;
 use crate::scene::Scene;
 use crate::sim::Snapshot;
 
 /// The main quantity of an experiment, such as the angle of the surface in a drum.
 struct ExperimentQuantity {
-    scene: &'static str,
     /// Title of the plot, with the unit.
     title: &'static str,
     /// Function that returns the value of the quantity, given the scene in its initial state and a snapshot of the run.
@@ -24,41 +23,38 @@ struct ExperimentQuantity {
     is_rate: bool,
 }
 
-const fn quantity(
-    scene: &'static str,
-    title: &'static str,
-    of: fn(&Scene, &Snapshot) -> f64,
-) -> ExperimentQuantity {
-    ExperimentQuantity { scene, title, of, is_rate: false }
-}
-
-const QUANTITIES: [ExperimentQuantity; 8] = [
-    quantity("drum", "angle of the surface (degrees)", |_, now| surface_degrees(now)),
-    quantity("shear", "shear stress / normal stress", |_, now| shear_ratio(now)),
-    quantity("shear-periodic", "shear stress / normal stress", |_, now| shear_ratio(now)),
-    quantity("biaxial", "stress ratio σyy/σxx", |_, now| {
-        let [xx, _, yy] = stress(now);
-        yy / xx
-    }),
-    quantity("vibrated", "height of the large grain (mean diameters)", |scene, now| {
-        let largest = now.grains.iter().max_by(|one, other| one.radius.total_cmp(&other.radius));
-        largest.map_or(f64::NAN, |grain| grain.position.y / scene.mean_diameter)
-    }),
-    quantity("collapse", "run-out (L − L₀)/L₀", |scene, now| {
-        let before = half_width(scene.grains.iter().map(|grain| grain.position.x));
-        half_width(now.grains.iter().map(|grain| grain.position.x)) / before - 1.0
-    }),
-    ExperimentQuantity {
-        is_rate: true,
-        ..quantity("silo", "grains per second through the orifice", |_, now| {
+/// Returns the main quantity of an experiment; `None` for other scenes.
+fn quantity_of(scene: &Scene) -> Option<ExperimentQuantity> {
+    let (title, of): (_, fn(&Scene, &Snapshot) -> f64) = match &*scene.name {
+        "drum" => ("angle of the surface (degrees)", |_, now| surface_degrees(now)),
+        "shear" | "shear-periodic" => ("shear stress / normal stress", |_, now| {
+            let [_, xy, yy] = stress(now);
+            xy.abs() / yy
+        }),
+        "biaxial" => ("stress ratio σyy/σxx", |_, now| {
+            let [xx, _, yy] = stress(now);
+            yy / xx
+        }),
+        "vibrated" => ("height of the large grain (mean diameters)", |scene, now| {
+            let largest =
+                now.grains.iter().max_by(|one, other| one.radius.total_cmp(&other.radius));
+            largest.map_or(f64::NAN, |grain| grain.position.y / scene.mean_diameter)
+        }),
+        "collapse" => ("run-out (L − L₀)/L₀", |scene, now| {
+            let before = half_width(scene.grains.iter().map(|grain| grain.position.x));
+            half_width(now.grains.iter().map(|grain| grain.position.x)) / before - 1.0
+        }),
+        "silo" => ("grains per second through the orifice", |_, now| {
             now.grains.iter().filter(|grain| grain.position.y < 0.0).count() as f64
-        })
-    },
-    quantity("incline", "mean speed of the grains (mm/s)", |_, now| {
-        let speeds = now.grains.iter().map(|grain| grain.velocity.length());
-        1e3 * speeds.sum::<f64>() / now.grains.len().max(1) as f64
-    }),
-];
+        }),
+        "incline" => ("mean speed of the grains (mm/s)", |_, now| {
+            let speeds = now.grains.iter().map(|grain| grain.velocity.length());
+            1e3 * speeds.sum::<f64>() / now.grains.len().max(1) as f64
+        }),
+        _ => return None,
+    };
+    Some(ExperimentQuantity { title, of, is_rate: scene.name == "silo" })
+}
 
 /// Returns the angle of the surface in a rotating drum whose axis is at the origin, degrees. The centre of mass of a
 /// filling with a plane surface lies on the line through the axis that is perpendicular to the surface.
@@ -72,11 +68,6 @@ fn half_width(places: impl Iterator<Item = f64>) -> f64 {
     let ends =
         places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
     0.5 * (ends[1] - ends[0])
-}
-
-fn shear_ratio(now: &Snapshot) -> f64 {
-    let [_, xy, yy] = stress(now);
-    xy.abs() / yy
 }
 
 /// Returns the mean stresses σxx, ½(σxy + σyx) and σyy of the sample due to its contacts, each multiplied by the area
@@ -99,11 +90,7 @@ fn stress(now: &Snapshot) -> [f64; 3] {
 /// True if the scene in `frame` (the data to draw) is an experiment with a main quantity (such as the angle of the
 /// surface in a drum) that can be plotted.
 pub(super) fn has_quantity(frame: &LiveFrame) -> bool {
-    frame.start.as_ref().is_some_and(|start| quantity_of(start).is_some())
-}
-
-fn quantity_of(start: &LiveStart) -> Option<&'static ExperimentQuantity> {
-    QUANTITIES.iter().find(|quantity| quantity.scene == start.scene.name)
+    frame.start.as_ref().is_some_and(|start| quantity_of(&start.scene).is_some())
 }
 
 /// Least simulated time between the two values from which the plot computes a change per second, s. A shorter time
@@ -128,8 +115,9 @@ impl ExperimentSeries {
     /// `frame`, the newest data from the solver's thread. If the recorded run now ends at an earlier step, removes the
     /// later values.
     pub(super) fn follow(&mut self, frame: &LiveFrame) {
-        let quantity = frame.start.as_ref().and_then(|start| Some((start, quantity_of(start)?)));
-        let Some((start, quantity)) = quantity else { return *self = Self::default() };
+        let scene = frame.start.as_ref().map(|start| &start.scene);
+        let quantity = scene.and_then(|scene| Some((scene, quantity_of(scene)?)));
+        let Some((scene, quantity)) = quantity else { return *self = Self::default() };
         let run = (frame.loads, frame.past.last().map(|past| past.number), frame.worlds.len());
         if self.run != run {
             *self = Self { run, worlds: vec![BTreeMap::new(); frame.worlds.len()] };
@@ -141,15 +129,14 @@ impl ExperimentSeries {
             }
             values
                 .entry(row.step)
-                .or_insert_with(|| [row.time_secs, (quantity.of)(&start.scene, &world.snapshot)]);
+                .or_insert_with(|| [row.time_secs, (quantity.of)(scene, &world.snapshot)]);
         }
     }
 
-    /// Returns the points of a simulation's curve: simulated time, s, and the quantity or its change per second.
-    fn points(&self, start: &LiveStart, world: usize) -> Vec<[f64; 2]> {
-        let Some(values) = self.worlds.get(world) else { return Vec::new() };
+    /// Returns the points of a simulation's curve: simulated time, s, and the quantity or, if `is_rate` is true, its
+    /// change per second.
+    fn points(values: &BTreeMap<u64, [f64; 2]>, is_rate: bool) -> Vec<[f64; 2]> {
         let values: Vec<[f64; 2]> = values.values().copied().collect();
-        let is_rate = quantity_of(start).is_some_and(|quantity| quantity.is_rate);
         let point = |&[time_secs, value]: &[f64; 2]| {
             let before = values.partition_point(|[at, _]| *at <= time_secs - RATE_SECS);
             match (is_rate, before.checked_sub(1)) {
@@ -168,24 +155,19 @@ impl ExperimentSeries {
     /// Draws the plot of the experiment's main quantity (such as the angle of the surface in a drum) into the remaining
     /// space. Draws nothing if the scene has no such quantity.
     pub(crate) fn draw(&self, ui: &mut Ui, frame: &LiveFrame) {
-        let start = frame.start.as_ref();
-        let Some((start, quantity)) = start.and_then(|start| Some((start, quantity_of(start)?)))
-        else {
-            return;
-        };
-        ui.add(Label::new(RichText::new(quantity.title).small()).truncate());
+        let Some(scene) = frame.start.as_ref().map(|start| &start.scene) else { return };
+        let Some(ExperimentQuantity { title, is_rate, .. }) = quantity_of(scene) else { return };
+        ui.add(Label::new(RichText::new(title).small()).truncate());
         let worlds: Vec<_> =
-            (0..self.worlds.len()).map(|world| self.points(start, world)).collect();
+            self.worlds.iter().map(|values| Self::points(values, is_rate)).collect();
         let values = worlds.iter().flatten().map(|point| point[1]);
-        let least = [[0.0, start.scene.duration_secs], with_room(values, false)];
-        let height = (ui.available_height() - 2.0).max(40.0);
-        let plot = plot_with_axes(ui, "experiment", height, [false, false], " ms");
+        let ends = [[0.0, scene.duration_secs], with_room(values, false)];
         let dark = ui.visuals().dark_mode;
-        with_least(plot, least).show(ui, |plot| {
+        plot_with_axes(ui, "experiment", [false; 2], " ms", ends).show(ui, |plot| {
             plot.vline(VLine::new("now", frame.time_secs()).color(Color32::GRAY).width(1.0));
             for (world, points) in worlds.into_iter().enumerate() {
                 let colour = theme::world_colour(world, dark);
-                plot.line(Line::new(quantity.title, points).color(colour).width(1.6));
+                plot.line(Line::new(title, points).color(colour).width(1.6));
             }
         });
     }
@@ -200,8 +182,7 @@ mod tests {
     fn every_experiment_has_a_quantity_with_a_finite_value() {
         for info in SCENES.iter().filter(|info| info.group == SceneGroup::Experiments) {
             let scene = (info.make)().unwrap();
-            let quantity = QUANTITIES.iter().find(|quantity| quantity.scene == scene.name);
-            let quantity = quantity.unwrap_or_else(|| panic!("{}", info.name));
+            let quantity = quantity_of(&scene).unwrap_or_else(|| panic!("{}", info.name));
             let mut run = scene.clone().simulation().unwrap();
             run.take_steps(400).unwrap();
             let value = (quantity.of)(&scene, &run.snapshot());

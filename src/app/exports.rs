@@ -10,9 +10,7 @@ use super::canvas::Canvas;
 use super::data_export::DataPanel;
 use super::file_names::is_saved_run;
 use super::film::FilmFormat;
-use super::link::link_of;
 use super::notice::Notice;
-use super::watched_run::TakenRun;
 use super::work::{MaySend, Work, outcome_of_ended};
 use crate::error::{Error, Result};
 use crate::live::Curve;
@@ -31,7 +29,7 @@ pub(crate) struct Exports {
     pub film: Option<(FilmFormat, Work<String>)>,
     /// The link (a line of text that reproduces a run) that is being made, to be copied to the clipboard. The flag is
     /// true if the user moved, added or removed grains or moved walls with the mouse, which the link cannot express.
-    link: Option<Work<(String, bool)>>,
+    pub link: Option<Work<(String, bool)>>,
 }
 
 impl Drop for Exports {
@@ -75,11 +73,6 @@ impl Exports {
         }));
     }
 
-    /// Starts to make a link that reproduces these runs. [`Self::follow`] then copies the link to the clipboard.
-    pub(super) fn copy_link(&mut self, context: &egui::Context, runs: Vec<Receiver<TakenRun>>) {
-        self.link = Some(Work::start(context, runs, |runs, _| link_of(&runs)));
-    }
-
     /// Returns a notice for the status bar if an export has ended since the last call. Copies a finished link (text
     /// that reproduces runs) to the clipboard.
     pub(super) fn follow(&mut self, context: &egui::Context) -> Option<Notice> {
@@ -109,7 +102,7 @@ impl Exports {
                     context.copy_text(text);
                     Notice::new(if is_pulled { PULLED } else { COPIED }, is_pulled)
                 }
-                Err(error) => Notice::new(error.to_string(), true),
+                Err(error) => Err(error).into(),
             });
         }
         notice

@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use super::page::Page;
 use super::predictions::{self, Question};
-use super::preferences::{Choices, LessonPlace, Preferences};
+use super::preferences::{LessonPlace, Preferences};
 use super::watched_run::WatchedRun;
 use crate::config::{Config, parse_discs};
 use crate::error::Result;
@@ -102,17 +102,17 @@ impl Lesson {
         Ok((config.clone(), config.scene_from(grains)?))
     }
 
-    /// Returns the preferences that the lesson sets while it is open.
-    pub(super) fn choices(&self) -> Choices {
-        Choices {
-            quantities: self.plots.iter().map(|name| (*name).to_owned()).collect(),
-            speed: self.speed,
-            full_speed: false,
-            starts_again: self.starts_again,
-            page: self.page,
-            // The lessons on piles are about cohesion.
-            show_forces: self.scene == Config::DEFAULT_SCENE,
-        }
+    /// Begins this lesson, whose index is `at`: sets the preferences that the lesson needs.
+    pub(super) fn begin(&self, at: usize, preferences: &mut Preferences) {
+        let before = preferences.lesson.before.take();
+        let before = before.unwrap_or_else(|| Box::new(preferences.clone()));
+        let place = &mut preferences.lesson;
+        (place.at, place.on, place.before) = (at, true, Some(before));
+        preferences.quantities = self.plots.iter().map(|name| (*name).to_owned()).collect();
+        (preferences.speed, preferences.full_speed) = (self.speed, false);
+        (preferences.starts_again, preferences.page) = (self.starts_again, self.page);
+        // The lessons on piles are about cohesion.
+        preferences.style.show_forces = self.scene == Config::DEFAULT_SCENE;
     }
 }
 
@@ -124,11 +124,6 @@ fn two_time_steps(base: Settings, bond: f64) -> Vec<Settings> {
 /// friction, even if the step is then unsolved.
 fn sweeps(base: Settings, count: u32) -> Settings {
     Settings { solver: SolverSettings::to_residual(Method::Nsgs, 1e-6, count), ..base }
-}
-
-fn in_cone(mut settings: Settings, cone: FrictionCone) -> Settings {
-    settings.parameters.cone = cone;
-    settings
 }
 
 /// All lessons, in their order.
@@ -226,10 +221,10 @@ pub const LESSONS: [Lesson; 7] = [
         }),
         learnt: "Strong bonds hold a pile only if cohesion adds to friction. The paper can be read both ways.",
         worlds: |base| {
-            let base = base.with_bond(100.0).over(1e-4);
-            [FrictionCone::Shifted, FrictionCone::Compressive]
-                .map(|cone| in_cone(base, cone))
-                .into()
+            let mut worlds = [base.with_bond(100.0).over(1e-4); 2];
+            worlds[0].parameters.cone = FrictionCone::Shifted;
+            worlds[1].parameters.cone = FrictionCone::Compressive;
+            worlds.into()
         },
         sliders: &["bond", "dt", "mu"],
         ..PILE
@@ -294,24 +289,5 @@ mod tests {
     fn the_pile_of_the_lessons_is_the_one_that_its_command_line_makes() {
         let (config, scene) = LESSONS[0].scene().unwrap();
         assert_eq!(scene, config.scene(|_| true).unwrap());
-    }
-
-    #[test]
-    fn what_was_chosen_before_the_lessons_comes_back_after_them() {
-        let chosen = Preferences {
-            quantities: vec!["energy".into()],
-            speed: 3.0,
-            full_speed: true,
-            page: Some(Page::Look),
-            ..Preferences::default()
-        };
-        let mut preferences = chosen.clone();
-        preferences.begin_lesson(1, LESSONS[1].choices());
-        assert!(!preferences.starts_again && preferences.page.is_none());
-        preferences.begin_lesson(6, LESSONS[6].choices());
-        assert_ne!(preferences.quantities, chosen.quantities);
-        preferences.put_lesson_away();
-        let lesson = LessonPlace { at: LESSONS.len() - 1, ..LessonPlace::default() };
-        assert_eq!(preferences, Preferences { lesson, ..chosen });
     }
 }

@@ -16,8 +16,7 @@ use crate::live::WorldPlan;
 use crate::scene::SceneInfo;
 use crate::sim::Settings;
 
-/// Scheme (beginning of the address) of links that open in Slump's window.
-pub(crate) const LINK_START: &str = "slump://";
+/// First part of links (texts that reproduce runs) that open in Slump's window.
 const HEAD: &str = "slump://run?";
 /// First part of links (texts that reproduce runs) that open in a browser: the address of the page.
 static PAGE: OnceLock<String> = OnceLock::new();
@@ -31,7 +30,7 @@ pub(super) fn set_link_start(start: String) {
 /// True if the text looks like the link of a run, for the window or for the browser version.
 pub(super) fn is_link(text: &str) -> bool {
     let text = text.trim_start();
-    text.starts_with(LINK_START) || (text.starts_with("http") && text.contains("?scene="))
+    text.starts_with("slump://") || (text.starts_with("http") && text.contains("?scene="))
 }
 
 /// Expected form of a link (text that reproduces runs), for error messages.

@@ -61,7 +61,6 @@ pub use notice::Notice;
 pub use opening::Opening;
 pub use page::Page;
 pub use panels::{FRONT_SETTINGS, Grabbing, Panels, ScenePanel};
-pub use plots::ChosenPlot;
 pub use predictions::{Prediction, Question};
 pub use preferences::Preferences;
 pub use state::AppState;

@@ -99,19 +99,15 @@ pub(super) fn opening_of(path: &Path) -> Option<Opening> {
     if is_saved_run(path) {
         return Some(Opening::File(path.to_owned()));
     }
-    Some(Opening::Scene(Box::new(dropped_scene(path)?)))
-}
-
-/// Returns the configuration for a scene file (`.toml`) or a list of discs (`.csv`); `None` for other endings.
-fn dropped_scene(path: &Path) -> Option<Config> {
-    match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
-        "toml" => path.to_str().map(Config::of_scene),
+    let config = match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+        "toml" => Config::of_scene(path.to_str()?),
         "csv" => {
             let source = SceneSource { initial: Some(path.to_owned()), ..SceneSource::default() };
-            Some(Config { source, ..Config::default() })
+            Config { source, ..Config::default() }
         }
-        _ => None,
-    }
+        _ => return None,
+    };
+    Some(Opening::Scene(Box::new(config)))
 }
 
 #[cfg(test)]
@@ -120,11 +116,14 @@ mod tests {
 
     #[test]
     fn endings_tell_scenes_from_discs_and_saved_runs() {
-        let config = |path: &str| dropped_scene(path.as_ref()).expect(path).source;
+        let config = |path: &str| match opening_of(path.as_ref()) {
+            Some(Opening::Scene(config)) => config.source,
+            other => panic!("{path}: {other:?}"),
+        };
         assert_eq!(config("a/Box.TOML").scene.as_deref(), Some("a/Box.TOML"));
         assert_eq!(config("a/pile.csv").initial.as_deref(), Some("a/pile.csv".as_ref()));
         assert!(is_saved_run("a/checkpoint.slump".as_ref()));
         assert!(!is_saved_run("a/pile.png".as_ref()));
-        assert_eq!(dropped_scene("a/pile.png".as_ref()), None);
+        assert!(opening_of("a/pile.png".as_ref()).is_none());
     }
 }

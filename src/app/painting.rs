@@ -15,14 +15,16 @@ use crate::render::{Legend, Painter, Picture, PictureArea};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TargetFormat(pub wgpu::TextureFormat);
 
-/// Painters of the scenes that the window shows, each stored under the number of its scene. A painter owns GPU buffers
-/// with the shapes of its scene. They must exist until the GPU has drawn the frame.
+/// GPU resources of all paintings, among the resources of the paint callbacks.
 #[derive(Default)]
-struct Painters(HashMap<usize, Painter>);
-
-/// One GPU pipeline for each colour with which an area was filled. A theme has few colours, so there are few pipelines.
-#[derive(Default)]
-struct Fills(HashMap<Color32, wgpu::RenderPipeline>);
+struct Painters {
+    /// Painters of the scenes that the window shows, each stored under the number of its scene. A painter owns GPU
+    /// buffers with the shapes of its scene. They must exist until the GPU has drawn the frame.
+    scenes: HashMap<usize, Painter>,
+    /// One GPU pipeline for each colour with which an area was filled. A theme has few colours, so there are few
+    /// pipelines.
+    fills: HashMap<Color32, wgpu::RenderPipeline>,
+}
 
 /// Shape that a paint callback draws.
 enum Painting {
@@ -55,11 +57,11 @@ impl CallbackTrait for Painting {
         // Tests store no format, and draw into the format that egui recommends.
         let told = resources.get::<TargetFormat>();
         let format = told.map_or(wgpu::TextureFormat::Rgba8Unorm, |TargetFormat(format)| *format);
+        let painters = resources.entry::<Painters>().or_insert_with(Painters::default);
         match self {
             Self::Scene(place, rect, picture) => {
-                let painters = resources.entry::<Painters>().or_insert_with(Painters::default);
-                let painter =
-                    painters.0.entry(*place).or_insert_with(|| Painter::new(device, format));
+                let painter = painters.scenes.entry(*place);
+                let painter = painter.or_insert_with(|| Painter::new(device, format));
                 let info = PaintCallbackInfo {
                     viewport: *rect,
                     clip_rect: *rect,
@@ -74,8 +76,8 @@ impl CallbackTrait for Painting {
                 painter.prepare(device, queue, picture, area);
             }
             Self::Fill(colour) => {
-                let fills = resources.entry::<Fills>().or_insert_with(Fills::default);
-                fills.0.entry(*colour).or_insert_with(|| fill_pipeline(device, format, *colour));
+                let fill = painters.fills.entry(*colour);
+                fill.or_insert_with(|| fill_pipeline(device, format, *colour));
             }
         }
         Vec::new()
@@ -87,16 +89,15 @@ impl CallbackTrait for Painting {
         pass: &mut wgpu::RenderPass<'static>,
         resources: &CallbackResources,
     ) {
+        let Some(Painters { scenes, fills }) = resources.get() else { return };
         match self {
             Self::Scene(place, ..) => {
-                let painters = resources.get::<Painters>();
-                if let Some(painter) = painters.and_then(|painters| painters.0.get(place)) {
+                if let Some(painter) = scenes.get(place) {
                     painter.draw(pass);
                 }
             }
             Self::Fill(colour) => {
-                let fills = resources.get::<Fills>();
-                if let Some(pipeline) = fills.and_then(|fills| fills.0.get(colour)) {
+                if let Some(pipeline) = fills.get(colour) {
                     pass.set_pipeline(pipeline);
                     pass.draw(0..3, 0..1);
                 }

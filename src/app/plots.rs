@@ -1,17 +1,15 @@
-//! Plots against simulated time, and of any quantity against any other, in the window and in saved pictures.
+//! Plots against simulated time, in the window and in saved pictures.
 
 use std::sync::Arc;
 
-use egui::{Color32, ComboBox, Label, RichText, Ui};
-use egui_plot::{HoverPosition, Line, LineStyle, MarkerShape, PlotPoints, Points, VLine};
-use serde::{Deserialize, Serialize};
+use egui::{Color32, Label, RichText, Ui};
+use egui_plot::{HoverPosition, Line, LineStyle, PlotPoints, VLine};
 
-use super::axes::{plot_with_axes, with_least, with_room};
+use super::axes::{plot_with_axes, with_room};
 use super::curve_pieces::pieces;
 use super::ensemble::Band;
 use super::glossary::explained;
 use super::number_text::clock_text;
-use crate::data::Observed;
 use crate::live::Curve;
 use crate::render::numbers::si_prefix;
 use crate::sim::{Beside, Observables, Quantity};
@@ -36,7 +34,6 @@ pub(crate) struct PlotData {
     /// Curves of the earlier run's simulations, drawn behind those of the present simulations.
     pub ghosts: Vec<WorldCurve>,
     pub quantities: Vec<&'static Quantity<Observables>>,
-    pub chosen: ChosenPlot,
     /// The displayed simulated time, s.
     pub now_secs: f64,
     /// Simulated time that the time axis reaches at least, s.
@@ -60,10 +57,7 @@ pub(super) fn draw_with_key(ui: &mut Ui, data: &PlotData) {
 pub(super) fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
     // If the plots left space, their panel would become smaller from frame to frame.
     ui.set_min_size(ui.available_size());
-    let has_chosen = data.chosen.on && data.chosen.title().is_some();
-    let mut all: Vec<Option<_>> = data.quantities.iter().copied().map(Some).collect();
-    all.extend(has_chosen.then_some(None));
-    let count = all.len();
+    let count = data.quantities.len();
     if count == 0 || data.worlds.is_empty() {
         ui.weak("Choose what to plot.");
         return None;
@@ -80,15 +74,12 @@ pub(super) fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
         (ui.available_height() - spacing.y * (rows - 1) as f32) / rows as f32,
     );
     let mut clicked = None;
-    for row in all.chunks(columns) {
+    for row in data.quantities.chunks(columns) {
         ui.horizontal(|ui| {
-            for cell in row {
+            for quantity in row {
                 ui.allocate_ui(size, |ui| {
                     ui.set_min_width(size.x);
-                    ui.vertical(|ui| match cell {
-                        Some(quantity) => clicked = clicked.or(plot(ui, data, quantity)),
-                        None => data.chosen.draw(ui, &data.worlds, data.now_secs),
-                    });
+                    ui.vertical(|ui| clicked = clicked.or(plot(ui, data, quantity)));
                 });
             }
         });
@@ -102,19 +93,21 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
     explained(label, &title);
     let log = quantity.logarithmic;
     let group = egui::Id::unique("time");
-    let height = (ui.available_height() - 2.0).max(40.0);
     let until_secs = end_secs(data);
-    let plot = plot_with_axes(ui, ("plot", quantity.name), height, [false, log], " ms");
-    let response = with_least(plot, [[0.0, data.until_secs], least_span(data, quantity, factor)])
+    // A logarithmic axis has no unit, so its factor is 1.
+    let scaled = |value: f64| if log { value.log10() } else { value / factor };
+    let value = |row: &Observables| scaled((quantity.value)(row));
+    let values = data.worlds.iter().flat_map(|world| world.curve.rows()).map(value);
+    let always: &[f64] = if quantity.name == OTHERS { &[0.0, LEAST_SLUMP] } else { &[] };
+    let ends = [[0.0, data.until_secs], with_room(values.chain(always.iter().copied()), log)];
+    let response = plot_with_axes(ui, ("plot", quantity.name), [false, log], " ms", ends)
         .link_axis(group, [true, false])
         .link_cursor(group, [true, false])
         .allow_zoom([true, false])
         .label_formatter(move |position| hover_text(position, log))
         .show(ui, |plot| {
             plot.vline(VLine::new("now", data.now_secs).color(Color32::GRAY).width(1.0));
-            let scaled = |value: f64| scaled(value, log);
             for ghost in &data.ghosts {
-                let value = |row: &Observables| scaled((quantity.value)(row)) / factor;
                 for piece in pieces(&ghost.curve, until_secs, value) {
                     plot.line(Line::new(ghost.name.clone(), piece).color(ghost.colour).width(1.2));
                 }
@@ -126,12 +119,9 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
             }
             for WorldCurve { name, colour, curve, .. } in &data.worlds {
                 let lines = |name: String, value: &dyn Fn(&Observables) -> f64| {
-                    let pieces = pieces(curve, f64::INFINITY, |row| value(row) / factor);
-                    pieces
-                        .into_iter()
-                        .map(move |piece| Line::new(name.clone(), piece).color(*colour))
+                    let pieces = pieces(curve, f64::INFINITY, value).into_iter();
+                    pieces.map(move |piece| Line::new(name.clone(), piece).color(*colour))
                 };
-                let value = |row: &Observables| scaled((quantity.value)(row));
                 for line in lines(name.clone(), &value) {
                     plot.line(line.width(1.6));
                 }
@@ -176,16 +166,6 @@ fn others(world: &WorldCurve, now_secs: f64) -> Vec<Line<'static>> {
     band.runs.iter().map(run).chain([mean.style(style).width(1.2)]).collect()
 }
 
-/// Returns the ends of the vertical axis. On a linear axis they are divided by `factor`, such as 1e3 for the prefix k.
-fn least_span(data: &PlotData, quantity: &Quantity<Observables>, factor: f64) -> [f64; 2] {
-    let value = |row: &Observables| (quantity.value)(row);
-    let scaled = |value: f64| if quantity.logarithmic { value.log10() } else { value / factor };
-    let rows = data.worlds.iter().flat_map(|world| world.curve.rows());
-    let values = rows.map(|row| scaled(value(row)));
-    let always = if quantity.name == OTHERS { &[0.0, LEAST_SLUMP][..] } else { &[] };
-    with_room(values.chain(always.iter().copied()), quantity.logarithmic)
-}
-
 /// Returns the additional curves (dashed, dotted) in the plot of a quantity, if this run has values for them.
 fn beside(
     curve: &Curve,
@@ -228,11 +208,6 @@ fn hover_text(position: &HoverPosition<'_>, log: bool) -> Option<String> {
     Some(format!("{name}\n{}\n{value}", clock_text(at.x)))
 }
 
-/// Returns the coordinate of a value on its axis: the value itself, or its decimal logarithm on a logarithmic axis.
-fn scaled(value: f64, log: bool) -> f64 {
-    if log { value.log10() } else { value }
-}
-
 /// Curves of one simulation.
 #[derive(Clone, Debug)]
 pub(crate) struct WorldCurve {
@@ -244,127 +219,12 @@ pub(crate) struct WorldCurve {
     pub others: Option<Arc<Band>>,
 }
 
-/// Largest number of points of a curve in a plot of one quantity against another. With more points, drawing is slower.
-const MOST_POINTS: usize = 2_000;
-
-/// Plot of one quantity against another, which the user chooses.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct ChosenPlot {
-    /// True if the plot is visible.
-    pub on: bool,
-    /// Names of the quantities along x and y, as in output tables.
-    pub axes: [String; 2],
-    /// True for a logarithmic axis; first x, then y.
-    pub logarithmic: [bool; 2],
-}
-
-impl Default for ChosenPlot {
-    fn default() -> Self {
-        let axes = ["slump", "kinetic_energy"].map(str::to_owned);
-        Self { on: false, axes, logarithmic: [false; 2] }
-    }
-}
-
-impl ChosenPlot {
-    /// Shows the two lists of quantities and the two buttons for logarithmic axes.
-    pub(super) fn choose(&mut self, ui: &mut Ui) {
-        for (axis, name) in [(1, "y"), (0, "x")] {
-            let shown = ComboBox::from_id_salt(("axis", axis)).width(118.0);
-            let chosen = &mut self.axes[axis];
-            let list = shown.selected_text(chosen.replace('_', " ")).show_ui(ui, |ui| {
-                for observed in Observed::all() {
-                    let title = observed.title();
-                    let entry = ui.selectable_label(*chosen == observed.name(), title);
-                    if entry.on_hover_text(observed.about()).clicked() {
-                        *chosen = observed.name().to_owned();
-                    }
-                }
-            });
-            let label = format!("Quantity along {name}");
-            list.response
-                .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, &label));
-            ui.toggle_value(&mut self.logarithmic[axis], format!("log {name}")).on_hover_text(
-                "Equal distances are equal factors. Values of 0 and below are not shown.",
-            );
-        }
-    }
-
-    /// Title of the plot; `None` if a quantity does not exist.
-    pub(super) fn title(&self) -> Option<String> {
-        let [x, y] = self.axes.each_ref().map(|name| Observed::named(name));
-        Some(format!("{} against {}", y?.title(), x?.title()))
-    }
-
-    /// Returns the points of the plot for these rows (measured quantities of steps), if the points are finite.
-    fn points<'a>(&self, rows: impl Iterator<Item = &'a Observables>) -> Vec<[f64; 2]> {
-        let [Some(x), Some(y)] = self.axes.each_ref().map(|name| Observed::named(name)) else {
-            return Vec::new();
-        };
-        let scaled = |axis: usize, value: f64| scaled(value, self.logarithmic[axis]);
-        let place = |row: &Observables| {
-            let place = [scaled(0, x.of(row)?), scaled(1, y.of(row)?)];
-            place.iter().all(|at| at.is_finite()).then_some(place)
-        };
-        rows.filter_map(place).collect()
-    }
-
-    /// Draws the plot, with a dot at the displayed simulated time.
-    pub(super) fn draw(&self, ui: &mut Ui, worlds: &[WorldCurve], now_secs: f64) {
-        let title = RichText::new(self.title().unwrap_or_default()).small();
-        ui.add(Label::new(title).truncate());
-        let id = ("chosen", &self.axes, self.logarithmic);
-        let height = (ui.available_height() - 2.0).max(40.0);
-        let thinned = |world: &WorldCurve| {
-            let mut curve = world.curve.clone();
-            curve.thin_to(MOST_POINTS);
-            self.points(curve.rows())
-        };
-        let of_worlds: Vec<_> = worlds.iter().map(thinned).collect();
-        let ends = [0, 1].map(|axis| {
-            let values = of_worlds.iter().flatten().map(|place| place[axis]);
-            with_room(values, self.logarithmic[axis])
-        });
-        let plot = plot_with_axes(ui, id, height, self.logarithmic, "");
-        with_least(plot, ends).show(ui, |plot| {
-            for (WorldCurve { name, colour, curve, .. }, points) in worlds.iter().zip(of_worlds) {
-                plot.line(Line::new(name.clone(), points).color(*colour).width(1.4));
-                let until_now = |row: &&Observables| row.time_secs <= now_secs;
-                let now = curve.rows().take_while(until_now).last();
-                let place = self.points(now.into_iter());
-                let dot = Points::new(name.clone(), PlotPoints::from(place));
-                plot.points(dot.shape(MarkerShape::Circle).radius(4.0).color(*colour));
-            }
-        });
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use egui_plot::{PlotGeometry, PlotItem};
 
     use super::*;
     use crate::sim::QUANTITIES;
-
-    #[test]
-    fn a_curve_goes_through_the_rows_and_leaves_out_what_has_no_logarithm() {
-        let row = |(slump, kinetic_energy)| Observables {
-            slump,
-            kinetic_energy,
-            ..Observables::default()
-        };
-        let rows = [(0.0, 1.0), (0.1, 10.0), (0.2, 0.0)].map(row);
-        let mut plot = ChosenPlot::default();
-        assert_eq!(plot.points(rows.iter()), [[0.0, 1.0], [0.1, 10.0], [0.2, 0.0]]);
-        plot.logarithmic = [false, true];
-        assert_eq!(plot.points(rows.iter()), [[0.0, 0.0], [0.1, 1.0]]);
-        assert_eq!(plot.title().unwrap(), "kinetic energy (J) against slump");
-        // A quantity that only some contact laws define is missing under other laws.
-        plot.axes[1] = "bond_energy".into();
-        assert!(plot.points(rows.iter()).is_empty());
-        plot.axes[1] = "of another version".into();
-        assert!(plot.points(rows.iter()).is_empty() && plot.title().is_none());
-    }
 
     fn curve_until(end_secs: f64) -> Curve {
         let mut curve = Curve::default();
@@ -383,7 +243,6 @@ mod tests {
             worlds: vec![world],
             ghosts,
             quantities: Vec::new(),
-            chosen: ChosenPlot::default(),
             now_secs: 0.0,
             until_secs: 1.0,
         }
@@ -481,20 +340,6 @@ mod tests {
                     quantity.name
                 );
             }
-            for logarithmic in [[false, false], [false, true], [true, true]] {
-                let chosen = ChosenPlot { on: true, logarithmic, ..ChosenPlot::default() };
-                let counts = painted_numbers(&PlotData { chosen, ..data.clone() });
-                assert!(
-                    counts.iter().all(|&count| count >= 2),
-                    "log {logarithmic:?}: {counts:?} of {values:?}"
-                );
-            }
         }
-    }
-
-    #[test]
-    fn every_quantity_that_steps_measure_can_be_chosen() {
-        let row = Observables::default().with_further_columns();
-        assert!(Observed::all().all(|observed| observed.of(&row).is_some()));
     }
 }

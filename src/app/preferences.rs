@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 
 use super::data_export::DataChoices;
 use super::page::Page;
-use super::plots::ChosenPlot;
 use super::predictions::Prediction;
 use crate::config::Config;
 #[cfg(feature = "window")]
@@ -43,10 +42,6 @@ pub struct Preferences {
     pub plots: bool,
     /// Names of the plotted quantities.
     pub quantities: Vec<String>,
-    /// The two quantities on the axes of the plot of one quantity against another.
-    pub chosen_plot: ChosenPlot,
-    /// Name of the displayed histogram, as in output files.
-    pub histogram: String,
     /// True if an arrow in the scene always shows the direction of gravity.
     pub gravity: bool,
     /// Size of the window, points; `None` if no window has been opened yet.
@@ -83,8 +78,6 @@ impl Default for Preferences {
             ensemble: true,
             plots: true,
             quantities: vec!["slump".into()],
-            chosen_plot: ChosenPlot::default(),
-            histogram: "normal_force".into(),
             gravity: false,
             window_points: None,
             speed: 0.2,
@@ -134,18 +127,12 @@ impl Preferences {
         if self.full_speed { Pace::Max } else { Pace::RealTime(self.speed) }
     }
 
-    /// Begins the lesson with the index `at`, and sets the preferences that the lesson needs.
-    pub(super) fn begin_lesson(&mut self, at: usize, choices: Choices) {
-        let replaced = choices.swap(self);
-        let before = self.lesson.before.take().unwrap_or(replaced);
-        let predictions = std::mem::take(&mut self.lesson.predictions);
-        self.lesson = LessonPlace { at, on: true, predictions, before: Some(before) };
-    }
-
     /// Restores the choices that the user had before the lessons.
     pub(super) fn put_lesson_away(&mut self) {
         if let Some(before) = self.lesson.before.take() {
-            before.swap(self);
+            self.style.show_forces = before.style.show_forces;
+            let Self { quantities, speed, full_speed, starts_again, page, .. } = *before;
+            *self = Self { quantities, speed, full_speed, starts_again, page, ..self.clone() };
         }
     }
 }
@@ -160,39 +147,13 @@ pub struct LessonPlace {
     pub on: bool,
     /// The user's predictions, by the index of the lesson.
     pub predictions: BTreeMap<usize, Prediction>,
-    /// The user's choices before the first lesson, which are restored after the lessons.
-    pub(super) before: Option<Choices>,
+    /// The preferences before the first lesson. After the lessons, those that lessons change are restored.
+    pub(super) before: Option<Box<Preferences>>,
 }
 
 impl Default for LessonPlace {
     fn default() -> Self {
         Self { at: 0, on: true, predictions: BTreeMap::new(), before: None }
-    }
-}
-
-/// The user's choices that a lesson replaces by its own while it is open.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Choices {
-    pub quantities: Vec<String>,
-    pub speed: f64,
-    pub full_speed: bool,
-    pub starts_again: bool,
-    pub page: Option<Page>,
-    /// True if the forces of bonds and contacts are drawn.
-    pub show_forces: bool,
-}
-
-impl Choices {
-    /// Writes these choices to the preferences and returns the choices that they replace.
-    fn swap(self, preferences: &mut Preferences) -> Self {
-        Self {
-            quantities: std::mem::replace(&mut preferences.quantities, self.quantities),
-            speed: std::mem::replace(&mut preferences.speed, self.speed),
-            full_speed: std::mem::replace(&mut preferences.full_speed, self.full_speed),
-            starts_again: std::mem::replace(&mut preferences.starts_again, self.starts_again),
-            page: std::mem::replace(&mut preferences.page, self.page),
-            show_forces: std::mem::replace(&mut preferences.style.show_forces, self.show_forces),
-        }
     }
 }
 
@@ -208,29 +169,5 @@ impl StoredWindow {
     /// Returns the present preferences and layout for storage.
     pub(super) fn of(preferences: &Preferences, context: &egui::Context) -> Self {
         Self { preferences: preferences.clone(), layout: context.memory(Clone::clone) }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_kept_reads_back() {
-        // The context must have drawn a frame, because it has no layout to store before.
-        let context = egui::Context::default();
-        for _ in 0..2 {
-            let _ = context.run_ui(egui::RawInput::default(), |ui| {
-                egui::Panel::left("side").show(ui, |ui| ui.collapsing("more", |ui| ui.label("x")));
-                egui::ScrollArea::vertical().show(ui, |ui| ui.label("y"));
-            });
-        }
-        let mut stored = StoredWindow::default();
-        stored.preferences.speed = 0.5;
-        stored.preferences.scene.source.grains = Some(40);
-        stored.layout = context.memory(Clone::clone);
-        let text = ron::to_string(&stored).unwrap();
-        let back: StoredWindow = ron::from_str(&text).unwrap();
-        assert_eq!(back.preferences, stored.preferences);
     }
 }

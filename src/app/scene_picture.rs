@@ -6,7 +6,6 @@ use image::RgbaImage;
 
 use super::titles::caption;
 use crate::error::Result;
-use crate::live::Controls;
 use crate::output::Texts;
 use crate::render::{Camera, Renderer, Style, WorldPanel, draw_worlds};
 use crate::sim::{Settings, Snapshot};
@@ -36,11 +35,10 @@ impl ScenePicture {
     /// Draws the picture.
     pub(super) fn draw(&self, renderer: &mut Renderer) -> Result<RgbaImage> {
         let Self { worlds, columns, style, camera, size, .. } = self;
-        let controls = worlds.iter().map(|world| Controls { settings: world.settings, pull: None });
-        let controls: Vec<_> = controls.collect();
+        let settings: Vec<_> = worlds.iter().map(|world| world.settings).collect();
         let time_secs = |world: &PicturedWorld| world.snapshot.observables.time_secs;
         let captions = worlds.iter().enumerate();
-        let captions = captions.map(|(index, world)| caption(&controls, index, time_secs(world)));
+        let captions = captions.map(|(index, world)| caption(&settings, index, time_secs(world)));
         let captions: Vec<_> = captions.collect();
         let panels = worlds.iter().zip(&captions);
         let panels = panels.map(|(PicturedWorld { snapshot, note, .. }, title)| WorldPanel {

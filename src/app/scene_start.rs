@@ -16,29 +16,24 @@ const WALL_HEIGHTS: f64 = 1.1;
 pub(super) fn start_of_run(state: SavedState) -> LiveStart {
     let SavedState { scene, simulation, tally, .. } = state;
     let config = Config::of_scene(&scene.name);
-    start_with(&scene, config, simulation, tally, Vec::new())
+    LiveStart { tally, ..start_with(&scene, config, simulation) }
 }
 
 /// Returns the initial state for a scene. `config` is the configuration from which the scene can be built again.
 pub(super) fn start(scene: &Scene, config: Config) -> Result<LiveStart> {
-    Ok(start_with(scene, config, scene.simulation()?, Tally::default(), walls(scene)))
+    let held_by = walls(scene);
+    Ok(LiveStart { held_by, ..start_with(scene, config, scene.simulation()?) })
 }
 
-fn start_with(
-    scene: &Scene,
-    config: Config,
-    simulation: Simulation,
-    tally: Tally,
-    held_by: Vec<Boundary>,
-) -> LiveStart {
+fn start_with(scene: &Scene, config: Config, simulation: Simulation) -> LiveStart {
     let view = scene.view();
     LiveStart {
         scene: scene.clone(),
         config,
         window: None,
         simulation,
-        tally,
-        held_by,
+        tally: Tally::default(),
+        held_by: Vec::new(),
         view: [view.min, view.max],
         slumps: slumps(scene),
         worlds: Vec::new(),

@@ -23,22 +23,21 @@ const PART_THAT_TELLS: f64 = 0.05;
 /// Progress of one deposition.
 pub(super) struct SettlingProgress {
     begun: Instant,
-    looked: Option<Instant>,
-    preview: Option<Arc<Snapshot>>,
+    /// The newest picture of the pile, and the time at which it was made.
+    preview: Option<(Instant, Arc<Snapshot>)>,
     part: f64,
 }
 
 impl SettlingProgress {
     /// Returns the progress of a deposition that begins now.
     pub(super) fn new() -> Self {
-        Self { begun: Instant::now(), looked: None, preview: None, part: 0.0 }
+        Self { begun: Instant::now(), preview: None, part: 0.0 }
     }
 
     /// Returns the present progress of the deposition, with a text and a picture of the grains.
     pub(super) fn look(&mut self, settling: &Settling<'_>) -> LoadingProgress {
-        if self.looked.is_none_or(|at| at.elapsed() >= INTERVAL) {
-            self.looked = Some(Instant::now());
-            self.preview = Some(Arc::new(settling.simulation.snapshot()));
+        if self.preview.as_ref().is_none_or(|(at, _)| at.elapsed() >= INTERVAL) {
+            self.preview = Some((Instant::now(), Arc::new(settling.simulation.snapshot())));
         }
         self.part = self.part.max(settled_part(settling));
         let grains = settling.simulation.world().grains.len();
@@ -51,7 +50,8 @@ impl SettlingProgress {
             )
         };
         let text = text + &self.left(self.begun.elapsed().as_secs_f64());
-        LoadingProgress { part: self.part as f32, text, preview: self.preview.clone() }
+        let preview = self.preview.as_ref().map(|(_, snapshot)| snapshot.clone());
+        LoadingProgress { part: self.part as f32, text, preview }
     }
 
     /// Returns a text with the estimated remaining computing time; empty if it is too early for an estimate.
@@ -71,7 +71,7 @@ impl SettlingProgress {
 /// Estimates the finished fraction of a deposition, 0 to 1. If the grains fall together like rain, the estimate assumes
 /// that they fall for a quarter of the largest simulated time that the deposition may take, and then come to rest.
 /// While they come to rest, their speed is assumed to decrease by [`ORDERS_OF_SETTLING`] powers of ten.
-pub(super) fn settled_part(settling: &Settling) -> f64 {
+fn settled_part(settling: &Settling) -> f64 {
     let rained = match settling.rains {
         true => (4.0 * settling.time_secs / settling.limit_secs).min(1.0),
         false => 1.0,
@@ -84,11 +84,10 @@ pub(super) fn settled_part(settling: &Settling) -> f64 {
 /// smaller as the grains fall.
 pub(super) fn view_of(snapshot: &Snapshot) -> [DVec2; 2] {
     let diameter = snapshot.surroundings.mean_diameter;
-    let ends = |side: DVec2| {
-        let end = |grain: &GrainView| side * grain.position + DVec2::splat(grain.radius);
-        side * snapshot.grains.iter().map(end).fold(DVec2::NEG_INFINITY, DVec2::max)
-    };
-    let (lower, upper) = (ends(DVec2::NEG_ONE), ends(DVec2::ONE));
+    let (mut lower, mut upper) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for GrainView { position, radius, .. } in &snapshot.grains {
+        (lower, upper) = (lower.min(position - radius), upper.max(position + radius));
+    }
     [DVec2::new(lower.x, lower.y.min(0.0)) - diameter, upper + diameter]
 }
 
@@ -104,8 +103,8 @@ mod tests {
         let (mut parts, mut tops) = (Vec::new(), Vec::new());
         let mut diameter = 0.0;
         settle(&pile, |settling| {
-            // The time of the last picture is deleted, so that each call makes a new picture.
-            making.looked = None;
+            // The last picture is deleted, so that each call makes a new picture.
+            making.preview = None;
             let told = making.look(&settling);
             let preview = told.preview.expect("something to see");
             assert_eq!(preview.grains.len(), 40);

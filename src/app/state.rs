@@ -16,13 +16,14 @@ use super::experiment_plot::ExperimentSeries;
 use super::exports::Exports;
 use super::file_names::refused_file;
 use super::lessons::LESSONS;
+use super::link::link_of;
 use super::notice::Notice;
 use super::opening::{Opening, opening_of};
 use super::panels::Panels;
 use super::preferences::{Preferences, StoredWindow};
 use super::session::{Arrangement, arrangement_of, write_session, write_state};
 use super::watched_run::WatchedRun;
-use super::work::closed;
+use super::work::{Work, closed};
 use crate::config::{Config, SavedState};
 use crate::live::{Command, Live, LiveFrame, LiveStart};
 
@@ -112,8 +113,8 @@ impl AppState {
         match request {
             Request::Load(config) => self.load(*config),
             Request::LoadSaved(path) => self.load_saved(&path),
-            Request::ChooseFile => self.dialog.ask_for_file(context, &self.preferences.folder),
-            Request::ChooseFolder => self.dialog.ask_for_folder(context, &self.preferences.folder),
+            Request::ChooseFile => self.dialog.ask(context, &self.preferences.folder, true),
+            Request::ChooseFolder => self.dialog.ask(context, &self.preferences.folder, false),
             Request::Visit(at) => self.visit(at),
             Request::ForgetReleased => self.ensemble.forget_released(),
             Request::LeaveLessons => self.leave_lessons(),
@@ -140,12 +141,11 @@ impl AppState {
             self.load(Config::default());
         }
         // Each error message is a new allocation, so an equal text at another address is a new error.
-        let address = |refusal: &Option<Arc<str>>| refusal.as_ref().map(Arc::as_ptr);
-        if address(&self.run.frame.refusal) != address(&self.seen_refusal) {
-            self.seen_refusal.clone_from(&self.run.frame.refusal);
-            if let Some(refusal) = self.seen_refusal.clone() {
-                self.warn(refusal.to_string());
-            }
+        let refusal = self.run.frame.refusal.clone();
+        let seen = std::mem::replace(&mut self.seen_refusal, refusal.clone());
+        if let Some(refusal) = refusal.filter(|new| seen.is_none_or(|old| !Arc::ptr_eq(&old, new)))
+        {
+            self.warn(refusal.to_string());
         }
         self.run.follow_frame();
         if let Some(settings) = self.run.wanted_settings().filter(|_| !self.touring) {
@@ -233,7 +233,7 @@ impl AppState {
     /// Opens the lesson with the index `at`, or the last lesson if `at` is too large.
     pub fn visit(&mut self, at: usize) {
         let at = at.min(LESSONS.len() - 1);
-        self.preferences.begin_lesson(at, LESSONS[at].choices());
+        LESSONS[at].begin(at, &mut self.preferences);
         self.touring = true;
         self.panels.lesson_bar.loads_before = self.run.frame.loads;
         self.panels.lesson_bar.shows_summary = false;
@@ -282,7 +282,8 @@ impl AppState {
 
     /// Copies a link to the clipboard that reproduces the displayed state of all simulations.
     pub fn copy_link(&mut self, context: &Context) {
-        self.exports.copy_link(context, self.run.take_all());
+        let runs = self.run.take_all();
+        self.exports.link = Some(Work::start(context, runs, |runs, _| link_of(&runs)));
     }
 
     /// Restores the arrangement of the window from a session, except the window's size and the folder in which file

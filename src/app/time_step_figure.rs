@@ -5,13 +5,12 @@
 use egui::{Color32, Label, RichText, Ui};
 use egui_plot::{HoverPosition, Line, Points};
 
-use super::axes::{plot_with_axes, with_least, with_room};
+use super::axes::{plot_with_axes, with_room};
 use super::ensemble::Released;
 use super::glossary::explained;
 use super::plots::LEAST_SLUMP;
 use super::theme;
 use super::titles::title_among;
-use crate::live::Controls;
 use crate::number::millis_text;
 use crate::sim::Settings;
 
@@ -94,17 +93,15 @@ impl TimeStepFigure {
                 None => all.push((shared, vec![point])),
             }
         }
-        let controls: Vec<_> =
-            all.iter().map(|&(settings, _)| Controls { settings, pull: None }).collect();
+        let settings_of_all: Vec<_> = all.iter().map(|(settings, _)| *settings).collect();
         let worlds = if worlds.len() > 1 { worlds } else { &[] };
         let mut next = worlds.len();
         let series = all.into_iter().enumerate().map(|(index, (settings, mut points))| {
             points.sort_by(|one, other| one.time_step_secs.total_cmp(&other.time_step_secs));
             let bond = settings.parameters.bond;
-            let name = if controls.len() > 1 {
-                title_among(&controls, index)
-            } else {
-                format!("Bond {bond}")
+            let name = match settings_of_all.len() {
+                1 => format!("Bond {bond}"),
+                _ => title_among(&settings_of_all, index),
             };
             let is_of_series = |world: &Settings| without_time_step(world) == settings;
             let is_alone = worlds.iter().filter(|world| is_of_series(world)).count() == 1;
@@ -141,9 +138,8 @@ impl TimeStepFigure {
             [point.mean - half, point.mean + half]
         });
         let least = [with_room(along, true), with_room(ends.chain([0.0, LEAST_SLUMP]), false)];
-        let height = (ui.available_height() - 2.0).max(40.0);
-        let plot = plot_with_axes(ui, "slump against time step", height, [true, false], " ms");
-        with_least(plot, least).label_formatter(hover_text).show(ui, |plot| {
+        let plot = plot_with_axes(ui, "slump against time step", [true, false], " ms", least);
+        plot.label_formatter(hover_text).show(ui, |plot| {
             for FigureSeries { name, colour, points, .. } in &self.0 {
                 let line = |ends: Vec<[f64; 2]>| Line::new("", ends).allow_hover(false);
                 let means = points.iter().map(|point| [point.decades(), point.mean]).collect();

@@ -4,7 +4,6 @@
 use super::budget::BUDGETS;
 use super::number_text::{clock_text, written};
 use super::setting_control::called;
-use crate::live::Controls;
 use crate::number::millis_text;
 use crate::setting::Value;
 use crate::sim::Settings;
@@ -16,29 +15,26 @@ const FOLLOWING_METHOD: [&str; 2] = ["friction-model", "model-solves"];
 
 /// Returns the title of a simulation: all settings in which any two simulations differ, with the values of this
 /// simulation. If the simulations do not differ, the title is Bond and Δt.
-pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
-    let Some(&Controls { settings, .. }) = worlds.get(index) else {
-        return String::new();
-    };
-    let any_differs = |name: &&str| {
-        worlds.iter().any(|one| one.settings.get(name) != worlds[0].settings.get(name))
-    };
+pub(super) fn title_among(worlds: &[Settings], index: usize) -> String {
+    let Some(settings) = worlds.get(index) else { return String::new() };
+    let any_differs = |name: &&str| worlds.iter().any(|one| one.get(name) != settings.get(name));
     let names = || Settings::about().map(|about| about.name).filter(any_differs);
     let differs_in_method = any_differs(&"solver");
     let follows = |name: &str| {
         FOLLOWING.contains(&name) || (differs_in_method && FOLLOWING_METHOD.contains(&name))
     };
-    let reporter: Vec<&str> = names().filter(|name| !follows(name)).collect();
-    let told: Vec<&str> = match (reporter.is_empty(), names().next()) {
-        (false, _) => reporter,
-        (true, Some(_)) => names().collect(),
-        (true, None) => vec!["bond", "dt"],
-    };
+    let mut told: Vec<&str> = names().filter(|name| !follows(name)).collect();
+    if told.is_empty() {
+        told = names().collect();
+    }
+    if told.is_empty() {
+        told = vec!["bond", "dt"];
+    }
     // A solver whose settings are those of a preset has the name of the preset.
     let named =
         BUDGETS.iter().find(|budget| differs_in_method && budget.settings == settings.solver);
     let is_told = |name: &&str| named.is_none() || !["solver", "max-sweeps"].contains(name);
-    let said = told.into_iter().filter(is_told).filter_map(|name| said(&settings, name));
+    let said = told.into_iter().filter(is_told).filter_map(|name| said(settings, name));
     let all: Vec<String> =
         named.map(|budget| budget.name.to_owned()).into_iter().chain(said).collect();
     all.join(", ")
@@ -46,10 +42,10 @@ pub(super) fn title_among(worlds: &[Controls], index: usize) -> String {
 
 /// Returns the caption of a simulation in a picture: its number if there are several simulations, its title, Bond, Δt
 /// and the simulated time.
-pub(super) fn caption(worlds: &[Controls], index: usize, time_secs: f64) -> String {
-    let Some(world) = worlds.get(index) else { return String::new() };
+pub(super) fn caption(worlds: &[Settings], index: usize, time_secs: f64) -> String {
+    let Some(settings) = worlds.get(index) else { return String::new() };
     let mut text = title_among(worlds, index);
-    for said in ["bond", "dt"].into_iter().filter_map(|name| said(&world.settings, name)) {
+    for said in ["bond", "dt"].into_iter().filter_map(|name| said(settings, name)) {
         if !text.contains(&said) {
             text += &format!(", {said}");
         }
@@ -60,7 +56,7 @@ pub(super) fn caption(worlds: &[Controls], index: usize, time_secs: f64) -> Stri
 
 /// Returns the settings in which `one` differs from `other`, with the values in `one`, as a text such as "Bond 20".
 pub(super) fn title_against(one: &Settings, other: &Settings) -> String {
-    title_among(&[one, other].map(|&settings| Controls { settings, pull: None }), 0)
+    title_among(&[*one, *other], 0)
 }
 
 /// Returns the text of a change of settings, such as "Bond 20 → 50".
@@ -103,10 +99,7 @@ mod tests {
     fn captions_say_bond_time_step_and_time() {
         let base = Settings::default().with_bond(20.0).over(1e-3);
         let of = |all: &[Settings]| {
-            let controls = all.iter().map(|&settings| Controls { settings, pull: None });
-            let controls: Vec<_> = controls.collect();
-            let all = (0..controls.len()).map(|index| caption(&controls, index, 0.25));
-            all.collect::<Vec<_>>()
+            (0..all.len()).map(|index| caption(all, index, 0.25)).collect::<Vec<_>>()
         };
         assert_eq!(of(&[base]), ["Bond 20, Δt 1 ms, t = 250.0 ms"]);
         assert_eq!(

@@ -17,20 +17,16 @@ pub fn ui(ui: &mut Ui, state: &mut AppState) {
     if context.options(|options| options.theme_preference) != state.preferences.theme {
         context.set_theme(state.preferences.theme);
     }
-    take_dropped_files(&context, state);
+    // In a browser the page first reads the content of a dropped file and then calls `browser::open_file`.
+    let dropped = context.input(|input| input.raw.dropped_files.last().cloned());
+    if let Some(file) = dropped.filter(|_| !IN_BROWSER) {
+        state.open_file(file.path());
+    }
     act_on_keys(&context, state);
     let (mut shared, panels) = state.split();
     panels.show(ui, &mut shared);
     let requests = shared.requests;
     requests.into_iter().for_each(|request| state.carry_out(&context, request));
-}
-
-/// Opens the last file that the user dropped in this frame. Does nothing in the browser version: there the page first
-/// reads the content of a dropped file and then calls `browser::open_file`.
-fn take_dropped_files(context: &Context, state: &mut AppState) {
-    let dropped = context.input(|input| input.raw.dropped_files.last().cloned());
-    let Some(file) = dropped.filter(|_| !IN_BROWSER) else { return };
-    state.open_file(file.path());
 }
 
 /// Performs the actions of the keys that the user pressed in this frame.

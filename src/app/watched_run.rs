@@ -89,6 +89,11 @@ impl WatchedRun {
         self.frame.worlds.get(self.selected)
     }
 
+    /// Settings that the controls show, one entry per simulation.
+    pub(crate) fn all_wanted(&self) -> Vec<Settings> {
+        self.wanted.iter().map(|wanted| wanted.settings).collect()
+    }
+
     /// Settings that the controls show for the selected simulation.
     pub(crate) fn wanted_settings(&self) -> Option<Settings> {
         self.wanted.get(self.selected).map(|wanted| wanted.settings)
@@ -138,7 +143,7 @@ impl WatchedRun {
 
     /// Title of a simulation: the settings in which it differs from the other simulations.
     pub(crate) fn title(&self, world: usize) -> String {
-        title_among(&self.wanted, world)
+        title_among(&self.all_wanted(), world)
     }
 
     /// Returns the title of a simulation with its number in front.
@@ -206,8 +211,7 @@ impl WatchedRun {
         let Some((world, settings)) = self.draft.take() else { return };
         let Some(wanted) = self.wanted.get_mut(world) else { return };
         wanted.settings = settings;
-        let all = self.wanted.iter().map(|wanted| wanted.settings).collect();
-        self.live.send(Command::Compare(all));
+        self.live.send(Command::Compare(self.all_wanted()));
         self.live.send(Command::Play);
     }
 

@@ -74,9 +74,22 @@ impl<T: Send + 'static> Work<T> {
         let shared = Arc::new(WorkState::default());
         let shown = Mutex::new(Instant::now());
         let reporter = Reporter { shared: Arc::clone(&shared), context: context.clone(), shown };
-        let mut job = Job { coming: runs, came: Vec::new(), work: Some(work) };
-        let doer = Doer::of(move |patience| job.advance(&reporter, patience), context.clone());
-        Self { shared, doer }
+        let (mut came, mut work) = (Vec::new(), Some(work));
+        // Waits up to `patience` for the next copy of a run. Returns `None` until all copies have arrived, and then the
+        // result of the task.
+        let advance = move |patience| {
+            while let Some(run) = runs.get(came.len())
+                && !reporter.is_cancelled()
+            {
+                match receive_within(run, patience) {
+                    Ok(run) => came.push(run),
+                    Err(RecvTimeoutError::Timeout) => return None,
+                    Err(RecvTimeoutError::Disconnected) => return Some(Err(closed())),
+                }
+            }
+            Some(work.take()?(std::mem::take(&mut came), &reporter))
+        };
+        Self { shared, doer: Doer::of(advance, context.clone()) }
     }
 }
 
@@ -106,33 +119,6 @@ impl<T: Send + 'static> Doer<T> {
             context.request_repaint();
         });
         Self::Thread { outcome, thread: Some(thread) }
-    }
-}
-
-/// A task that begins when the solver's thread has sent all copies of runs that the task needs.
-struct Job<R, Act> {
-    coming: Vec<Receiver<R>>,
-    came: Vec<R>,
-    work: Option<Act>,
-}
-
-impl<R, Act> Job<R, Act> {
-    /// Waits up to `patience` for the next copy of a run. When all copies have arrived, performs the task and returns
-    /// its result. Returns `None` before that.
-    fn advance<T>(&mut self, reporter: &Reporter, patience: Duration) -> Option<Result<T>>
-    where
-        Act: FnOnce(Vec<R>, &Reporter) -> Result<T>,
-    {
-        while let Some(run) = self.coming.get(self.came.len())
-            && !reporter.is_cancelled()
-        {
-            match receive_within(run, patience) {
-                Ok(run) => self.came.push(run),
-                Err(RecvTimeoutError::Timeout) => return None,
-                Err(RecvTimeoutError::Disconnected) => return Some(Err(closed())),
-            }
-        }
-        Some(self.work.take()?(std::mem::take(&mut self.came), reporter))
     }
 }
 

@@ -241,7 +241,7 @@ fn what_cannot_be_exported_is_refused_as_data_refuses_it() {
     let shown = robot.harness.query_all_by_label_contains("without an earlier recording");
     assert_eq!(shown.count(), 2, "in the status bar and beside the button");
     // Without a selected format, nothing can be exported.
-    robot.clicks(&["Text (CSV)", "Export data"]);
+    robot.clicks(&["csv", "Export data"]);
     assert!(!robot.state().is_writing());
 }
 

@@ -218,8 +218,11 @@ fn the_window_shows_what_was_computed_without_it() {
 #[test]
 fn the_lessons_go_on_where_they_were_left_and_give_back_what_was_chosen() {
     let mut robot = Robot::open(Config::default());
-    let chosen = robot.state().preferences.quantities.clone();
     assert!(!robot.state().touring, "a scene was asked for");
+    let preferences = &mut robot.state_mut().preferences;
+    (preferences.speed, preferences.full_speed) = (3.0, true);
+    (preferences.quantities, preferences.page) = (vec!["energy".into()], Some(Page::Compare));
+    let chosen = preferences.clone();
     robot.clicks(&["Lessons", "1. Two time steps"]);
     assert_eq!(robot.state().run.frame.worlds.len(), 2);
     for number in 2..=LESSONS.len() {
@@ -231,8 +234,9 @@ fn the_lessons_go_on_where_they_were_left_and_give_back_what_was_chosen() {
         assert!(robot.steps() > 0 && worlds > 0, "lesson {number}");
     }
     robot.clicks(&["◀ Back", "Leave"]);
-    let Preferences { lesson, quantities, .. } = &robot.state().preferences;
-    assert!((lesson.at, lesson.on) == (LESSONS.len() - 2, false) && *quantities == chosen);
+    let Preferences { lesson, scene, .. } = robot.state().preferences.clone();
+    assert_eq!((lesson.at, lesson.on), (LESSONS.len() - 2, false));
+    assert_eq!(robot.state().preferences, Preferences { lesson, scene, ..chosen });
     robot.clicks(&["Lessons", "6. A heavy disc"]);
     assert!(robot.state().touring && robot.state().preferences.lesson.on);
     robot.load(Config::of_scene("cradle"));

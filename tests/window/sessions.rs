@@ -38,8 +38,9 @@ fn a_session_brings_back_worlds_record_past_and_window() {
     assert!(again.state().run.frame.refusal.is_none(), "{:?}", again.state().run.frame.refusal);
     assert_eq!(shown(&again), before);
     assert_eq!((again.state().run.frame.past.len(), past), (1, 1), "the run before is there");
-    assert_eq!(again.state().preferences.theme, egui::ThemePreference::Dark);
-    assert!(!again.state().preferences.plots);
+    let Preferences { folder, .. } = robot.state().preferences.clone();
+    let preferences = Preferences { folder, ..again.state().preferences.clone() };
+    assert_eq!(preferences, robot.state().preferences);
     // The panel that was open before is open again, so its contents are visible.
     use egui_kittest::kittest::Queryable;
     for window in [&mut robot, &mut again] {

@@ -44,13 +44,12 @@ const RULE_IN_BROWSER: &str = "Other piles with the same settings show how far o
 #[derive(Default)]
 pub struct Ensemble {
     /// Folder in which the computed initial states are stored; `None` if the user has no folder for such files.
-    folder: Option<PathBuf>,
+    pub(super) folder: Option<PathBuf>,
     /// The open scene as the window loaded it. The field `piles` describes the other initial states: the same pile made
     /// from other seeds.
     opened: Option<Arc<LiveStart>>,
     piles: Vec<NewPile>,
     pool: Option<WorkerPool>,
-    worlds: Vec<Option<Settings>>,
     /// Settings of runs that the user has started, each with the slumps of runs with these settings from other initial
     /// states. These results can be compared, because all of them belong to one scene and one set of initial states,
     /// which `kind` describes.
@@ -83,16 +82,10 @@ impl Ensemble {
         self.folder = Some(folder);
     }
 
-    /// Folder in which the computed initial states are stored, if there is one.
-    pub(super) fn folder(&self) -> Option<PathBuf> {
-        self.folder.clone()
-    }
-
     /// Ends all threads that compute runs from other initial states. Keeps the results of started runs (`released`) as
     /// they were when the window drew its last frame.
     pub fn stop(&mut self) {
         self.pool = None;
-        self.worlds.clear();
     }
 
     /// True if runs from other initial states can be computed: the open scene was made from a seed and is not too
@@ -121,26 +114,20 @@ impl Ensemble {
             (world.is_even && is_from_the_start).then_some(world.controls.settings)
         });
         let all: Vec<_> = all.collect();
-        let is_new = self.note_released(frame, &all);
+        self.note_released(frame, &all);
         if !self.is_possible() {
             return self.note_own_slumps(frame, &all);
         }
         if !is_wanted {
             return self.stop();
         }
-        let Self {
-            folder: Some(folder), opened: Some(opened), piles, pool, worlds, released, ..
-        } = self
+        let Self { folder: Some(folder), opened: Some(opened), piles, pool, released, .. } = self
         else {
             return;
         };
         let pool =
             pool.get_or_insert_with(|| WorkerPool::start(folder, context, opened, piles, released));
-        pool.note_runs(released);
-        if *worlds != all || is_new {
-            pool.follow(all.clone(), released.iter().map(|(settings, _)| *settings).collect());
-            *worlds = all;
-        }
+        pool.follow(all, released);
     }
 
     /// Discards the settings and results of started runs if they belong to another scene, another duration, another
@@ -162,10 +149,9 @@ impl Ensemble {
     }
 
     /// Stores the settings of the simulations in `frame` (data from the solver's thread) that the user has started
-    /// (that have taken a step). Returns true if some of these settings are new. `all` contains the settings of each
-    /// simulation, or `None` if it has no ensemble (runs from other initial states).
-    fn note_released(&mut self, frame: &LiveFrame, all: &[Option<Settings>]) -> bool {
-        let before = self.released.len();
+    /// (that have taken a step). `all` contains the settings of each simulation, or `None` if it has no ensemble (runs
+    /// from other initial states).
+    fn note_released(&mut self, frame: &LiveFrame, all: &[Option<Settings>]) {
         for (world, settings) in frame.worlds.iter().zip(all) {
             if let Some(settings) = settings
                 && world.recorded_secs > 0.0
@@ -175,7 +161,6 @@ impl Ensemble {
                 self.released.push((*settings, Arc::default()));
             }
         }
-        self.released.len() > before
     }
 
     /// Stores the slump of each visible run that has reached the end of the scene, because no other piles are computed.
@@ -246,12 +231,9 @@ impl Ensemble {
         let Some(summary) = self.summary(world) else {
             return if IN_BROWSER { RULE_IN_BROWSER } else { RULE }.into();
         };
-        let EnsembleSummary { seeds, settling, failed, .. } = summary;
+        let EnsembleSummary { seeds, failed, .. } = summary;
         let all: Vec<String> = seeds.iter().map(u64::to_string).collect();
         let mut text = format!("{RULE}\nSeeds {}.", all.join(", "));
-        if let Some((number, part)) = settling {
-            text += &format!(" Rain {number} of {}: {:.0} %.", seeds.len(), 100.0 * part);
-        }
         if failed > 0 {
             text += &format!(" {failed} of the runs failed and are left out.");
         }
@@ -318,7 +300,7 @@ fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
         }
         (Some((mean, _)), _) => format!("other piles {mean:.2} (n = {of})"),
         (None, _) if count > 0 => "other piles end earlier".into(),
-        (None, Some((number, _))) => {
+        (None, Some(number)) => {
             format!("other piles: making pile {number} of {}", summary.seeds.len())
         }
         (None, None) => "other piles: none yet".into(),
@@ -329,7 +311,7 @@ fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
 mod tests {
     use super::*;
 
-    fn told(slumps: &[f64], settling: Option<(usize, f32)>) -> EnsembleSummary {
+    fn told(slumps: &[f64], settling: Option<usize>) -> EnsembleSummary {
         let runs: Vec<_> = slumps.iter().map(|&slump| vec![[0.0, 0.0], [1.0, slump]]).collect();
         EnsembleSummary {
             band: Arc::new(Band::of(&runs.iter().enumerate().collect::<Vec<_>>())),
@@ -370,7 +352,7 @@ mod tests {
         assert_eq!(said(&told(&[0.2, 0.3, 0.4], None), 1.0), "other piles 0.30 ± 0.25 (n = 3)");
         assert_eq!(said(&told(&[0.3, 0.3], None), 1.0), "other piles 0.300 ± 0.000 (n = 2 of 3)");
         assert_eq!(said(&told(&[0.25], None), 1.0), "other piles 0.25 (n = 1 of 3)");
-        assert_eq!(said(&told(&[], Some((2, 0.5))), 0.0), "other piles: making pile 2 of 3");
+        assert_eq!(said(&told(&[], Some(2)), 0.0), "other piles: making pile 2 of 3");
         assert_eq!(said(&told(&[], None), 0.0), "other piles: none yet");
         assert_eq!(said(&told(&[0.25], None), 9.0), "other piles end earlier");
         assert_eq!(said(&told(&[0.25], None), 0.0), "other piles: 1 of 3 computed");

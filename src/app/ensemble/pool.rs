@@ -3,11 +3,8 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
 
 use super::runs::{Band, SlumpSeries, scene_of, slump};
-use crate::Instant;
-use crate::app::settling_progress::settled_part;
 use crate::error::{Error, Result};
 use crate::live::LiveStart;
 use crate::output::check_writable;
@@ -16,9 +13,6 @@ use crate::sim::Settings;
 use crate::study::settled_pile;
 use crate::world::Grain;
 
-/// Least time between two reports of the progress while a pile is being deposited. Each report makes the window draw
-/// again, so a shorter time costs computing time; with a longer time the displayed progress is late.
-const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
 /// Number of cores that the threads of the ensemble (runs from other initial states) do not use. One core is for the
 /// visible run. On systems where this program cannot lower the priority of a thread, one more core is for the window,
 /// which would otherwise have to wait for these threads.
@@ -67,10 +61,9 @@ enum PileJob {
     Run(usize, Settings),
 }
 
-/// Progress or result of a job.
+/// State or result of a job.
 enum JobState {
-    /// The job is running; finished fraction, 0 to 1.
-    Underway(f32),
+    Underway,
     Settled(Vec<Grain>),
     Ran(SlumpSeries),
     Failed,
@@ -83,8 +76,8 @@ pub(crate) struct EnsembleSummary {
     pub band: Arc<Band>,
     pub seeds: Vec<u64>,
     pub failed: usize,
-    /// Number (from 1) of the pile that is being deposited, and the finished fraction of its deposition, 0 to 1.
-    pub settling: Option<(usize, f32)>,
+    /// Number (from 1) of the pile that is being deposited.
+    pub settling: Option<usize>,
 }
 
 /// Settings of a run that the user has started, and the slumps of runs with these settings from other initial states.
@@ -111,7 +104,7 @@ impl Jobs {
     }
 
     fn is_under_way(&self, job: PileJob) -> bool {
-        !self.is_over && matches!(self.state(job), Some(JobState::Underway(_)))
+        !self.is_over && matches!(self.state(job), Some(JobState::Underway))
     }
 
     /// Marks the next job as running and returns it with the grains of its pile. Jobs with the settings of visible
@@ -121,7 +114,7 @@ impl Jobs {
         let earlier = self.released.iter().rev().map(|&settings| vec![settings]);
         let mut groups = std::iter::once(worlds).chain(earlier);
         let next = groups.find_map(|settings| self.next_of(&settings, piles))?;
-        self.begun.push((next.0, JobState::Underway(0.0)));
+        self.begun.push((next.0, JobState::Underway));
         Some(next)
     }
 
@@ -225,10 +218,20 @@ impl WorkerPool {
         Self { state, threads }
     }
 
-    /// Gives the threads their jobs: runs from other initial states, first with the settings of the visible simulations
-    /// (`worlds`), then with the settings `released`. Discards the results with all other settings.
-    pub(super) fn follow(&self, worlds: Vec<Option<Settings>>, released: Vec<Settings>) {
+    /// Copies the slumps of finished runs to the entries of `released` with the same settings. Gives the threads their
+    /// jobs: runs from other initial states, first with the settings of the visible simulations (`worlds`), then with
+    /// the settings in `released`. Discards the results with all other settings.
+    pub(super) fn follow(&self, worlds: Vec<Option<Settings>>, released: &mut [Released]) {
         let mut jobs = self.state.lock();
+        for (settings, band) in released.iter_mut() {
+            if let Some((_, newer)) = jobs.bands.iter().find(|(own, _)| own == settings) {
+                band.clone_from(newer);
+            }
+        }
+        let released: Vec<_> = released.iter().map(|(settings, _)| *settings).collect();
+        if (&jobs.worlds, &jobs.released) == (&worlds, &released) {
+            return;
+        }
         let is_wanted =
             |settings: &Settings| worlds.contains(&Some(*settings)) || released.contains(settings);
         jobs.begun.retain(|(job, _)| match job {
@@ -240,16 +243,6 @@ impl WorkerPool {
         self.state.news.notify_all();
     }
 
-    /// Copies the slumps of finished runs to the entries of `released` with the same settings.
-    pub(super) fn note_runs(&self, released: &mut [Released]) {
-        let jobs = self.state.lock();
-        for (settings, band) in released {
-            if let Some((_, newer)) = jobs.bands.iter().find(|(own, _)| own == settings) {
-                band.clone_from(newer);
-            }
-        }
-    }
-
     /// Returns the results of runs from other initial states with the settings of a simulation; `None` if the
     /// simulation has no such runs.
     pub(super) fn summary(&self, world: usize) -> Option<EnsembleSummary> {
@@ -259,16 +252,14 @@ impl WorkerPool {
         let failed = |&pile: &usize| {
             has_failed(PileJob::Settle(pile)) || has_failed(PileJob::Run(pile, settings))
         };
-        let settling = |pile| match jobs.state(PileJob::Settle(pile)) {
-            Some(JobState::Underway(part)) => Some((pile + 1, *part)),
-            _ => None,
-        };
+        let settles =
+            |pile: &usize| matches!(jobs.state(PileJob::Settle(*pile)), Some(JobState::Underway));
         let band = jobs.bands.iter().find(|(own, _)| *own == settings);
         Some(EnsembleSummary {
             band: band.map(|(_, band)| Arc::clone(band)).unwrap_or_default(),
             seeds: piles.iter().map(|pile| pile.seed).collect(),
             failed: (0..piles.len()).filter(failed).count(),
-            settling: (0..piles.len()).find_map(settling),
+            settling: (0..piles.len()).find(settles).map(|pile| pile + 1),
         })
     }
 
@@ -293,9 +284,12 @@ impl PoolState {
     /// Main loop of a worker thread: takes and performs jobs until the window has dropped the worker threads.
     fn work(&self) {
         while let Some((job, grains)) = self.next() {
+            self.context.request_repaint();
             let came_to = match job {
                 PileJob::Settle(pile) => {
-                    let settled = self.settle(job, &self.piles[pile]);
+                    let goes_on = |_: Settling| self.lock().is_under_way(job);
+                    let settled = check_writable("cache folder", &self.folder)
+                        .and_then(|()| settled_pile(&self.folder, &self.piles[pile], goes_on));
                     Some(settled.map_or(JobState::Failed, JobState::Settled))
                 }
                 PileJob::Run(pile, settings) => {
@@ -323,20 +317,6 @@ impl PoolState {
             jobs = self.news.wait(jobs).unwrap_or_else(PoisonError::into_inner);
         }
         None
-    }
-
-    fn settle(&self, job: PileJob, pile: &NewPile) -> Result<Vec<Grain>> {
-        check_writable("cache folder", &self.folder)?;
-        let mut told: Option<Instant> = None;
-        settled_pile(&self.folder, pile, |settling: Settling| {
-            if told.is_none_or(|at| at.elapsed() >= PROGRESS_INTERVAL) {
-                told = Some(Instant::now());
-                let part = settled_part(&settling) as f32;
-                self.lock().note(job, JobState::Underway(part));
-                self.context.request_repaint();
-            }
-            self.lock().is_under_way(job)
-        })
     }
 }
 

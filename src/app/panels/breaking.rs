@@ -68,12 +68,11 @@ impl BreakingBonds {
         if self.flashes.is_empty() {
             return;
         }
-        let painter = ui.painter().with_clip_rect(cell.cell);
-        let radius = cell.points(RADIUS * snapshot.surroundings.mean_diameter);
+        let radius = RADIUS * snapshot.surroundings.mean_diameter;
         for &(place, since) in &self.flashes {
             let left = 1.0 - (now_secs - since) / LASTS_SECS;
             let stroke = Stroke::new(2.0, colour.gamma_multiply(left as f32));
-            painter.circle_stroke(cell.to_screen(place), radius, stroke);
+            cell.ring(ui, place, radius, stroke);
         }
         ui.ctx().request_repaint();
     }

@@ -22,7 +22,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
     let hint = "A preset keeps the stepper and the parameters that all worlds share. It uses the scene's solver.";
     ui.label(RichText::new(text).small().weak()).on_hover_text(hint);
     line_ups(ui, run, &LINE_UPS);
-    let before: Vec<_> = run.wanted.iter().map(|wanted| wanted.settings).collect();
+    let before = run.all_wanted();
     if before.is_empty() {
         return;
     }
@@ -133,8 +133,7 @@ pub(super) fn method_presets(ui: &mut Ui, run: &mut WatchedRun) {
 
 fn line_ups(ui: &mut Ui, run: &mut WatchedRun, all: &[LineUp]) {
     let Some(start) = run.frame.start.as_ref() else { return };
-    let worlds: Vec<_> = run.wanted.iter().map(|wanted| wanted.settings).collect();
-    let base = base(start.settings(), &worlds);
+    let base = base(start.settings(), &run.all_wanted());
     ui.horizontal_wrapped(|ui| {
         for LineUp { name, hint, worlds } in all {
             if ui.button(*name).on_hover_text(*hint).clicked() {
@@ -174,13 +173,10 @@ fn row(ui: &mut Ui, run: &mut WatchedRun, index: usize) -> bool {
 mod tests {
     use super::*;
     use crate::app::titles::title_among;
-    use crate::live::Controls;
     use crate::solver::{Method, SolverSettings};
 
     fn titles(all: &[Settings]) -> Vec<String> {
-        let controls: Vec<_> =
-            all.iter().map(|&settings| Controls { settings, pull: None }).collect();
-        (0..all.len()).map(|index| title_among(&controls, index)).collect()
+        (0..all.len()).map(|index| title_among(all, index)).collect()
     }
 
     #[test]

@@ -7,11 +7,7 @@ use crate::app::context::{PanelContext, Request};
 use crate::app::data_export::{DataChoices, DataOrder};
 use crate::app::number_text::{clock_text, time_field};
 use crate::app::work::{Reporter, Work};
-use crate::data::{DataSettings, FormatName, check_format};
-
-/// Shortest and longest time that the user can enter as the simulated time between two exported states (frames) of the
-/// run, s. The limits are far outside useful values.
-const EVERY: [f64; 2] = [1e-9, 1e9];
+use crate::data::{DataSettings, FormatName};
 
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     let is_ready = context.run.is_ready();
@@ -89,29 +85,18 @@ fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let hint = "Simulated time between two frames of grains and contacts. Measures of whole piles always have \
                     one row per step.";
         let label = ui.label("A frame every").on_hover_text(hint);
-        let every = time_field(&mut choices.every_secs).range(EVERY[0]..=EVERY[1]).speed(1e-3);
+        // The limits are far outside useful values.
+        let every = time_field(&mut choices.every_secs).range(1e-9..=1e9).speed(1e-3);
         ui.add_enabled(!choices.each_step, every).labelled_by(label.id);
         ui.toggle_value(&mut choices.each_step, "step").on_hover_text("A frame after each step.");
     });
-    egui::Grid::new("formats").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
-        for (index, &format) in FormatName::ALL.iter().enumerate() {
-            let (name, hint) = words(format);
-            let was_wanted = choices.formats.contains(&format);
-            let mut is_wanted = was_wanted;
-            let is_built = check_format(format);
-            let check = egui::Checkbox::new(&mut is_wanted, name);
-            // A format that this build lacks can still be deselected.
-            let is_enabled = is_built.is_ok() || was_wanted;
-            let mut shown = ui.add_enabled(is_enabled, check).on_hover_text(hint);
-            if let Err(refusal) = is_built {
-                shown = shown.on_disabled_hover_text(refusal.to_string());
-            }
-            if shown.changed() {
+    ui.horizontal_wrapped(|ui| {
+        for &format in FormatName::ALL {
+            let mut is_wanted = choices.formats.contains(&format);
+            let check = ui.checkbox(&mut is_wanted, format.name());
+            if check.on_hover_text(format.hint()).changed() {
                 choices.formats.retain(|other| *other != format);
                 choices.formats.extend(is_wanted.then_some(format));
-            }
-            if index % 2 == 1 {
-                ui.end_row();
             }
         }
     });
@@ -124,17 +109,6 @@ fn order(ui: &mut Ui, context: &mut PanelContext<'_>) {
             super::see::path_field(ui, &mut choices.folder, label.id);
         });
     });
-}
-
-/// Returns the name of a file format and a sentence on the programs that can read it.
-fn words(format: FormatName) -> (&'static str, &'static str) {
-    match format {
-        FormatName::Parquet => ("Parquet", "For pandas, polars and similar programs."),
-        FormatName::Csv => ("Text (CSV)", "The same tables as text."),
-        FormatName::Vtk => ("ParaView", "VTK files: open vtk/grains.pvd."),
-        FormatName::Ovito => ("OVITO", "LAMMPS dumps: open ovito/grains.dump."),
-        FormatName::Fields => ("Fields", "Smoothed fields for ParaView: open fields/fields.pvd."),
-    }
 }
 
 /// Shows the controls for the first and last simulated time of the part of the run that is exported.

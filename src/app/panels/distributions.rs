@@ -8,7 +8,6 @@ use egui_plot::{Bar, BarChart};
 
 use crate::Instant;
 use crate::app::axes::bare_plot;
-use crate::app::context::PanelContext;
 use crate::app::theme;
 use crate::app::watched_run::{TakenRun, WatchedRun};
 use crate::app::work::{Work, outcome_of_ended};
@@ -21,6 +20,8 @@ const INTERVAL: Duration = Duration::from_millis(200);
 /// Histograms of one simulation at the displayed simulated time, or slightly before.
 #[derive(Default)]
 pub(super) struct Distributions {
+    /// Index of the displayed histogram in [`ALL`].
+    shown: usize,
     /// The newest histograms.
     histograms: Vec<Histogram>,
     /// Index of the simulation and number of the step for which histograms were last requested.
@@ -40,23 +41,19 @@ const ALL: [(&str, &str, &str); 4] = [
 ];
 
 impl Distributions {
-    pub(super) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        self.count(ui, context.run);
+    pub(super) fn show(&mut self, ui: &mut Ui, run: &mut WatchedRun) {
+        self.count(ui, run);
         ui.horizontal_wrapped(|ui| {
-            for (name, button, _) in ALL {
-                let chosen = context.preferences.histogram == name;
-                if ui.selectable_label(chosen, button).clicked() {
-                    context.preferences.histogram = name.into();
-                }
+            for (index, (_, button, _)) in ALL.into_iter().enumerate() {
+                ui.selectable_value(&mut self.shown, index, button);
             }
         });
-        let name = context.preferences.histogram.as_str();
+        let (name, _, about) = ALL[self.shown];
         let Some(histogram) = self.histograms.iter().find(|found| found.quantity == name) else {
             ui.weak("Nothing is counted yet.");
             return;
         };
-        let about = ALL.iter().find(|(known, ..)| *known == name).map_or("", |(.., about)| about);
-        let colour = theme::world_colour(context.run.selected, ui.visuals().dark_mode);
+        let colour = theme::world_colour(run.selected, ui.visuals().dark_mode);
         let bars = bars(histogram);
         bare_plot(ui, ("histogram", name), HEIGHT)
             .allow_drag(false)

@@ -2,8 +2,7 @@
 //! shown, and pulls grains. With Shift it adds grains, removes grains and moves walls.
 
 use egui::{
-    Color32, DragValue, Event, InputState, PointerButton, Pos2, Rect, Response, RichText, Stroke,
-    Ui,
+    DragValue, Event, InputState, PointerButton, Pos2, Rect, Response, RichText, Stroke, Ui,
 };
 use glam::DVec2;
 
@@ -65,14 +64,20 @@ impl WorldCell<'_> {
         self.camera.unproject(DVec2::new(f64::from(offset.x), -f64::from(offset.y)))
     }
 
-    pub(super) fn to_screen(&self, position: DVec2) -> Pos2 {
+    fn to_screen(&self, position: DVec2) -> Pos2 {
         let [x, y] = self.camera.project(position);
         self.cell.center() + egui::vec2(x, -y) / self.pixels_per_point as f32
     }
 
     /// Converts a length in the scene, m, to a length on the screen, points.
-    pub(super) fn points(&self, metres: f64) -> f32 {
+    fn points(&self, metres: f64) -> f32 {
         self.camera.pixels(metres) / self.pixels_per_point as f32
+    }
+
+    /// Draws a circle with the given centre and radius, m.
+    pub(super) fn ring(&self, ui: &Ui, centre: DVec2, radius: f64, stroke: Stroke) {
+        let painter = ui.painter().with_clip_rect(self.cell);
+        painter.circle_stroke(self.to_screen(centre), self.points(radius), stroke);
     }
 
     /// Converts a length on the screen, points, to a length in the scene, m.
@@ -92,24 +97,20 @@ impl WorldCell<'_> {
     pub(super) fn marks(&self, ui: &Ui, mouse: &Grabbing, context: &PanelContext<'_>) {
         let painter = ui.painter().with_clip_rect(self.cell);
         let accent = theme::accent(ui.visuals().dark_mode);
-        let ring = |grain: &GrainView, width: f32, colour: Color32| {
-            let stroke = Stroke::new(width, colour);
-            painter.circle_stroke(
-                self.to_screen(grain.position),
-                self.points(grain.radius),
-                stroke,
-            );
+        let ring = |grain: &GrainView, width: f32| {
+            self.ring(ui, grain.position, grain.radius, Stroke::new(width, accent));
         };
         let grains = &self.frame.snapshot.grains;
         if let Some(pinned) = context.run.pinned.filter(|pinned| pinned.world == self.index) {
-            for partner in super::grain::partners(&self.frame.snapshot, pinned.grain) {
-                ring(&grains[partner], 1.5, accent);
+            let contacts = super::grain::contacts_of(&self.frame.snapshot, pinned.grain);
+            for other in contacts.filter_map(|(other, _)| other) {
+                ring(&grains[other as usize], 1.5);
             }
-            ring(&grains[pinned.grain], 3.0, accent);
+            ring(&grains[pinned.grain], 3.0);
         }
         if let Some(grabbed) = mouse.grabbed.filter(|grabbed| grabbed.world == self.index) {
             let grain = &grains[grabbed.grain];
-            ring(grain, 2.0, accent);
+            ring(grain, 2.0);
             if let Some(at) = self.response.interact_pointer_pos() {
                 let stroke = Stroke::new(2.0, accent);
                 painter.line_segment([self.to_screen(grain.position), at], stroke);
@@ -123,7 +124,7 @@ impl WorldCell<'_> {
         }
         let hovered = self.response.hover_pos().and_then(|at| self.grain_at(at));
         if let Some(hovered) = hovered {
-            ring(&grains[hovered.grain], 1.5, accent);
+            ring(&grains[hovered.grain], 1.5);
             let describe = |ui: &mut Ui| super::grain::describe(ui, self.frame, hovered.grain);
             self.response.clone().on_hover_ui_at_pointer(describe);
         }
@@ -279,7 +280,7 @@ impl WorldCell<'_> {
             }
         } else {
             let disc = self.new_grain(preferences, at);
-            painter.circle_stroke(at, self.points(disc.radius), stroke);
+            self.ring(ui, disc.position, disc.radius, stroke);
         }
     }
 }

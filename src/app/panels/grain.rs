@@ -8,7 +8,7 @@ use crate::app::page::Page;
 use crate::app::watched_run::WatchedRun;
 use crate::live::WorldFrame;
 use crate::render::numbers::si_prefix;
-use crate::sim::Snapshot;
+use crate::sim::{ContactView, Snapshot};
 
 /// Shows the state and contacts of the pinned grain (which the user selected with a click), if a grain is pinned.
 pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
@@ -48,13 +48,9 @@ pub(super) fn show_over_scene(ui: &Ui, context: &mut PanelContext<'_>) {
     }
 }
 
-/// Speed below which a grain counts as resting, m/s. A slower motion is assumed to be an error of the solver.
+/// Component of a velocity below which a grain counts as resting, m/s. A slower motion is assumed to be an error of the
+/// solver.
 const AT_REST: f64 = 1e-8;
-
-/// Returns the given component of a velocity, m/s, or 0 if it is so small that the grain counts as resting.
-pub(super) fn unless_at_rest(velocity: f64) -> f64 {
-    if velocity.abs() < AT_REST { 0.0 } else { velocity }
-}
 
 /// Shows the state of a grain as a small table.
 pub(super) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
@@ -70,7 +66,7 @@ pub(super) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
         let at = grain.position / diameter;
         row("position", format!("{:.3}, {:.3} d", at.x, at.y));
         row("radius", format!("{:.3} d", grain.radius / diameter));
-        let speed = |along: f64| si(unless_at_rest(along), "m/s");
+        let speed = |along: f64| si(if along.abs() < AT_REST { 0.0 } else { along }, "m/s");
         row("velocity", format!("{}, {}", speed(grain.velocity.x), speed(grain.velocity.y)));
         // Avoids the text "-0.000".
         row("spin", format!("{:.3} rad/s", grain.angular_velocity).replace("-0.000", "0.000"));
@@ -80,34 +76,30 @@ pub(super) fn describe(ui: &mut Ui, world: &WorldFrame, index: usize) {
     });
 }
 
-/// Returns the indices of the grains that are in contact with a grain.
-pub(super) fn partners(snapshot: &Snapshot, index: usize) -> impl Iterator<Item = usize> {
+/// Returns the contacts of a grain, each with the number of the other grain; `None` if the other body is not a grain.
+pub(super) fn contacts_of(
+    snapshot: &Snapshot,
+    index: usize,
+) -> impl Iterator<Item = (Option<u32>, &ContactView)> {
     let number = index as u32;
-    snapshot.contacts.iter().filter_map(move |contact| match contact.other_grain? {
-        other if contact.grain == number => Some(other as usize),
-        other if other == number => Some(contact.grain as usize),
+    snapshot.contacts.iter().filter_map(move |contact| match contact.other_grain {
+        other if contact.grain == number => Some((other, contact)),
+        Some(other) if other == number => Some((Some(contact.grain), contact)),
         _ => None,
     })
 }
 
 fn contacts(ui: &mut Ui, world: &WorldFrame, index: usize) {
     let diameter = world.snapshot.surroundings.mean_diameter;
-    let number = index as u32;
     let grid = egui::Grid::new("contacts").num_columns(4).striped(true).spacing([10.0, 2.0]);
     let rows = |ui: &mut Ui| {
         for name in ["with", "N", "T", "gap/d"] {
             ui.label(RichText::new(name).weak());
         }
         ui.end_row();
-        for contact in &world.snapshot.contacts {
-            let with = match contact.other_grain {
-                _ if contact.grain != number && contact.other_grain != Some(number) => continue,
-                Some(other) if contact.grain == number => other.to_string(),
-                Some(_) => contact.grain.to_string(),
-                None => "fixed".to_owned(),
-            };
+        for (other, contact) in contacts_of(&world.snapshot, index) {
             for value in [
-                with,
+                other.map_or_else(|| "fixed".to_owned(), |other| other.to_string()),
                 si(contact.normal_force, "N"),
                 si(contact.tangential_force, "N"),
                 format!("{:.1e}", contact.gap / diameter),

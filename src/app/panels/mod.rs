@@ -27,7 +27,6 @@ mod shown_settings;
 mod solver;
 mod speed;
 mod status;
-mod table;
 mod trust;
 
 pub use grabbing::Grabbing;

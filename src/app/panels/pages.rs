@@ -5,8 +5,7 @@ use egui::{CollapsingHeader, RichText, Ui};
 use super::distributions::Distributions;
 use super::gallery::Gallery;
 use super::speed::StepRace;
-use super::table::BodyTable;
-use super::{compare, data, grabbing, grain, physics, plots, run, see, solver, speed, table};
+use super::{compare, data, grabbing, grain, physics, plots, run, see, solver, speed};
 use crate::app::IN_BROWSER;
 use crate::app::context::PanelContext;
 use crate::app::page::Page;
@@ -18,7 +17,6 @@ pub(crate) struct Pages {
     gallery: Gallery,
     race: StepRace,
     distributions: Distributions,
-    table: BodyTable,
 }
 
 impl Pages {
@@ -43,20 +41,26 @@ impl Pages {
                 grabbing::show(ui, context.preferences);
             }
             Page::Solver => {
-                physics::show(ui, context.run);
+                let Some((before, start)) = context.run.wanted_and_start() else { return };
+                let mut settings = before;
+                physics::show(ui, context.run, &mut settings, start.settings());
                 ui.separator();
-                solver::show(ui, context.run);
-                folded(ui, "Expert", |ui| self.expert(ui, context));
+                solver::show(ui, context.run, &mut settings);
+                folded(ui, "Expert", |ui| {
+                    solver::expert(ui, &mut settings, &start);
+                    ui.separator();
+                    self.expert(ui, context);
+                });
+                if settings != before {
+                    context.run.change(context.run.selected, settings);
+                }
             }
             Page::Compare => {
                 compare::show(ui, context.run);
                 run::earlier_runs(ui, context);
                 ui.separator();
                 plots::choices(ui, context);
-                folded(ui, "Distributions", |ui| self.distributions.show(ui, context));
-                folded(ui, "Grains and contacts", |ui| {
-                    table::show(ui, context.run, &mut self.table);
-                });
+                folded(ui, "Distributions", |ui| self.distributions.show(ui, context.run));
             }
             Page::Look => see::look(ui, context.preferences),
             Page::Save => {
@@ -72,10 +76,8 @@ impl Pages {
         }
     }
 
-    /// Shows settings, scenes and comparisons for users who study solvers.
+    /// Shows scenes and comparisons for users who study solvers.
     fn expert(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        solver::expert(ui, context.run);
-        ui.separator();
         let hint =
             "Each scene has a known right answer. A line at the top compares the run with it.";
         let label = ui.label(SceneGroup::Stability.hint()).on_hover_text(hint);
@@ -86,9 +88,9 @@ impl Pages {
         compare::method_presets(ui, context.run);
         if IN_BROWSER {
             // The measurement would block the browser version for seconds.
-            let text =
-                "Only the program measures the speed and accuracy of all solvers: slump chart.";
-            ui.label(RichText::new(text).weak());
+            ui.weak(
+                "Only the program measures the speed and accuracy of all solvers: slump chart.",
+            );
         } else {
             let race = &mut self.race;
             folded(ui, "Speed and accuracy", |ui| speed::show(ui, context.run, race));

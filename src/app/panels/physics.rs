@@ -11,22 +11,14 @@ use crate::contact::range::escape_speed;
 use crate::number::millis_text;
 use crate::sim::{Settings, Stepper};
 
-pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
-    let index = run.selected;
-    let Some((before, start)) = run.wanted_and_start() else { return };
-    let mut settings = before;
-    stepper_switch(ui, &mut settings);
-    for about in shown_settings(run, &before) {
-        if FRONT_SETTINGS.contains(&about.name) {
-            continue;
-        }
-        setting_control::show(ui, about, &mut settings, start.settings());
+pub(super) fn show(ui: &mut Ui, run: &WatchedRun, settings: &mut Settings, start: &Settings) {
+    let controls = shown_settings(run, settings);
+    stepper_switch(ui, settings);
+    for about in controls.into_iter().filter(|about| !FRONT_SETTINGS.contains(&about.name)) {
+        setting_control::show(ui, about, settings, start);
         ui.add_space(2.0);
     }
-    if settings != before {
-        run.change(index, settings);
-    }
-    derived(ui, run, &settings);
+    derived(ui, run, settings);
 }
 
 /// Shows the buttons that choose the stepper (rule that advances the grains by Δt). Remedies (corrections of known

@@ -122,7 +122,6 @@ fn data(ui: &Ui, context: &PanelContext<'_>) -> PlotData {
             .iter()
             .filter(|quantity| is_shown(context.run, context.preferences, quantity))
             .collect(),
-        chosen: context.preferences.chosen_plot.clone(),
         now_secs: context.run.frame.time_secs(),
         until_secs: context.run.duration_secs(),
     }
@@ -220,13 +219,7 @@ pub(super) fn choices(ui: &mut Ui, context: &mut PanelContext<'_>) {
                 chosen.extend(shown.then(|| quantity.name.to_owned()));
             }
         }
-        ui.toggle_value(&mut context.preferences.chosen_plot.on, "y over x")
-            .on_hover_text("Plot any measured quantity against any other.");
     });
-    let chosen = &mut context.preferences.chosen_plot;
-    if chosen.on {
-        ui.horizontal_wrapped(|ui| chosen.choose(ui));
-    }
     ui.horizontal(|ui| files(ui, context));
     if context.ensemble.is_possible() {
         let hint = context.ensemble.about(context.run.selected);

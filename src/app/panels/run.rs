@@ -10,9 +10,9 @@ use crate::app::number_text::clock_text;
 use crate::app::provenance::CHANGED;
 use crate::app::titles::{settings_text, title_among};
 use crate::app::watched_run::WatchedRun;
-use crate::config::{Config, SceneSource};
-use crate::live::{Command, Controls, PastRun};
-use crate::scene::{Deposition, NewPile, SCENES, SceneGroup, Sizes};
+use crate::config::Config;
+use crate::live::{Command, PastRun};
+use crate::scene::{Deposition, NewPile, SCENES, SceneGroup};
 
 /// Groups of scenes in the gallery. Stability scenes (scenes that are hard for solvers) are not among them, because
 /// they are for experts (page "Law, solver").
@@ -20,33 +20,6 @@ const SCENE_GROUPS: [SceneGroup; 2] = [SceneGroup::Paper, SceneGroup::Experiment
 /// Largest number of grains of a new pile that the panel offers. With more grains, the user would wait longer for the
 /// pile and for each step. The command line allows more.
 const MOST_GRAINS: usize = 20_000;
-
-/// Smallest number of grains of a new pile for which the panel states the computing time.
-const LARGE: usize = 2_000;
-/// Measured computing time of the deposition of [`LARGE`] grains by rain (grains fall into the box), s on one core
-/// (`docs/runs.md`, new piles).
-const RAIN_SECS: f64 = 116.0;
-/// Measured computing time of the deposition of [`LARGE`] grains by rolling (each grain rolls over others until two
-/// hold it), s on one core (`docs/runs.md`, new piles).
-const ROLL_SECS: f64 = 0.2;
-/// Approximate computing time of a solved step of a slumping pile with [`LARGE`] grains, ms. The panel estimates the
-/// time for other numbers of grains from this value.
-const STEP_MILLIS: f64 = 60.0;
-/// Methods by which the grains of a new pile are deposited, with their names and hints.
-const DEPOSITIONS: [(Deposition, &str, &str); 2] = [
-    (
-        Deposition::Rain,
-        "Rain",
-        "Grains rain into the box, as in the paper's pile. This takes seconds for hundreds of grains, minutes for \
-         thousands.",
-    ),
-    (
-        Deposition::DropAndRoll,
-        "Roll",
-        "Each grain rolls until two others hold it. This takes seconds for thousands of grains, but makes another \
-         pile, denser and with more bonds.",
-    ),
-];
 
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery) {
     scene_box(ui, context, gallery);
@@ -128,8 +101,8 @@ fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
         ui.add(egui::DragValue::new(&mut pile.seed).speed(0.1))
             .labelled_by(label.id)
             .on_hover_text("Another seed is another pile of the same kind.");
-        for (way, name, hint) in DEPOSITIONS {
-            ui.selectable_value(&mut pile.deposition, way, name).on_hover_text(hint);
+        for &way in Deposition::ALL {
+            ui.selectable_value(&mut pile.deposition, way, way.name()).on_hover_text(way.hint());
         }
         let fresh = ui.button("New pile").on_hover_text("Make this pile and let it come to rest.");
         context.note_control("new pile", fresh.rect);
@@ -138,42 +111,15 @@ fn new_pile(ui: &mut Ui, context: &mut PanelContext<'_>) {
             context.ask(Request::Load(config.into()));
         }
     });
-    if pile.grains >= LARGE {
-        ui.label(RichText::new(cost(pile.grains)).small().weak());
-    }
     ui.data_mut(|data| data.insert_temp(id, pile));
-}
-
-/// Returns a text on the computing time of a pile of `grains` grains: of its deposition by rain, of its deposition by
-/// rolling, and of each step after the deposition.
-fn cost(grains: usize) -> String {
-    // The number of steps of a deposition is proportional to the time of fall, which grows as the square root of the
-    // height.
-    let part = grains as f64 / LARGE as f64;
-    let minutes = (RAIN_SECS * part.powf(1.25) / 60.0).ceil();
-    let secs = ROLL_SECS * part.powf(1.8);
-    let step_millis = STEP_MILLIS * part.powf(1.3);
-    format!(
-        "{grains} grains: rain takes about {minutes:.0} min, rolling {secs:.1} s. A step takes about \
-         {step_millis:.0} ms; with Fast, for piles without cohesion, at most a fifteenth of that."
-    )
 }
 
 /// Returns the configuration of the new pile `pile` with the settings that the controls show.
 fn pile_like_this(run: &WatchedRun, pile: &NewPile) -> Config {
-    let config = run.config();
-    let NewPile { grains, seed, box_width_in_diameters, deposition, sizes } = pile.clone();
-    let source = SceneSource {
-        scene: Some(Config::DEFAULT_SCENE.to_owned()),
-        grains: Some(grains),
-        seed: Some(seed),
-        box_width: Some(box_width_in_diameters),
-        deposition: (deposition != Deposition::default()).then_some(deposition),
-        sizes: (sizes != Sizes::default()).then_some(sizes),
-        initial: None,
-        ..config.source
-    };
-    let config = Config { source, ..config };
+    let mut config = run.config();
+    config.source.scene = Some(Config::DEFAULT_SCENE.to_owned());
+    config.source.initial = None;
+    config.source.set_new_pile(pile);
     match run.wanted_settings() {
         Some(settings) => config.with_settings(&settings),
         None => config,
@@ -211,16 +157,16 @@ pub(super) fn earlier_runs(ui: &mut Ui, context: &mut PanelContext<'_>) {
 /// If it has two, the title contains the settings of both in which they differ; if it has more, their number and these
 /// settings of the first one.
 fn title(run: &PastRun, slumps: bool) -> String {
-    let controls: Vec<Controls> = run.worlds.iter().map(|world| world.controls).collect();
-    let first = title_among(&controls, 0);
-    match controls.len() {
+    let settings: Vec<_> = run.worlds.iter().map(|world| world.controls.settings).collect();
+    let first = title_among(&settings, 0);
+    match settings.len() {
         0 => String::new(),
         1 => {
             let last = run.worlds[0].curve.last().filter(|_| slumps);
             let slump = last.map_or(String::new(), |row| format!(", slump {:.3}", row.slump));
-            settings_text(&controls[0].settings, &FRONT_SETTINGS) + &slump
+            settings_text(&settings[0], &FRONT_SETTINGS) + &slump
         }
-        2 => format!("{first}; {}", title_among(&controls, 1)),
+        2 => format!("{first}; {}", title_among(&settings, 1)),
         count => format!("{count} worlds, {first}"),
     }
 }

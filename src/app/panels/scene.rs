@@ -156,11 +156,7 @@ impl WorldCell<'_> {
         painter.text(at, Align2::LEFT_CENTER, text, FontId::proportional(11.0), ink);
         let stroke = Stroke::new(1.0, Color32::from_gray(128).gamma_multiply(0.55));
         for grain in grains {
-            painter.circle_stroke(
-                self.to_screen(grain.position),
-                self.points(grain.radius),
-                stroke,
-            );
+            self.ring(ui, grain.position, grain.radius, stroke);
         }
     }
 

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use clap::ValueEnum;
 use egui::{ComboBox, RichText, ThemePreference, Ui};
 use glam::DVec2;
 
@@ -15,16 +16,6 @@ use crate::app::work::Work;
 use crate::film::{Animation, VIDEO_RATES_HZ, check_ffmpeg};
 use crate::render::{ColourBy, Style, panel_size};
 use crate::study::png::write_png;
-
-/// Quantities that the colours of grains can show, with their names.
-const COLOURS: [(ColourBy, &str); 6] = [
-    (ColourBy::PaperGreys, "paper greys"),
-    (ColourBy::Speed, "speed"),
-    (ColourBy::Overlap, "overlap"),
-    (ColourBy::Force, "force Σ|N|"),
-    (ColourBy::Coordination, "contacts"),
-    (ColourBy::Material, "material"),
-];
 
 /// Duration of the GIF that the button "GIF of 5 s" saves, s.
 const SHORT_GIF_SECS: f64 = 5.0;
@@ -57,11 +48,12 @@ pub(super) fn look(ui: &mut Ui, preferences: &mut Preferences) {
     let style = &mut preferences.style;
     ui.horizontal(|ui| {
         let label = ui.label("Colour by");
-        let name = COLOURS.iter().find(|(by, _)| *by == style.colour_by).map_or("", |it| it.1);
-        let list = ComboBox::from_id_salt("colour by").width(130.0).selected_text(name);
+        let name = |by: ColourBy| by.to_possible_value().map(|value| value.get_name().to_owned());
+        let present = name(style.colour_by).unwrap_or_default();
+        let list = ComboBox::from_id_salt("colour by").width(130.0).selected_text(present);
         let shown = list.show_ui(ui, |ui| {
-            for (by, name) in COLOURS {
-                ui.selectable_value(&mut style.colour_by, by, name);
+            for &by in ColourBy::value_variants() {
+                ui.selectable_value(&mut style.colour_by, by, name(by).unwrap_or_default());
             }
         });
         shown.response.labelled_by(label.id);
@@ -149,33 +141,29 @@ fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
             "Saves {RECORD} as a GIF, which all slides and web pages can show: 256 colours per picture, and larger \
              files."
         );
-        let missing = check_ffmpeg("given").err();
-        let formats = [
-            (FilmFormat::Video, "Save video", missing, video_hint),
-            (FilmFormat::Gif, "Save GIF", None, gif_hint),
-        ];
-        // The browser version has no ffmpeg, so it offers no video.
-        for (format, name, missing, hint) in formats.into_iter().skip(usize::from(IN_BROWSER)) {
-            let save = ui.add_enabled(context.run.is_ready() && missing.is_none(), egui::Button::new(name));
-            context.note_control(name, save.rect);
-            if save.clicked() {
-                let speed = context.preferences.speed;
-                save_film(ui.ctx(), context, format, speed);
-            }
-            let save = save.on_hover_text(hint);
-            if let Some(missing) = missing {
-                save.on_disabled_hover_text(missing.to_string());
-            }
-        }
+        let short_hint = format!("Saves {RECORD} as a GIF that lasts 5 s.");
         let recorded_from = context.run.world().map_or(0.0, |world| world.recorded_from_secs);
         let whole = [recorded_from, context.run.frame.recorded_secs()];
         let [from, until] = context.exports.data.stretch.unwrap_or(whole);
-        let is_possible = context.run.is_ready() && until > from;
-        let hint = format!("Saves {RECORD} as a GIF that lasts 5 s.");
-        let save = ui.add_enabled(is_possible, egui::Button::new("GIF of 5 s"));
-        context.note_control("GIF of 5 s", save.rect);
-        if save.on_hover_text(hint).clicked() {
-            save_film(ui.ctx(), context, FilmFormat::Gif, (until - from) / SHORT_GIF_SECS);
+        let speed = context.preferences.speed;
+        let short_speed = (until - from) / SHORT_GIF_SECS;
+        let missing = check_ffmpeg("given").err();
+        let films = [
+            (FilmFormat::Video, "Save video", missing, speed, video_hint),
+            (FilmFormat::Gif, "Save GIF", None, speed, gif_hint),
+            (FilmFormat::Gif, "GIF of 5 s", None, short_speed, short_hint),
+        ];
+        // The browser version has no ffmpeg, so it offers no video.
+        for (format, name, missing, speed, hint) in films.into_iter().skip(usize::from(IN_BROWSER)) {
+            let is_possible = context.run.is_ready() && missing.is_none() && speed > 0.0;
+            let save = ui.add_enabled(is_possible, egui::Button::new(name)).on_hover_text(hint);
+            context.note_control(name, save.rect);
+            if save.clicked() {
+                save_film(ui.ctx(), context, format, speed);
+            }
+            if let Some(missing) = missing {
+                save.on_disabled_hover_text(missing.to_string());
+            }
         }
     });
 }

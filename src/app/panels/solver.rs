@@ -1,49 +1,30 @@
 //! Panel: the solver, and the result of the last step.
 
-use egui::{ComboBox, RichText, Ui};
+use egui::{RichText, Ui};
 
 use super::grain::compact;
 use crate::app::budget::{BUDGETS, Budget};
 use crate::app::watched_run::WatchedRun;
 use crate::app::{setting_control, theme};
-use crate::live::WorldFrame;
+use crate::live::{LiveStart, WorldFrame};
 use crate::number::millis_text;
 use crate::scene::Preset;
 use crate::setting::{About, Control, Group};
 use crate::sim::{Observables, REMEDIES, Remedies, Settings, Surroundings};
-use crate::solver::{METHODS, Method, SolverSettings, StopTest};
+use crate::solver::{Method, SolverSettings, StopTest};
 
-pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun) {
-    let index = run.selected;
-    let Some(before) = run.wanted_settings() else { return };
-    let mut settings = before;
-    if before.stepper.uses_method()
-        && let Some(world) = run.world()
-    {
-        budget_buttons(ui, &mut settings, &world.snapshot.surroundings);
-    }
-    if settings != before {
-        run.change(index, settings);
+pub(super) fn show(ui: &mut Ui, run: &WatchedRun, settings: &mut Settings) {
+    if let Some(world) = run.world().filter(|_| settings.stepper.uses_method()) {
+        budget_buttons(ui, settings, &world.snapshot.surroundings);
     }
     readings(ui, run);
 }
 
-/// Shows the expert settings of the solver, which few users need. Applies the user's changes to the selected
-/// simulation.
-pub(super) fn expert(ui: &mut Ui, run: &mut WatchedRun) {
-    let index = run.selected;
-    let Some((before, start)) = run.wanted_and_start() else { return };
-    let mut settings = before;
-    expert_controls(ui, &mut settings, start.settings(), start.physics().friction);
-    if settings != before {
-        run.change(index, settings);
-    }
-}
-
-/// Shows the controls for the expert settings of the solver: method, warm start, friction model, and remedies
-/// (corrections of known weaknesses of a step).
-fn expert_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings, has_friction: bool) {
-    let stepper = settings.stepper;
+/// Shows the controls for the expert settings of the solver, which few users need: method, warm start, friction model,
+/// and remedies (corrections of known weaknesses of a step).
+pub(super) fn expert(ui: &mut Ui, settings: &mut Settings, start: &LiveStart) {
+    let (stepper, has_friction, start) =
+        (settings.stepper, start.physics().friction, start.settings());
     if stepper.uses_method() {
         method_controls(ui, settings, start);
     }
@@ -64,10 +45,15 @@ fn about(name: &str) -> &'static About {
     found.unwrap_or(&SolverSettings::ABOUT[0])
 }
 
-/// Shows the controls for the solver, its stopping criterion, its tolerance and its largest number of sweeps.
+/// Shows the controls for the solver, its stopping criterion, its tolerance and its largest number of sweeps. If the
+/// chosen solver does not support the friction model, the friction model is replaced.
 fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
     egui::Grid::new("solver").num_columns(2).spacing([8.0, 5.0]).show(ui, |ui| {
-        method_box(ui, &mut settings.solver);
+        let before = settings.solver;
+        setting_control::show(ui, about("solver"), settings, start);
+        if settings.solver.method != before.method {
+            settings.solver = before.by(settings.solver.method);
+        }
         ui.end_row();
         if settings.solver.method.sweeps_in_order() {
             setting_control::show(ui, about("ordering"), settings, start);
@@ -87,24 +73,6 @@ fn method_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
         setting_control::show_as(ui, tolerance, &control, settings, start);
     }
     setting_control::show(ui, about("max-sweeps"), settings, start);
-}
-
-/// Shows the list from which the user chooses the solver. If the chosen solver does not support the friction model, the
-/// friction model is replaced.
-fn method_box(ui: &mut Ui, solver: &mut SolverSettings) {
-    let label = ui.label("Solver").on_hover_text("The solver that finds the impulses of a step.");
-    let mut method = solver.method;
-    let list = ComboBox::from_id_salt("method").width(100.0).selected_text(method.name());
-    let shown = list.show_ui(ui, |ui| {
-        for info in &METHODS {
-            let hint = format!("{}. Solves {} ({}).", info.summary, info.solves, info.source);
-            ui.selectable_value(&mut method, info.method, info.name).on_hover_text(hint);
-        }
-    });
-    shown.response.labelled_by(label.id);
-    if method != solver.method {
-        *solver = solver.by(method);
-    }
 }
 
 /// Shows the list from which the user chooses the friction model. The list is disabled for a solver that solves only
@@ -154,21 +122,6 @@ fn budget_buttons(ui: &mut Ui, settings: &mut Settings, surroundings: &Surroundi
     });
 }
 
-/// Returns the text of the common residual of the last step (the error measure that is the same for all solvers), and a
-/// hover text. If the step was solved under another friction model than Coulomb's, the text also contains the residual
-/// under that model.
-fn residuals(last: &Observables) -> (String, &'static str) {
-    let common = format!("{:.1e}", last.residual);
-    match last.model_residual.filter(|_| last.is_of_a_model()) {
-        None => (common, "Common residual of the last step."),
-        Some(of_model) => (
-            format!("{common} ({of_model:.1e})"),
-            "Common residual of the last step under Coulomb friction; in brackets, the residual of the friction \
-             model that was solved.",
-        ),
-    }
-}
-
 /// Shows measured values of the last step, such as the numbers of sweeps and contacts and the residual.
 fn readings(ui: &mut Ui, run: &WatchedRun) {
     let Some(world) = run.world() else { return };
@@ -179,8 +132,8 @@ fn readings(ui: &mut Ui, run: &WatchedRun) {
             ui.label(RichText::new(value).monospace());
         };
         reading(ui, "sweeps", last.sweeps.to_string(), "Sweeps of the last step.");
-        let (value, hint) = residuals(last);
-        reading(ui, "residual", value, hint);
+        let residual = format!("{:.1e}", last.residual);
+        reading(ui, "residual", residual, "Common residual of the last step.");
         ui.end_row();
         if settings.solver.method == Method::Auto {
             let taken = world.picked_method.name();

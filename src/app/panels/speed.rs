@@ -1,20 +1,17 @@
-//! Panel: the computing time of each part of a step, and a comparison of all solvers on the displayed step. A separate
-//! thread solves the step with each solver to several tolerances.
-
-use std::sync::OnceLock;
+//! Panel: a comparison of all solvers on the displayed step. A separate thread solves the step with each solver to
+//! several tolerances.
 
 use egui::{Color32, RichText, Ui};
 use egui_plot::{Line, LineStyle};
 
-use super::grain::compact;
 use crate::Instant;
-use crate::app::axes::{plot_with_axes, with_least, with_room};
+use crate::app::axes::{plot_with_axes, with_room};
 use crate::app::number_text::clock_text;
 use crate::app::theme;
 use crate::app::watched_run::{TakenRun, WatchedRun};
 use crate::app::work::{Reporter, Work, outcome_of_ended};
 use crate::error::Result;
-use crate::sim::{Settings, Simulation, StepTimes};
+use crate::sim::{Settings, Simulation};
 use crate::solver::{METHODS, Method, SolverSettings, StopTest};
 
 /// Tolerances of the residual to which each solver solves the step, from loose to tight.
@@ -25,12 +22,6 @@ const LIMIT_SECS: f64 = 0.25;
 /// because other programs can only make a solve slower. With a larger number the comparison takes longer.
 const REPEATS: usize = 3;
 const MOST_SWEEPS: u32 = 20_000;
-/// Largest number of steps whose computing time is measured. The measurement ends earlier if these steps together take
-/// [`TIMED_SECS`].
-const TIMED_STEPS: u32 = 50;
-/// Largest sum of the measured computing times of steps, s. When the sum reaches this value, no further step is
-/// measured.
-const TIMED_SECS: f64 = 1.0;
 
 /// Measured results of one solver for all tolerances.
 struct RaceCurve {
@@ -47,14 +38,12 @@ pub(super) struct StepRace {
     work: Option<Work<Measured>>,
 }
 
-/// Measured computing times: of the next steps by their parts, and of one step by each solver.
+/// Measured computing times of one step by each solver.
 #[derive(Default)]
 struct Measured {
-    /// Simulated time before the measured steps, s.
+    /// Simulated time before the measured step, s.
     time_secs: f64,
-    /// Number of measured steps, and their computing times summed over these steps.
-    times: Option<(u32, StepTimes)>,
-    /// Results of the solvers; empty for a stepper that uses no solver.
+    /// Results of the solvers.
     curves: Vec<RaceCurve>,
 }
 
@@ -63,10 +52,8 @@ struct Measured {
 fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Measured> {
     let Some(run) = run else { return Ok(Measured::default()) };
     let simulation = &run.world.simulation;
-    let times = times_of_steps(simulation.clone());
     let mut curves = Vec::new();
-    let has_method = simulation.settings().stepper.uses_method();
-    for (number, info) in METHODS.iter().enumerate().filter(|_| has_method) {
+    for (number, info) in METHODS.iter().enumerate() {
         let goes_on = || reporter.tell(number as f64 / METHODS.len() as f64).is_continue();
         let mut points: Vec<[f64; 2]> = Vec::new();
         for tolerance in TOLERANCES {
@@ -87,39 +74,7 @@ fn race(run: Option<TakenRun>, reporter: &Reporter) -> Result<Measured> {
             curves.push(RaceCurve { method: info.name, points });
         }
     }
-    Ok(Measured { time_secs: simulation.time_secs(), times, curves })
-}
-
-/// Takes the next steps with the present settings. Returns their number and the sum of their computing times. `None` if
-/// the run cannot continue.
-fn times_of_steps(mut simulation: Simulation) -> Option<(u32, StepTimes)> {
-    let (mut steps, mut sum) = (0, StepTimes::default());
-    while steps < TIMED_STEPS && sum.total_secs < TIMED_SECS {
-        let Ok(times) = simulation.timed_step(now_secs) else { break };
-        sum.detection_secs += times.detection_secs;
-        sum.solving_secs += times.solving_secs;
-        sum.total_secs += times.total_secs;
-        steps += 1;
-    }
-    (steps > 0 && sum.total_secs > 0.0).then_some((steps, sum))
-}
-
-/// Returns the wall-clock time since the first call of this function, s.
-fn now_secs() -> f64 {
-    static BEGUN: OnceLock<Instant> = OnceLock::new();
-    BEGUN.get_or_init(Instant::now).elapsed().as_secs_f64()
-}
-
-/// Returns a sentence on the computing time of a step and the percentages of its parts.
-fn told(&(steps, times): &(u32, StepTimes)) -> String {
-    let part = |secs: f64| 100.0 * secs / times.total_secs;
-    let (contacts, solving) = (part(times.detection_secs), part(times.solving_secs));
-    let ms = compact(1e3 * times.total_secs / f64::from(steps));
-    let of = if steps == 1 { "of one step".into() } else { format!("mean of {steps} steps") };
-    format!(
-        "A step takes {ms} ms ({of}): {contacts:.0} % finding contacts, {solving:.0} % solving, {:.0} % the rest.",
-        100.0 - contacts.round() - solving.round()
-    )
+    Ok(Measured { time_secs: simulation.time_secs(), curves })
 }
 
 /// Solves the next step several times with one solver and tolerance. Returns the shortest computing time, ms, and the
@@ -169,10 +124,7 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut StepRace) {
         return work.show(ui, "Measuring", "Stop measuring", hint);
     }
     measure(ui, run, race);
-    let Measured { time_secs, times, curves } = &race.measured;
-    if let Some(times) = times {
-        ui.label(told(times));
-    }
+    let Measured { time_secs, curves } = &race.measured;
     if curves.is_empty() {
         return;
     }
@@ -184,11 +136,13 @@ pub(super) fn show(ui: &mut Ui, run: &mut WatchedRun, race: &mut StepRace) {
 
 /// Shows the button that starts the measurement of the displayed step with all solvers.
 fn measure(ui: &mut Ui, run: &mut WatchedRun, shown: &mut StepRace) {
-    let goes_on = run.world().is_some_and(|world| world.failure.is_none());
-    let button = ui.add_enabled(goes_on, egui::Button::new("Measure this step"));
-    let hint = "Measures the parts of a step. Then each solver solves the visible step, to one tolerance after the \
-                other. This takes some seconds.";
-    let button = button.on_hover_text(hint).on_disabled_hover_text("This run cannot continue.");
+    let is_possible = run.world().is_some_and(|world| {
+        world.failure.is_none() && world.controls.settings.stepper.uses_method()
+    });
+    let button = ui.add_enabled(is_possible, egui::Button::new("Measure this step"));
+    let hint = "Each solver solves the visible step, to one tolerance after the other. This takes some seconds.";
+    let refusal = "This run cannot continue, or its stepper uses no solver.";
+    let button = button.on_hover_text(hint).on_disabled_hover_text(refusal);
     if button.clicked() {
         let taken = run.take(run.selected);
         let work = |mut runs: Vec<_>, reporter: &Reporter| race(runs.pop(), reporter);
@@ -204,7 +158,8 @@ fn draw(ui: &mut Ui, curves: &[RaceCurve]) {
         let points = curves.iter().flat_map(|curve| &curve.points);
         with_room(points.map(|point| point[axis].log10()), true)
     });
-    with_least(plot_with_axes(ui, "speed and accuracy", HEIGHT, [true; 2], ""), ends)
+    plot_with_axes(ui, "speed and accuracy", [true; 2], "", ends)
+        .height(HEIGHT)
         .allow_drag(false)
         .allow_zoom(false)
         .show(ui, |plot| {

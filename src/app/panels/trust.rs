@@ -360,7 +360,7 @@ fn begin(ui: &Ui, context: &PanelContext<'_>, of: String, config: Config) -> Run
         shard: None,
     };
     let told: Arc<Mutex<Option<BudgetAnswer>>> = Arc::default();
-    let states = context.ensemble.folder();
+    let states = context.ensemble.folder.clone();
     let to = Arc::clone(&told);
     let work = Work::start(ui.ctx(), Vec::new(), move |_: Vec<()>, reporter| {
         let refuse = |error| Error::value("temporary folder", error, "one that can be made");

@@ -125,17 +125,9 @@ struct Open {
 }
 
 impl App {
-    fn open(&mut self, events: &ActiveEventLoop) -> Result<()> {
-        let attributes = attributes(events, self.state.preferences.window_points);
-        let window =
-            Arc::new(events.create_window(attributes).map_err(|error| no_display(&error))?);
+    /// Connects a window with egui and with the surface of a graphics device, and requests the first frame.
+    fn open(&mut self, events: &ActiveEventLoop, window: Arc<Window>) -> Result<()> {
         let surface = WindowSurface::new(events, &window, self.renderer)?;
-        self.show(window, surface);
-        Ok(())
-    }
-
-    /// Connects a new window with egui and with the surface of a graphics device, and requests the first frame.
-    fn show(&mut self, window: Arc<Window>, surface: WindowSurface) {
         let input = egui_winit::State::new(
             self.context.clone(),
             egui::ViewportId::ROOT,
@@ -147,6 +139,7 @@ impl App {
         window.request_redraw();
         self.devices += 1;
         self.open = Some(Open { window, input, surface });
+        Ok(())
     }
 
     fn fail(&mut self, events: &ActiveEventLoop, error: Error) {
@@ -164,19 +157,15 @@ impl App {
         if self.losses > MOST_LOSSES {
             let message =
                 "the graphics device was lost several times in a row; --headless still works";
-            self.fail(events, Error::Renderer(message.into()));
-            return;
+            return self.fail(events, Error::Renderer(message.into()));
         }
         let memory = self.context.memory(Clone::clone);
         self.context = context(&self.proxy, memory);
         self.state.panels.scene.legend = LegendCache::default();
         self.state.ensemble.stop();
-        match WindowSurface::new(events, &window, self.renderer) {
-            Ok(surface) => {
-                self.show(window, surface);
-                self.state
-                    .warn("The graphics device was lost and opened again; the run continued.");
-            }
+        let text = "The graphics device was lost and opened again; the run continued.";
+        match self.open(events, window) {
+            Ok(()) => self.state.warn(text),
             Err(error) => self.fail(events, error),
         }
     }
@@ -236,13 +225,15 @@ impl ApplicationHandler<()> for App {
         if self.open.is_some() {
             return;
         }
-        if let Err(error) = self.open(events) {
+        let attributes = attributes(events, self.state.preferences.window_points);
+        let window = events.create_window(attributes).map_err(|error| no_display(&error));
+        if let Err(error) = window.and_then(|window| self.open(events, Arc::new(window))) {
             self.fail(events, error);
         }
     }
 
     fn user_event(&mut self, _events: &ActiveEventLoop, _repaint: ()) {
-        let software = self.open.as_ref().is_some_and(|open| open.surface.is_software());
+        let software = self.open.as_ref().is_some_and(|open| open.surface.is_software);
         let interval = if software { SOFTWARE_FRAME_INTERVAL } else { FRAME_INTERVAL };
         let at = self.drawn + interval;
         self.next_repaint = Some(self.next_repaint.map_or(at, |planned| planned.min(at)));
@@ -264,17 +255,12 @@ impl ApplicationHandler<()> for App {
     }
 
     fn about_to_wait(&mut self, events: &ActiveEventLoop) {
-        let due = self.next_repaint.is_some_and(|at| at <= Instant::now());
-        if due {
-            self.next_repaint = None;
-            if let Some(open) = &self.open {
-                open.window.request_redraw();
-            }
+        let due = self.next_repaint.take_if(|at| *at <= Instant::now());
+        if let Some(open) = self.open.as_ref().filter(|_| due.is_some()) {
+            open.window.request_redraw();
         }
-        events.set_control_flow(match self.next_repaint {
-            Some(at) => ControlFlow::WaitUntil(at),
-            None => ControlFlow::Wait,
-        });
+        let planned = self.next_repaint.map(ControlFlow::WaitUntil);
+        events.set_control_flow(planned.unwrap_or(ControlFlow::Wait));
     }
 
     fn exiting(&mut self, _events: &ActiveEventLoop) {

@@ -35,7 +35,8 @@ pub(super) struct WindowSurface {
     window: Arc<Window>,
     configuration: wgpu::SurfaceConfiguration,
     screen: Screen,
-    software: bool,
+    /// True if the graphics device is a software driver, so that the processor draws.
+    pub is_software: bool,
     lost: Arc<AtomicBool>,
     /// Textures that the graphics device has not received yet, because their frames were not drawn.
     textures: egui::TexturesDelta,
@@ -52,21 +53,20 @@ impl WindowSurface {
         // Each backend is tried separately, because a driver that exists but cannot draw on this display must not hide
         // another driver. The environment variable `WGPU_BACKEND` overrides the choice. Under Wine, Direct3D 12 opens
         // but draws nothing, so it is tried after Vulkan.
-        let of_system = wgpu::Backends::PRIMARY;
-        let first = match renderer {
-            RendererChoice::Auto => wgpu::Backends::from_env().unwrap_or(wgpu::Backends::VULKAN),
-            RendererChoice::Vulkan => {
-                return Self::with_backends(events, window, wgpu::Backends::VULKAN);
-            }
-            RendererChoice::Gl => return Self::with_backends(events, window, wgpu::Backends::GL),
+        let (first, others): (_, &[_]) = match renderer {
+            RendererChoice::Auto => (
+                wgpu::Backends::from_env().unwrap_or(wgpu::Backends::VULKAN),
+                &[wgpu::Backends::PRIMARY, wgpu::Backends::GL],
+            ),
+            RendererChoice::Vulkan => (wgpu::Backends::VULKAN, &[]),
+            RendererChoice::Gl => (wgpu::Backends::GL, &[]),
             RendererChoice::Cpu => {
                 let allowed = "auto, vulkan or gl for the window (cpu with --headless)";
                 return Err(Error::value("renderer", "cpu", allowed));
             }
         };
-        Self::with_backends(events, window, first)
-            .or_else(|_| Self::with_backends(events, window, of_system))
-            .or_else(|_| Self::with_backends(events, window, wgpu::Backends::GL))
+        let open = |backends| Self::with_backends(events, window, backends);
+        others.iter().fold(open(first), |opened, &next| opened.or_else(|_| open(next)))
     }
 
     fn with_backends(
@@ -104,7 +104,7 @@ impl WindowSurface {
             .unwrap_or(configuration.format);
         configuration.present_mode = wgpu::PresentMode::AutoVsync;
         surface.configure(&device, &configuration);
-        let software = adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+        let is_software = adapter.get_info().device_type == wgpu::DeviceType::Cpu;
         let screen = Screen::new(&device, &queue, configuration.format);
         Ok(Self {
             surface,
@@ -112,15 +112,10 @@ impl WindowSurface {
             window: Arc::clone(window),
             configuration,
             screen,
-            software,
+            is_software,
             lost,
             textures: egui::TexturesDelta::default(),
         })
-    }
-
-    /// True if the graphics device is a software driver, so that the processor draws.
-    pub(super) fn is_software(&self) -> bool {
-        self.software
     }
 
     /// Largest side that egui's font textures may have on this graphics device, pixels.

@@ -112,11 +112,6 @@ impl Observables {
         [bond_work, model_residual, drive_energy, border_work].iter().any(|some| some.is_some())
     }
 
-    /// True if the step was solved under a friction model other than Coulomb friction.
-    pub fn is_of_a_model(&self) -> bool {
-        self.step > 0 && self.model_residual.is_some_and(|left| left != self.residual)
-    }
-
     /// Replaces missing columns by NaN, so that rows with and without these columns fit in one table.
     pub fn with_further_columns(self) -> Self {
         let number = |value: Option<f64>| Some(value.unwrap_or(f64::NAN));

@@ -74,7 +74,7 @@ settings! {
     #[serde(default)]
     pub struct SolverSettings, changes SolverChanges, heading "Solver" {
         method: Method = Method::Auto, "solver" ("NAME"), "Solver of each step", {
-            control: shown("Method", "The solver that finds the impulses of a step."),
+            control: shown("Solver", "The solver that finds the impulses of a step."),
         }
         #[serde(skip_serializing_if = "is_default")]
         ordering: Ordering = Ordering::Interleaved, "ordering" ("ORDER"),

@@ -267,46 +267,6 @@ pub const STEP_COLUMNS: &[ColumnSpec<Observables>] = table_columns! { step and t
     "lost_grains", "", Count(row.lost_grains.into()), "grains that went through a wall or left the world";
 };
 
-/// A quantity that is measured in every step, with its column in the table of steps.
-pub struct Observed(&'static ColumnSpec<Observables>);
-
-impl Observed {
-    /// Returns all quantities that are measured in every step.
-    pub fn all() -> impl Iterator<Item = Self> {
-        STEP_COLUMNS.iter().map(Self)
-    }
-
-    /// Returns the measured quantity whose column has the given name; `None` if there is no such column.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::all().find(|observed| observed.0.name == name)
-    }
-
-    /// Returns the name of the quantity's column in tables.
-    pub fn name(&self) -> &'static str {
-        self.0.name
-    }
-
-    /// Returns name and unit for a label, such as `kinetic energy (J)`.
-    pub fn title(&self) -> String {
-        let name = self.0.name.replace('_', " ");
-        match self.0.unit {
-            "" | "1" => name,
-            unit => format!("{name} ({unit})"),
-        }
-    }
-
-    /// Returns the description of the quantity, in a few words.
-    pub fn about(&self) -> &'static str {
-        self.0.about
-    }
-
-    /// Returns the value of the quantity in a row of the table of steps (true is 1 and false is 0); `None` if the row
-    /// has no value.
-    pub fn of(&self, row: &Observables) -> Option<f64> {
-        self.0.value.number(row)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -22,7 +22,7 @@ mod vtk;
 mod walls;
 
 pub use crate::scene::{DataSettings, FormatName};
-pub use columns::{Observed, STEP_COLUMNS};
+pub use columns::STEP_COLUMNS;
 pub use format::{Frame, RecordingMark, RunFacts};
 pub use formats::{DEFAULT_FORMAT, check_format, formats_of};
 pub use reading::{RecordedGrains, grains_of, parse_grains, read_grains};
