@@ -59,8 +59,8 @@ pub(super) const PAPER: Budget = Budget {
 /// Preset of the default solver: Newton's method, which tries to solve each step under Coulomb friction.
 pub(super) const SOLVED: Budget = Budget {
     name: "Solved",
-    hint: "Newton's method tries to solve each step under Coulomb friction. If it does not solve a step of a \
-           flowing pile, conjugate gradients make 400 sweeps, and the window shows the remaining error.",
+    hint: "Newton's method tries to solve each step under Coulomb friction. In a large flowing pile it \
+           makes 400 over-relaxed sweeps per step instead, and the window shows the remaining error.",
     settings: SolverSettings::DEFAULT,
 };
 

@@ -356,7 +356,7 @@ fn tell_of_picked_method(scene: &Scene, simulation: &Simulation) {
         let contacts = simulation.contacts().contacts().len();
         let method = simulation.picked_method();
         let of_flowing = match method == Method::Newton && contacts >= CONTACTS_THAT_FLOW {
-            true => ", and nncg for steps in which the pile flows",
+            true => ", and over-relaxed sweeps for steps in which the pile flows",
             false => "",
         };
         note_line(format_args!("auto took {method} for {contacts} contacts{of_flowing}"));

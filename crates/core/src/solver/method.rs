@@ -17,8 +17,8 @@ words! {
         InteriorPoint = "interior-point",
             "interior point with sparse factorisation: convex friction models to any tolerance";
         Auto = "auto",
-            "newton under Coulomb's law, but nncg while a large pile flows; interior-point under convex friction \
-                models";
+            "newton under Coulomb's law, but over-relaxed sweeps while a large pile flows; interior-point under convex \
+                friction models";
     }
 }
 

@@ -13,7 +13,7 @@ use crate::number;
 use crate::sim::{ProblemVisitor, Simulation};
 use crate::solver::{
     Memory, Model, Solution, SolutionSearch, SolverSettings, StepProblem, distance_to_velocities,
-    solve, velocities, velocity_error, worst,
+    measure, solve, velocities, velocity_error, worst,
 };
 
 /// Least number of times that a solve of a step is timed, unless it takes longer than [`LONG_SOLVE_SECS`]. The shortest
@@ -96,6 +96,10 @@ pub(super) struct TimedSolve {
     /// gravity g and mean diameter d.
     #[serde(with = "number")]
     pub error: f64,
+    /// Velocity error against Coulomb friction that a run reports for this solve, in units of √(g d), with gravity g
+    /// and mean diameter d.
+    #[serde(with = "number")]
+    pub reported: f64,
 }
 
 /// Computing times and errors of one solver method on one step, by increasing number of sweeps.
@@ -142,7 +146,12 @@ impl SolveTimer<'_> {
 
     fn effort<M: Model>(&self, problem: &StepProblem<M>, sweeps: u32) -> (TimedSolve, bool) {
         let settings = self.variant.sweeps(sweeps);
-        let mut effort = TimedSolve { sweeps, secs: f64::INFINITY, error: f64::NAN };
+        let mut effort = TimedSolve {
+            sweeps,
+            secs: f64::INFINITY,
+            error: f64::NAN,
+            reported: f64::NAN,
+        };
         let (mut sum_secs, mut has_ended) = (0.0, false);
         for repeat in 0..MOST_REPEATS {
             if repeat >= LEAST_REPEATS && sum_secs > ENOUGH_SECS {
@@ -153,6 +162,7 @@ impl SolveTimer<'_> {
             if repeat == 0 {
                 has_ended = ended < sweeps;
                 effort.error = self.error(&solved);
+                effort.reported = measure(&solved).velocity_error / velocity_error(&solved).scale;
             }
             sum_secs += secs;
             if secs > LONG_SOLVE_SECS {

@@ -6,14 +6,15 @@ use serde::{Deserialize, Serialize};
 use super::collection::{CollectionPlan, over_steps};
 use super::performance::{Timing, geometric_mean, share_solved, speed_ratio};
 use super::solves::{
-    LEAST_REPEATS, LONG_SOLVE_SECS, ReferenceSearch, References, SolveTimer, TimedSolves,
+    LEAST_REPEATS, LONG_SOLVE_SECS, ReferenceSearch, References, SolveTimer, TimedSolve,
+    TimedSolves,
 };
 use super::variants::{self, Family};
 use super::{Bench, ChartSection};
 use crate::chart::{Axis, Chart, Layer, Look, MapCell, Rgb, Sheet, pareto_front, points};
 use crate::error::Result;
 use crate::harness::{Change, Effort, ReportTable, Threads};
-use crate::solver::{FrictionModel, Method, Ordering, SolutionSearch};
+use crate::solver::{FrictionModel, Method, Ordering, SolutionSearch, worst};
 use crate::world::RESTITUTION_THRESHOLD;
 
 /// Errors of the velocities, in units of √(g d), with gravity g and mean diameter d. The report says how long each
@@ -138,7 +139,7 @@ impl CollectionTimer {
             name: name.to_owned(),
             sheet: errors_sheet(bench, all),
             words: words(all),
-            tables: vec![summary(name, all), efforts(name, all)],
+            tables: vec![reported(name, all), summary(name, all), efforts(name, all)],
         }
     }
 }
@@ -251,6 +252,33 @@ fn words(all: &[TimedCollection]) -> String {
     lines.join("\n")
 }
 
+/// Returns a table with one row per collection of steps: the error of the default solver beside the error that a run
+/// reports for it, as medians and largest values over the steps, and in how many steps the reported error is too small.
+fn reported(name: &str, all: &[TimedCollection]) -> ReportTable {
+    let columns = "collection median_error median_reported largest_error largest_reported steps_reported_too_small";
+    let row = |timed: &TimedCollection| {
+        let number = timed.variants.iter().position(Change::is_default);
+        let solves = timed.steps.iter().filter_map(|step| step.solves[number?].0.last());
+        let of = |value: fn(&TimedSolve) -> f64| solves.clone().map(value).collect::<Vec<f64>>();
+        let [errors, reported] = [of(|solve| solve.error), of(|solve| solve.reported)];
+        // An error below the error of the known solutions says nothing.
+        let floors = timed.steps.iter().map(|step| step.references.told);
+        let too_small = errors.iter().zip(&reported).zip(floors);
+        let too_small = too_small.filter(|((error, told), floor)| *error > floor && *told < *error);
+        let too_small = too_small.count();
+        let mut row = vec![timed.title.clone()];
+        let largest = |values: &[f64]| values.iter().copied().fold(0.0, worst);
+        for number in
+            [median(errors.clone()), median(reported.clone()), largest(&errors), largest(&reported)]
+        {
+            row.push(format!("{number:.1e}"));
+        }
+        row.push(too_small.to_string());
+        row
+    };
+    ReportTable::new(format!("{name}-reported"), columns, all.iter().map(row))
+}
+
 /// Returns a table with one row per collection of steps, error and solver variant: the fraction of the steps in which
 /// the variant reaches the error, its mean time to reach it, and its speed relative to Gauss–Seidel.
 fn summary(name: &str, all: &[TimedCollection]) -> ReportTable {
@@ -302,13 +330,13 @@ fn efforts(name: &str, all: &[TimedCollection]) -> ReportTable {
 
 #[cfg(test)]
 mod tests {
-    use super::super::solves::TimedSolve;
     use super::*;
 
     #[test]
     fn a_front_takes_the_best_of_a_family_and_a_solve_that_ended_stays_as_good() {
         let solves = |efforts: &[(f64, f64)]| {
-            let effort = |&(secs, error): &(f64, f64)| TimedSolve { sweeps: 1, secs, error };
+            let effort =
+                |&(secs, error): &(f64, f64)| TimedSolve { sweeps: 1, secs, error, reported: 0.0 };
             TimedSolves(efforts.iter().map(effort).collect())
         };
         let variants = vec![variants::of_method(Method::Nsgs), variants::of_method(Method::Jacobi)];

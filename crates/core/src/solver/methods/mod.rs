@@ -14,6 +14,7 @@ mod nncg;
 mod nonlinear_elimination;
 mod nsgs;
 mod nsgs_parallel;
+mod over_relaxed;
 mod pass;
 #[cfg(test)]
 mod random_problem;

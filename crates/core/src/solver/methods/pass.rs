@@ -125,10 +125,10 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
     let fixed_count = first_pair.min(rolling.len());
     let (rolling_fixed, rolling_pairs) = rolling.split_at_mut(fixed_count);
     let law_of = |number| if P::TAKES_PAIRS { law_of_row(own_numbers, number, &law) } else { law };
-    let project = |number: usize| {
+    let project = |number: usize, before: [f64; 2]| {
         let lagged = if P::LAGS { lagged[number] } else { 0.0 };
         let law = law_of(number);
-        move |trial| P::project::<M>(&law, lagged, trial)
+        move |trial| P::project::<M>(&law, lagged, relaxed::<P>(before, trial))
     };
     let mut change = ImpulseChange::default();
     let mut solve_fixed =
@@ -136,10 +136,10 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
             if DRIVEN && let Some(known) = walls.driven_row(number).copied() {
                 let wall = &mut walls.driven[known.by.wall as usize];
                 let i = &mut bodies[row.i as usize];
-                let impulse = solve_driven(project(number), row, &known, i, wall);
+                let impulse = solve_driven(project(number, [0.0; 2]), row, &known, i, wall);
                 ImpulseChange::add::<M, MEASURE>(change, row.effective_mass, impulse);
             } else {
-                row.solve::<MEASURE>(bodies, change, project(number));
+                row.solve::<MEASURE>(bodies, change, project(number, row.impulse()));
             }
             if M::ROLLING
                 && let Some(rolling) = rolling_fixed.get_mut(number)
@@ -157,7 +157,8 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
     };
     if backward {
         for (number, row) in pairs.iter_mut().enumerate().rev() {
-            row.solve::<MEASURE>(bodies, &mut change, project(first_pair + number));
+            let project = project(first_pair + number, row.impulse());
+            row.solve::<MEASURE>(bodies, &mut change, project);
             roll_pair(number, row, bodies, &mut change);
         }
         for (number, row) in fixed.iter_mut().enumerate().rev() {
@@ -168,7 +169,8 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
             solve_fixed(number, row, bodies, &mut change);
         }
         for (number, row) in pairs.iter_mut().enumerate() {
-            row.solve::<MEASURE>(bodies, &mut change, project(first_pair + number));
+            let project = project(first_pair + number, row.impulse());
+            row.solve::<MEASURE>(bodies, &mut change, project);
             roll_pair(number, row, bodies, &mut change);
         }
     }
@@ -176,6 +178,16 @@ fn pass<M: Model, P: FrictionProjection, const MEASURE: bool, const DRIVEN: bool
         problem.tell_of_walls();
     }
     change
+}
+
+/// Returns trial impulses that are over-relaxed: from the present impulses `before` they are as far as the impulses
+/// `trial` times the relaxation factor of the projection.
+#[inline(always)]
+fn relaxed<P: FrictionProjection>(before: [f64; 2], trial: [f64; 2]) -> [f64; 2] {
+    if P::RELAXATION == 1.0 {
+        return trial;
+    }
+    [0, 1].map(|axis| before[axis] + P::RELAXATION * (trial[axis] - before[axis]))
 }
 
 /// Solves the contact of a grain with a wall that a force drives. Returns the change of the normal and tangential

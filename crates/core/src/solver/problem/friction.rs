@@ -53,6 +53,8 @@ pub(crate) trait FrictionProjection: Sized {
     const TAKES_PAIRS: bool = false;
     /// True if sweeps with this projection support walls that a force drives.
     const TAKES_DRIVES: bool = true;
+    /// Factor by which a sweep multiplies the change from a contact's present impulses to its trial impulses.
+    const RELAXATION: f64 = 1.0;
 
     /// Returns the impulses to which the friction model changes the given impulses `trial`. Both are pairs (σ, λ_t) of
     /// the normal impulse plus cohesion impulse σ and the tangential impulse λ_t, divided by the effective mass, m/s.

@@ -1,0 +1,63 @@
+//! Over-relaxed Gauss–Seidel sweeps (D. M. Young, *Iterative solution of large linear systems*, 1971), for flowing piles.
+//!
+//! A sweep replaces the impulses of a contact by the projection of its trial impulses (`methods::sweep`). An over-relaxed
+//! sweep first multiplies the difference between the trial impulses and the present impulses by a factor ω between 1 and
+//! 2. A fixed point of the sweep does not depend on ω, so over-relaxed sweeps solve the same contact law. Of a large
+//! pile's error, plain sweeps reduce the parts that many grains share slowly, and over-relaxed sweeps reduce them
+//! faster. But over-relaxed sweeps let single sliding contacts oscillate, so plain sweeps follow.
+
+use super::pass::{sweep, sweep_by, tested_sweep};
+use super::stopping::{SolveReport, sweep_until_settled};
+use crate::contact::ContactLaw;
+use crate::solver::kinematics::Model;
+use crate::solver::problem::{CoulombFriction, FrictionProjection, StepProblem, residual};
+use crate::solver::settings::SolverSettings;
+
+/// Interval of the stopping tests, in sweeps. A tested sweep is plain. With a larger interval fewer tests are made, but a
+/// solve performs up to this many unnecessary sweeps.
+const TEST_INTERVAL: u32 = 16;
+
+/// Fraction of the sweeps of a solve that are plain, at its end: a quarter. Without plain sweeps, the largest velocity
+/// error reported in 300 steps of 2,000 flowing grains is 17 times as large.
+const PLAIN_AT_END: u32 = 4;
+
+/// The projection of Coulomb's law with over-relaxed changes of the impulses. It does not support walls that a force
+/// drives.
+enum OverRelaxed<const ALL_RUBS: bool> {}
+
+impl<const ALL_RUBS: bool> FrictionProjection for OverRelaxed<ALL_RUBS> {
+    const LAGS: bool = CoulombFriction::<ALL_RUBS>::LAGS;
+    const TAKES_PAIRS: bool = CoulombFriction::<ALL_RUBS>::TAKES_PAIRS;
+    const TAKES_DRIVES: bool = false;
+    // With 1.4 and 1.5, the reported velocity error of 2,000 flowing grains after 400 sweeps is 1.3 and 1.1 times as
+    // large in the median; with 1.8 it is 0.85 times as large, but larger in the worst steps.
+    const RELAXATION: f64 = 1.6;
+
+    #[inline(always)]
+    fn project<M: Model>(law: &ContactLaw, lagged: f64, trial: [f64; 2]) -> [f64; 2] {
+        CoulombFriction::<ALL_RUBS>::project::<M>(law, lagged, trial)
+    }
+}
+
+/// Solves a problem under Coulomb's law by over-relaxed sweeps, and plain sweeps at the end. The problem must have no
+/// walls that a force drives.
+pub(super) fn solve<M: Model>(
+    problem: &mut StepProblem<M>,
+    settings: &SolverSettings,
+) -> SolveReport {
+    let first_plain = settings.max_sweeps - settings.max_sweeps / PLAIN_AT_END;
+    let one_sweep = |problem: &mut StepProblem<M>, sweeps: u32| {
+        if sweeps.is_multiple_of(TEST_INTERVAL) || sweeps == settings.max_sweeps {
+            return tested_sweep(problem, settings);
+        }
+        if sweeps > first_plain {
+            sweep::<M, false>(problem);
+        } else if problem.has_one_simple_law() {
+            sweep_by::<M, OverRelaxed<true>, false>(problem, false);
+        } else {
+            sweep_by::<M, OverRelaxed<false>, false>(problem, false);
+        }
+        false
+    };
+    sweep_until_settled(problem, settings, one_sweep, |problem| residual(problem))
+}
