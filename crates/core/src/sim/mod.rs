@@ -16,7 +16,6 @@ mod settings;
 mod simulation;
 mod snapshot;
 mod state;
-mod step_times;
 mod steppers;
 mod stepping;
 mod surroundings;
@@ -38,6 +37,5 @@ pub use settings::{
 };
 pub use simulation::{ProblemVisitor, Simulation};
 pub use snapshot::{ContactView, GrainView, Snapshot, hash_of_bits};
-pub use step_times::StepTimes;
 pub use stepping::{Advance, BondEnergies, Stage, StepResult};
 pub use surroundings::{MotionView, Surroundings};

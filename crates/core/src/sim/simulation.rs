@@ -11,7 +11,6 @@ use crate::sim::alarm::{AlarmKind, Watch};
 use crate::sim::observables::{self, Observables};
 use crate::sim::settings::{Settings, Stepper};
 use crate::sim::state::{State, reach_in};
-use crate::sim::step_times::{StepTimes, Stopwatch};
 use crate::sim::steppers::StepperMemory;
 use crate::sim::stepping::{Advance, Stage, StepResult};
 use crate::sim::surroundings::Surroundings;
@@ -79,7 +78,6 @@ impl Simulation {
                 body_forces: Vec::new(),
                 is_held: false,
                 time_step_of_impulses_secs: settings.parameters.time_step_secs,
-                stopwatch: Stopwatch::default(),
             },
             settings,
             steady: Steady::default(),
@@ -111,20 +109,6 @@ impl Simulation {
         }
         self.memory = memory;
         self.look()
-    }
-
-    /// Takes one step exactly as [`Simulation::step`] does, and returns the computing times of contact detection, of
-    /// the solver and of the whole step. `clock` returns the time since an arbitrary fixed date, s.
-    ///
-    /// # Errors
-    /// The errors of [`Simulation::step`].
-    pub fn timed_step(&mut self, clock: fn() -> f64) -> Result<StepTimes> {
-        self.state.stopwatch = Stopwatch { clock: Some(clock), ..Stopwatch::default() };
-        let begun = clock();
-        let outcome = self.step().map(|_| ());
-        let total_secs = clock() - begun;
-        let times = std::mem::take(&mut self.state.stopwatch).times;
-        outcome.map(|()| StepTimes { total_secs, ..times })
     }
 
     /// Takes one step with your own stepper instead of the stepper of the settings.
@@ -457,40 +441,5 @@ impl Simulation {
         let is_hand = !state.is_held || !state.world.motions.is_empty();
         check(is_hand, "hand", "on no wall", "on the wall of the last motion")?;
         Ok(self)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::sync::atomic::{AtomicU32, Ordering};
-
-    use super::*;
-    use crate::scene::built_in;
-    use crate::sim::Stepper;
-
-    /// Clock for tests: each reading is 1 s later than the reading before.
-    fn looks() -> f64 {
-        static LOOKS: AtomicU32 = AtomicU32::new(0);
-        f64::from(LOOKS.fetch_add(1, Ordering::Relaxed))
-    }
-
-    #[test]
-    fn a_timed_step_is_the_step_and_its_parts_are_within_it() {
-        for &stepper in Stepper::ALL {
-            let mut scene = built_in("pile").unwrap();
-            scene.stepper = stepper;
-            let mut timed = scene.simulation().unwrap();
-            timed.take_steps(3).unwrap();
-            let mut untimed = timed.clone();
-            untimed.step().unwrap();
-            let times = timed.timed_step(looks).unwrap();
-            let name = stepper.name();
-            assert_eq!(timed.snapshot().state_hash(), untimed.snapshot().state_hash(), "{name}");
-            let StepTimes { detection_secs, solving_secs, total_secs } = times;
-            assert!(detection_secs > 0.0, "{name}: {times:?}");
-            assert_eq!(solving_secs > 0.0, stepper.uses_method(), "{name}: {times:?}");
-            assert!(detection_secs + solving_secs < total_secs, "{name}: {times:?}");
-            assert!(timed.state.stopwatch.clock.is_none(), "the next step is not timed");
-        }
     }
 }

@@ -8,7 +8,6 @@ use crate::contact::{Candidates, ContactList, LookAhead, PairLaws, Reach, check_
 use crate::error::{self, Error, Result};
 use crate::sim::pull::{Pull, Push};
 use crate::sim::settings::Settings;
-use crate::sim::step_times::Stopwatch;
 use crate::sim::walls::Walls;
 use crate::solver::{Model, ModelParts};
 use crate::world::{Parameters, Physics, World};
@@ -38,9 +37,6 @@ pub(crate) struct State {
     pub is_held: bool,
     /// Time step for which the impulses in `contacts` were computed, s.
     pub time_step_of_impulses_secs: f64,
-    /// Clock that measures the computing times of contact detection and solver; it runs only during a timed step.
-    #[serde(skip)]
-    pub stopwatch: Stopwatch,
 }
 
 impl State {
@@ -91,12 +87,10 @@ impl State {
     /// Finds the contacts at the present positions. If `ahead` is given, also adds pairs that may touch within the
     /// step.
     pub(crate) fn detect<M: Model>(&mut self, ahead: Option<LookAhead>) {
-        let begun = self.stopwatch.now();
         match M::AXES {
             1 => self.detect_on::<1>(ahead),
             _ => self.detect_on::<2>(ahead),
         }
-        self.stopwatch.times.detection_secs += self.stopwatch.now() - begun;
     }
 
     fn detect_on<const AXES: usize>(&mut self, ahead: Option<LookAhead>) {

@@ -203,17 +203,7 @@ impl<'a, M: Model> Stage<'a, M> {
     /// Solves the contact problem that [`Stage::prepare`] has set up, with the solver of the settings, and returns the
     /// solver's report.
     pub fn solve(&mut self, settings: &Settings) -> SolveReport {
-        self.timed(|stage| solve(stage.problem, stage.memory, &settings.solver))
-    }
-
-    /// Calls the closure `solving`, returns its result, and adds its computing time to the computing time of the solver
-    /// in this step.
-    pub(super) fn timed<T>(&mut self, solving: impl FnOnce(&mut Self) -> T) -> T {
-        let begun = self.state.stopwatch.now();
-        let outcome = solving(self);
-        let stopwatch = &mut self.state.stopwatch;
-        stopwatch.times.solving_secs += stopwatch.now() - begun;
-        outcome
+        solve(self.problem, self.memory, &settings.solver)
     }
 
     /// Moves the grains by one time step Δt with the velocities of the solved problem, and stores the impulses in the

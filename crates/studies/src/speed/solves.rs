@@ -146,12 +146,8 @@ impl SolveTimer<'_> {
 
     fn effort<M: Model>(&self, problem: &StepProblem<M>, sweeps: u32) -> (TimedSolve, bool) {
         let settings = self.variant.sweeps(sweeps);
-        let mut effort = TimedSolve {
-            sweeps,
-            secs: f64::INFINITY,
-            error: f64::NAN,
-            reported: f64::NAN,
-        };
+        let mut effort =
+            TimedSolve { sweeps, secs: f64::INFINITY, error: f64::NAN, reported: f64::NAN };
         let (mut sum_secs, mut has_ended) = (0.0, false);
         for repeat in 0..MOST_REPEATS {
             if repeat >= LEAST_REPEATS && sum_secs > ENOUGH_SECS {

@@ -172,7 +172,7 @@ fn try_step<M: Model>(
     memory: &mut RangeMemory,
     may_break: bool,
 ) -> Result<StepResult, SolveReport> {
-    let mut result = stage.timed(|stage| solve_range(stage, memory, settings, may_break))?;
+    let mut result = solve_range(stage, memory, settings, may_break)?;
     let bonds = result.bonds.take();
     result.add(StepResult { bonds, ..stage.move_by(SolveReport::nothing_yet(), settings) });
     memory.shocks.shift(&mut stage.state.world);
