@@ -15,6 +15,8 @@ const PACES: [f64; 7] = [0.01, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0];
 
 /// Smallest width of a main slider (for Bond, Δt, ρ or μ) with its number, points.
 const LEAST_WIDTH: f32 = 150.0;
+/// Space between two main sliders, points. With less space, a unit seems to belong to the next slider.
+const SLIDER_GAP: f32 = 16.0;
 
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.add_enabled_ui(context.run.is_ready(), |ui| {
@@ -161,9 +163,11 @@ fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
     };
     controls.retain(|about| shown.contains(&about.name));
     let columns = ((ui.available_width() / LEAST_WIDTH) as usize).clamp(1, shown.len());
+    let spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing.x, SLIDER_GAP);
     for row in controls.chunks(columns) {
         ui.columns(columns, |columns| {
             for (ui, about) in columns.iter_mut().zip(row) {
+                ui.spacing_mut().item_spacing.x = spacing;
                 if let (Some(rect), Some(control)) = (
                     setting_control::show(ui, about, &mut settings, start.settings()),
                     about.control,
@@ -173,6 +177,7 @@ fn sliders(ui: &mut Ui, context: &mut PanelContext<'_>) {
             }
         });
     }
+    ui.spacing_mut().item_spacing.x = spacing;
     match settings != before {
         true if context.preferences.starts_again => context.run.draft = Some((index, settings)),
         true => {

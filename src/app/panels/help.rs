@@ -51,7 +51,7 @@ pub(super) fn show(ui: &mut Ui, is_open: &mut bool) {
     egui::Window::new("Help")
         .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
         .collapsible(false)
-        .resizable(false)
+        .auto_sized()
         .open(is_open)
         .show(ui.ctx(), |ui| {
             ui.set_max_width(440.0);

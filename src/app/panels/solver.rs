@@ -93,7 +93,8 @@ fn friction_controls(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
 /// Shows the switches of the remedies (corrections of known weaknesses of a step). Remedies that the stepper does not
 /// support are disabled.
 fn remedy_boxes(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
-    for (about, remedy) in Remedies::ABOUT.iter().zip(&REMEDIES) {
+    let all = Remedies::ABOUT.iter().zip(&REMEDIES);
+    for (about, remedy) in all.filter(|(about, _)| about.control.is_some()) {
         let taken = remedy.taken_by.contains(&settings.stepper);
         ui.add_enabled_ui(taken, |ui| setting_control::show(ui, about, settings, start))
             .response
