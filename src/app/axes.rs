@@ -11,7 +11,8 @@ const LEAST_SPAN: f64 = 1e-3;
 /// Smallest length of a logarithmic axis, in decades. An axis of two decades always contains at least two powers of
 /// ten, at which it has labels.
 const LEAST_DECADES: f64 = 2.0;
-/// Returns an empty plot in the common style of all plots in the window. The mouse wheel does not zoom the plot.
+/// Returns an empty plot in the common style of all plots in the window, with round numbers along its x axis. The mouse
+/// wheel does not zoom the plot.
 pub(super) fn bare_plot<'a>(
     ui: &Ui,
     id: impl std::hash::Hash + std::fmt::Debug,
@@ -23,6 +24,8 @@ pub(super) fn bare_plot<'a>(
         // egui would fill the background on the processor, pixel by pixel; `fill` uses the GPU.
         .show_background(false)
         .grid_color(ui.visuals().widgets.noninteractive.bg_stroke.color)
+        .x_grid_spacer(|grid| round_marks(grid, false))
+        .custom_x_axes(vec![axis(AxisHints::new_x(), false, "")])
 }
 
 /// Returns an empty plot with numbered axes; the x axis has the unit `x_unit`. `log` states which axes (x, y) are
@@ -88,7 +91,7 @@ fn round_marks(grid: GridInput, log: bool) -> Vec<GridMark> {
 fn axis(hints: AxisHints<'static>, log: bool, unit: &'static str) -> AxisHints<'static> {
     hints.label_spacing(10.0..=18.0).formatter(move |mark, _| {
         if log && unit.is_empty() {
-            return format!("1e{}", mark.value);
+            return format!("1e{}", mark.value).replace('-', "−");
         }
         if log {
             return format!("{}{unit}", 10f64.powf(mark.value));
