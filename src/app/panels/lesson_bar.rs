@@ -70,7 +70,7 @@ impl LessonBar {
             return;
         }
         let hint =
-            "End the lessons; the worlds stay. They go on here when they are taken up again.";
+            "Leave the lessons. The worlds stay, and the list Lessons opens this lesson again.";
         let leave = ui.button("Leave").on_hover_text(hint);
         context.note_control("leave lessons", leave.rect);
         if leave.clicked() {
@@ -245,8 +245,8 @@ pub(super) fn light(ui: &Ui, context: &PanelContext<'_>) {
 }
 
 /// Text that replaces the texts of a lesson when the user has changed its simulations.
-const OTHER_WORLDS: &str = "A number was changed: these are no longer the worlds of the lesson. The list above has \
-    it as it was.";
+const OTHER_WORLDS: &str = "A number was changed: these are no longer the worlds of the lesson. To restore them, \
+    choose the lesson in the list above.";
 
 /// Shows the list from which the user chooses a lesson; the present lesson is marked.
 fn list(ui: &mut Ui, context: &mut PanelContext<'_>, at: usize) {

@@ -9,7 +9,7 @@ use super::{compare, data, grabbing, grain, physics, plots, run, see, solver, sp
 use crate::app::IN_BROWSER;
 use crate::app::context::PanelContext;
 use crate::app::page::Page;
-use crate::scene::SceneGroup;
+use crate::scene::{SceneGroup, SceneInfo};
 
 /// The state of the panels on the pages of the sidebar.
 #[derive(Default)]
@@ -83,7 +83,9 @@ impl Pages {
         let label = ui.label(SceneGroup::Stability.hint()).on_hover_text(hint);
         let current = context.run.config().named().to_owned();
         let groups = [SceneGroup::Stability];
-        let list = self.gallery.show(ui, context, &current, &groups).labelled_by(label.id);
+        let is_hard = SceneInfo::named(&current).is_some_and(|info| groups.contains(&info.group));
+        let shown = if is_hard { &current } else { "choose a scene" };
+        let list = self.gallery.show(ui, context, shown, &groups).labelled_by(label.id);
         context.note_control("hard scenes", list.rect);
         compare::method_presets(ui, context.run);
         if IN_BROWSER {

@@ -35,8 +35,12 @@ pub(super) fn show(ui: &mut Ui, run: &WatchedRun) {
                 let text = format!("{number}unknown, because a parameter of the law was changed.");
                 ui.label(RichText::new(text).weak());
             } else if let Some(verdict) = challenge.verdict(&start.simulation, &world.snapshot) {
-                let (name, error) = (verdict.name, compact(verdict.error));
-                let text = format!("{number}{name} {error} (at most {})", compact(verdict.limit));
+                let written = |value: f64| match value.fract() == 0.0 && value.abs() < 1e4 {
+                    true => value.to_string(),
+                    false => compact(value),
+                };
+                let [error, limit] = [verdict.error, verdict.limit].map(written);
+                let text = format!("{number}{}: {error} (at most {limit})", verdict.name);
                 ui.label(marked(ui, verdict.is_right(), &text));
             }
         }

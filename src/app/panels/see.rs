@@ -132,7 +132,8 @@ fn films(ui: &mut Ui, context: &mut PanelContext<'_>) {
         let [least, most] = VIDEO_RATES_HZ;
         let rate = egui::DragValue::new(&mut context.preferences.video_rate_hz).range(least..=most);
         ui.add(rate.max_decimals(3).suffix(" /s")).labelled_by(label.id);
-        let pace = format!("at the pace of the window, {}×", context.preferences.speed);
+        let of = if context.preferences.full_speed { "before max" } else { "of the window" };
+        let pace = format!("at the pace {of}, {}×", context.preferences.speed);
         ui.label(RichText::new(pace).weak());
     });
     ui.horizontal(|ui| {
