@@ -31,8 +31,9 @@ const SEARCH: SolutionSearch =
 /// Ways to make sweeps.
 #[derive(Clone, Copy)]
 enum Way {
-    /// Over-relaxed with factors for normal and tangential updates; 1 is plain.
-    Relaxed([f64; 2]),
+    /// Over-relaxed with factors for normal and tangential updates; 1 is plain. Without the last quarter, which is
+    /// plain, if `then_plain` is set.
+    Relaxed { factors: [f64; 2], then_plain: bool },
     /// s_k = G(y_k), y_{k+1} = s_k + β (s_k − s_{k−1}) with Nesterov's β, which restarts if the sweep G(y_k) − y_k goes
     /// against s_{k−1} − s_{k−2}. The extrapolation is not optimised.
     Nesterov,
@@ -41,10 +42,10 @@ enum Way {
 }
 
 const WAYS: [(&str, Way); 6] = [
-    ("plain", Way::Relaxed([1.0; 2])),
-    ("over-relaxed 1.3", Way::Relaxed([1.3; 2])),
-    ("over-relaxed 1.6", Way::Relaxed([1.6; 2])),
-    ("over-relaxed 1.8, tangential 1.4", Way::Relaxed([1.8, 1.4])),
+    ("plain", Way::Relaxed { factors: [1.0; 2], then_plain: false }),
+    ("over-relaxed 1.6", Way::Relaxed { factors: [1.6; 2], then_plain: false }),
+    ("over-relaxed 1.6, then plain", Way::Relaxed { factors: [1.6; 2], then_plain: true }),
+    ("over-relaxed 1.8, then plain", Way::Relaxed { factors: [1.8; 2], then_plain: true }),
     ("Nesterov", Way::Nesterov),
     ("symmetric", Way::Symmetric),
 ];
@@ -92,7 +93,10 @@ fn sweep_by<M: Model>(problem: &mut StepProblem<M>, way: Way, sweeps: u32) {
     let mut theta: f64 = 1.0;
     for number in 0..sweeps {
         match way {
-            Way::Relaxed(w) => sweep(problem, w, false),
+            Way::Relaxed { then_plain: true, .. } if number >= sweeps - sweeps / 4 => {
+                sweep(problem, [1.0; 2], false);
+            }
+            Way::Relaxed { factors, .. } => sweep(problem, factors, false),
             Way::Symmetric => sweep(problem, [1.0; 2], number % 2 == 1),
             Way::Nesterov => {
                 let mut system = BodySystem::new(problem);

@@ -54,9 +54,9 @@ const SLIDING_SPEED: f64 = 0.02;
 /// error at 2,000 flowing grains is 1.5 times as large and the time a tenth shorter.
 const SWEEPS_AFTER: u32 = 400;
 
-/// Maximum number of over-relaxed sweeps of a flowing pile. With 200 sweeps, the reported velocity error of 2,000
-/// grains is 1.4 to 1.8 times as large in the median. Conjugate gradients with 400 sweeps report about the same error
-/// at 500 to 10,000 grains, and a run with them takes 1.3 to 1.9 times as long.
+/// Maximum number of sweeps of a flowing pile, three quarters of them over-relaxed. With 200 sweeps, the reported
+/// velocity error is 1.3 to 1.8 times as large in the median at 500 to 2,000 grains. Conjugate gradients with 400 sweeps
+/// report 1.0 to 1.5 times this error at 500 to 10,000 grains, and a run with them takes 1.3 to 1.9 times as long.
 const SWEEPS_OF_FLOWING: u32 = 400;
 
 /// Maximum number of sweeps of conjugate gradients if a force drives a wall. A larger maximum does not solve every
