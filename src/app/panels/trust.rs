@@ -280,14 +280,17 @@ fn bar(ui: &mut Ui, effect: &BudgetEffect, within: f64, reach: f64) {
         effect;
     let response = ui.horizontal(|ui| {
         let name = Label::new(RichText::new(changed).small()).truncate();
-        ui.add_sized(vec2(NAMES, ROW), name);
+        ui.allocate_ui_with_layout(vec2(NAMES, ROW), Layout::left_to_right(Align::Center), |ui| {
+            ui.set_min_size(vec2(NAMES, ROW));
+            ui.add(name);
+        });
         let (area, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
         let at = |value: f64| {
             let part = (value.clamp(-reach, reach) / reach) as f32;
             area.center().x + 0.5 * area.width() * part
         };
         let (painter, y) = (ui.painter(), area.center().y);
-        let grey = Stroke::new(1.0, ui.visuals().weak_text_color());
+        let grey = Stroke::new(1.0, Color32::GRAY);
         for end in [-within, within] {
             painter.vline(at(end), area.y_range(), grey);
         }
@@ -322,7 +325,8 @@ fn solved(world: &WorldFrame) -> Vec<String> {
     }
     let off = format!(
         "velocities of the last one are off by some {} mm/s",
-        compact(1e3 * last.velocity_error)
+        // Rounded up, because 0.000 would mean that there is no error.
+        compact((1e6 * last.velocity_error).ceil() / 1e3)
     );
     let Settings { parameters, solver, .. } = &world.controls.settings;
     if *solver == FAST.among(&world.snapshot.surroundings, parameters) {
