@@ -392,3 +392,14 @@ fn begin(ui: &Ui, context: &PanelContext<'_>, of: String, config: Config) -> Run
     });
     RunBudget { of, told, work: Some(work), failure: None }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_step_was_and_two_steps_were_not_solved() {
+        assert_eq!(unsolved_text(1, 200), "1 of 200 steps was not solved");
+        assert_eq!(unsolved_text(2, 200), "2 of 200 steps were not solved");
+    }
+}
