@@ -124,8 +124,8 @@ impl QuantityBudget {
             );
         }
         format!(
-            "The {quantity} is {value} over {starts} starts that differ by 1e-9 d; single starts scatter by {scatter}: the \
-             scene is chaotic."
+            "The {quantity} is {value} over {starts} starts that differ by 1e-9 d; single starts scatter by {scatter}: \
+             the scene is chaotic."
         )
     }
 
