@@ -124,8 +124,8 @@ impl QuantityBudget {
             );
         }
         format!(
-            "The {quantity} is {value} over {starts} starts that differ by 1e-9 d; single starts scatter by {scatter}: \
-             the scene is chaotic."
+            "The {quantity} is {value} over {starts} starts that differ by 1e-9 d; single starts scatter by \
+             {scatter}: the scene is chaotic."
         )
     }
 
@@ -158,8 +158,8 @@ impl QuantityBudget {
     }
 
     /// Returns one sentence for each significant effect, the largest effect first; one sentence for all other effects;
-    /// and one sentence for each reason why effects are not known. Before the end of the computation, effects that still
-    /// need runs are left out.
+    /// and one sentence for each reason why effects are not known. Before the end of the computation, effects that
+    /// still need runs are left out.
     fn of_causes(&self, ended: BudgetEnd) -> Vec<String> {
         let (mut seen, mut unseen) = (Vec::new(), Vec::new());
         let mut missing: Vec<(&str, Vec<String>)> = Vec::new();
