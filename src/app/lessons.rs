@@ -175,9 +175,9 @@ pub const LESSONS: [Lesson; 7] = [
     Lesson {
         title: "The solver's part",
         watch: "The same step of 5 ms, computed in three ways: by 5 sweeps of nsgs over all contacts, by 40 sweeps, and by the \
-                default solver, whose error is small. The second plot shows the error of the velocities.",
+                solver Solved, whose error is small. The second plot shows the error of the velocities.",
         question: Some(Question {
-            text: "Five sweeps leave steps unsolved. Will that pile hold better or worse than the one of the default solver?",
+            text: "Five sweeps leave steps unsolved. Will that pile hold better or worse than the pile of Solved?",
             answers: ["better", "worse"],
             rows: predictions::last_rows,
             result: predictions::unsolved_steps,
@@ -243,11 +243,7 @@ pub const LESSONS: [Lesson; 7] = [
         scene: "mass-ratio",
         // The view shows the light disc, which would be too small to see next to the heavy disc.
         view: Some([DVec2::new(-1.3, -0.3), DVec2::new(1.3, 1.4)]),
-        worlds: |base| {
-            let solver = SolverSettings::to_residual(Method::Newton, 1e-6, 100);
-            let base = Settings { solver, ..base };
-            vec![sweeps(base, 10), base]
-        },
+        worlds: |base| vec![sweeps(base, 10), Settings { solver: SolverSettings::DEFAULT, ..base }],
         plots: &["overlap"],
         sliders: &["dt"],
         ..PILE

@@ -89,8 +89,9 @@ pub(super) fn draw(ui: &mut Ui, data: &PlotData) -> Option<f64> {
 
 fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Option<f64> {
     let (title, factor) = title(data, quantity);
-    let label = ui.add(Label::new(RichText::new(&title).small()).truncate());
-    explained(label, &title);
+    let label = Label::new(RichText::new(&title).small()).truncate();
+    // A line of the height of a button, as above the plot of slump against Δt.
+    explained(ui.horizontal(|ui| ui.add(label)).inner, &title);
     let log = quantity.logarithmic;
     let group = egui::Id::unique("time");
     let until_secs = end_secs(data);

@@ -68,7 +68,7 @@ pub(super) fn rows_around_change(frame: &LiveFrame) -> Option<Vec<Observables>> 
 pub(super) fn two_time_steps(rows: &[Observables]) -> Option<(usize, String)> {
     let [short, long] = rows else { return None };
     let text = format!(
-        "With {} the pile slumped by {:.2}, with {} by {:.2}.",
+        "With {} the pile slumped by {:.3}, with {} by {:.3}.",
         millis_text(short.time_step_secs),
         short.slump,
         millis_text(long.time_step_secs),
@@ -96,7 +96,7 @@ pub(super) fn shorter_at_rest(rows: &[Observables]) -> Option<(usize, String)> {
 pub(super) fn unsolved_steps(rows: &[Observables]) -> Option<(usize, String)> {
     let [few, some, solved] = rows else { return None };
     let text = format!(
-        "The slump was {:.2} with 5 sweeps per step, {:.2} with 40 sweeps, and {:.2} with the default solver.",
+        "The slump was {:.3} with 5 sweeps per step, {:.3} with 40 sweeps, and {:.3} with Solved.",
         few.slump, some.slump, solved.slump
     );
     Some((usize::from(few.slump > solved.slump), text))
@@ -108,7 +108,7 @@ pub(super) fn two_laws(rows: &[Observables]) -> Option<(usize, String)> {
     let [short, long, range_short, range_long] = rows else { return None };
     let [rigid, range] = [short.slump - long.slump, range_short.slump - range_long.slump];
     let text = format!(
-        "From 0.1 ms to 5 ms the slump changed by {:.2} under moreau and by {:.2} under range.",
+        "From 0.1 ms to 5 ms the slump changed by {:.3} under moreau and by {:.3} under range.",
         rigid.abs(),
         range.abs()
     );
@@ -121,7 +121,7 @@ pub(super) fn two_laws(rows: &[Observables]) -> Option<(usize, String)> {
 pub(super) fn two_cones(rows: &[Observables]) -> Option<(usize, String)> {
     let [shifted, compressive] = rows else { return None };
     let [left, right] = [shifted.slump, compressive.slump];
-    let text = format!("The left pile slumped by {left:.2}, the right pile by {right:.2}.");
+    let text = format!("The left pile slumped by {left:.3}, the right pile by {right:.3}.");
     Some((usize::from(right > left), text))
 }
 
@@ -141,7 +141,7 @@ pub(super) fn ten_sweeps(rows: &[Observables]) -> Option<(usize, String)> {
 pub(super) fn own_pile(rows: &[Observables]) -> Option<(usize, String)> {
     let slump = rows.first()?.slump;
     let text = format!(
-        "Your pile slumped by {slump:.2}. Other piles with the same settings slump differently."
+        "Your pile slumped by {slump:.3}. Other piles with the same settings slump differently."
     );
     Some((usize::from(slump <= ASKED_SLUMP), text))
 }

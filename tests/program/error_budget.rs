@@ -139,7 +139,7 @@ fn a_scene_that_comes_to_nothing_has_no_number() {
     let said = answer(&out, &lost);
     assert!(
         said.contains(
-            "kinetic_energy has no value: of the scene as it is, 6 of 6 runs came to nothing"
+            "The kinetic_energy has no value: of the scene as it is, 6 of 6 runs came to nothing"
         ),
         "{said}"
     );

@@ -79,6 +79,8 @@ fn the_robust_button_pushes_the_overlap_out() {
     robot.clicks(&["Law, solver", "Robust"]);
     assert!(robot.settings().remedies.push_out);
     robot.key(egui::Key::ArrowRight);
+    let chosen = robot.harness.get_by_label("Robust").accesskit_node().toggled();
+    assert_eq!(chosen, Some(egui::accesskit::Toggled::True), "a preset like the other three");
     let before = robot.observables().max_overlap;
     for _ in 0..10 {
         robot.key(egui::Key::ArrowRight);

@@ -281,7 +281,11 @@ fn piles_of_every_size_begin_with_solved_steps_and_what_fast_leaves_is_told() {
             "A step gets 40 sweeps, solved or not: velocities of the last one are off by some"
         )
     );
-    assert!(robot.shows("With cohesion piles fall so that stand if they are solved"));
+    assert!(
+        robot.shows(
+            "With cohesion, piles can slump although they would not if each step were solved"
+        )
+    );
 }
 
 #[test]

@@ -294,11 +294,9 @@ fn said(summary: &EnsembleSummary, time_secs: f64) -> String {
     match (mean, summary.settling) {
         (Some(_), _) if time_secs == 0.0 => format!("other piles: {of} computed"),
         (Some((mean, half)), _) if half.is_finite() => {
-            // Half the width of the interval is shown with two digits, or with one digit if it is below 0.01.
-            let decimals = if half >= 0.1 { 2 } else { 3 };
-            format!("other piles {mean:.decimals$} ± {half:.decimals$} (n = {of})")
+            format!("other piles {mean:.3} ± {half:.3} (n = {of})")
         }
-        (Some((mean, _)), _) => format!("other piles {mean:.2} (n = {of})"),
+        (Some((mean, _)), _) => format!("other piles {mean:.3} (n = {of})"),
         (None, _) if count > 0 => "other piles end earlier".into(),
         (None, Some(number)) => {
             format!("other piles: making pile {number} of {}", summary.seeds.len())
@@ -349,9 +347,9 @@ mod tests {
     #[test]
     fn numbers_come_with_their_interval_and_how_many_piles_they_are_of() {
         // Tables: t(0.975; 2) = 4.302653, and the standard error of 0.2, 0.3, 0.4 is 0.1/√3.
-        assert_eq!(said(&told(&[0.2, 0.3, 0.4], None), 1.0), "other piles 0.30 ± 0.25 (n = 3)");
+        assert_eq!(said(&told(&[0.2, 0.3, 0.4], None), 1.0), "other piles 0.300 ± 0.248 (n = 3)");
         assert_eq!(said(&told(&[0.3, 0.3], None), 1.0), "other piles 0.300 ± 0.000 (n = 2 of 3)");
-        assert_eq!(said(&told(&[0.25], None), 1.0), "other piles 0.25 (n = 1 of 3)");
+        assert_eq!(said(&told(&[0.25], None), 1.0), "other piles 0.250 (n = 1 of 3)");
         assert_eq!(said(&told(&[], Some(2)), 0.0), "other piles: making pile 2 of 3");
         assert_eq!(said(&told(&[], None), 0.0), "other piles: none yet");
         assert_eq!(said(&told(&[0.25], None), 9.0), "other piles end earlier");

@@ -125,7 +125,7 @@ fn result_of_one(run: &WatchedRun) -> Option<String> {
     let is_one =
         run.has_ended() && run.slumps() && taken.all(|row| row.time_step_secs == time_step_secs);
     let step = millis_text(time_step_secs);
-    is_one.then(|| format!("Computed with {step} from the start, the pile slumped by {slump:.2}."))
+    is_one.then(|| format!("Computed with {step} from the start, the pile slumped by {slump:.3}."))
 }
 
 /// Shows the question of a lesson and its two answers or, when the run has decided the question, the result.

@@ -69,7 +69,9 @@ fn scene_box(ui: &mut Ui, context: &mut PanelContext<'_>, gallery: &mut Gallery)
         });
     });
     if let Some(info) = SCENES.iter().find(|info| info.name == current) {
-        ui.label(RichText::new(info.summary).small().weak());
+        // An equation is not broken at the end of a line.
+        let summary = info.summary.replace(" = ", "\u{a0}=\u{a0}");
+        ui.label(RichText::new(summary).small().weak());
     }
 }
 

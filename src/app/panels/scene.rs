@@ -181,7 +181,9 @@ impl WorldCell<'_> {
             let title = context.run.numbered_title(self.index);
             let font = FontId::proportional(13.0);
             painter.text(at + egui::vec2(14.0, 0.0), Align2::LEFT_CENTER, title, font, ink);
-            if let Some(others) = context.ensemble.said(&context.run.frame, self.index) {
+            let has_others = context.ensemble.mean_at(self.index, 0.0).is_some();
+            let others = context.ensemble.said(&context.run.frame, self.index);
+            if let Some(others) = others.filter(|_| has_others) {
                 let below = at + egui::vec2(14.0, 16.0);
                 let font = FontId::proportional(11.0);
                 painter.text(below, Align2::LEFT_CENTER, others, font, ink);

@@ -1,9 +1,9 @@
 //! Panel: the solver, and the result of the last step.
 
-use egui::{RichText, Ui};
+use egui::{Button, RichText, Ui};
 
 use super::grain::compact;
-use crate::app::budget::{BUDGETS, Budget};
+use crate::app::budget::BUDGETS;
 use crate::app::watched_run::WatchedRun;
 use crate::app::{setting_control, theme};
 use crate::live::{LiveStart, WorldFrame};
@@ -106,20 +106,25 @@ fn remedy_boxes(ui: &mut Ui, settings: &mut Settings, start: &Settings) {
 fn budget_buttons(ui: &mut Ui, settings: &mut Settings, surroundings: &Surroundings) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
-        for effort in BUDGETS {
-            let Budget { name, hint, .. } = effort;
-            let solver = effort.among(surroundings, &settings.parameters);
-            if ui.selectable_label(settings.solver == solver, name).on_hover_text(hint).clicked() {
-                settings.solver = solver;
+        let before = *settings;
+        let mut button = |name: &str, preset: Settings, hint: &str| {
+            let button = Button::selectable(before == preset, name).frame_when_inactive(true);
+            if ui.add(button).on_hover_text(hint).clicked() {
+                *settings = preset;
             }
+        };
+        for effort in BUDGETS {
+            let solver = effort.among(surroundings, &before.parameters);
+            button(effort.name, Settings { solver, ..before }, effort.hint);
         }
-        let robust = ui.button("Robust").on_hover_text(
+        let mut robust = before;
+        Preset::Robust.apply_to_settings(&mut robust);
+        button(
+            "Robust",
+            robust,
             "Newton to 1e-8. Overlap is pushed out, shocks are solved in sequence, nothing bounces below 2 g Δt, \
              and fast grains move in parts of a step. Hard scenes hold, and the paper's effects of Δt disappear.",
         );
-        if robust.clicked() {
-            Preset::Robust.apply_to_settings(settings);
-        }
     });
 }
 

@@ -88,10 +88,7 @@ impl TrustPanel {
         }
         let (steps, unsolved) = (world.snapshot.observables.step, world.unconverged_steps);
         if unsolved as f64 > FEW_UNSOLVED * steps.max(1) as f64 {
-            return (
-                Trust::No,
-                format!("{unsolved} of {} were not solved.", counted(steps, "step")),
-            );
+            return (Trust::No, format!("In this run {}.", unsolved_text(unsolved, steps)));
         }
         let Some(BudgetAnswer { trust, quantity, within_text, .. }) = self.of_budget(run) else {
             let text = match self.budget.as_ref().is_some_and(|budget| budget.work.is_some()) {
@@ -141,8 +138,9 @@ impl TrustPanel {
         (trust == Trust::No).then_some(reason)
     }
 
-    /// Shows the panel: the reason of the verdict, the bars of the error budget, and below them the solved steps,
-    /// warnings and the mean slump of runs from other initial states.
+    /// Shows the panel: the progress of the error budget, the reason of the verdict, the bars of the error budget, and
+    /// below them the solved steps and warnings. Until the error budget has a result, the panel also shows the mean
+    /// slump of runs from other initial states.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &PanelContext<'_>) {
         let (trust, reason) = self.verdict(context.run);
         ui.horizontal(|ui| {
@@ -152,6 +150,10 @@ impl TrustPanel {
                 self.is_open &= !close.clicked();
             });
         });
+        // Above the text, so that the button is visible in a low window, too.
+        if let Some(work) = self.budget.as_ref().and_then(|budget| budget.work.as_ref()) {
+            work.show(ui, "Error budget", "Stop", "The results so far stay.");
+        }
         ScrollArea::vertical().id_salt("trust").auto_shrink([false, false]).show(ui, |ui| {
             ui.label(RichText::new(&reason).strong());
             let answer = self.of_budget(context.run);
@@ -173,7 +175,9 @@ impl TrustPanel {
             for alarm in others.filter(|alarm| *alarm != reason) {
                 ui.label(RichText::new(format!("▲ {alarm}")).color(colour));
             }
-            if let (Some(said), Some(world)) = (
+            // The text of the error budget has a mean of its own, over other piles.
+            if let (None, Some(said), Some(world)) = (
+                &answer,
                 context.ensemble.said(&context.run.frame, context.run.selected),
                 context.run.world(),
             ) {
@@ -186,7 +190,7 @@ impl TrustPanel {
         });
     }
 
-    /// Shows the result of the error budget in words, and its progress.
+    /// Shows the result of the error budget in words.
     fn show_budget(&self, ui: &mut Ui, answer: Option<&BudgetAnswer>) {
         if IN_BROWSER {
             let text = "In a browser one thread computes, so there is no error budget. The program computes it: slump \
@@ -205,9 +209,6 @@ impl TrustPanel {
         }
         if let Some(answer) = answer {
             ui.label(&answer.text);
-        }
-        if let Some(work) = &budget.work {
-            work.show(ui, "Error budget", "Stop", "What was found so far stays.");
         }
     }
 
@@ -312,6 +313,12 @@ fn warning(world: &WorldFrame) -> Option<String> {
     too_long(&world.controls.settings, &world.snapshot.surroundings, world.substeps)
 }
 
+/// Returns a clause with the number of unsolved steps, such as "1 of 200 steps was not solved".
+fn unsolved_text(unsolved: u64, steps: u64) -> String {
+    let were = if unsolved == 1 { "was" } else { "were" };
+    format!("{unsolved} of {} {were} not solved", counted(steps, "step"))
+}
+
 /// Returns sentences on how well the steps of a simulation were solved.
 fn solved(world: &WorldFrame) -> Vec<String> {
     let last = &world.snapshot.observables;
@@ -333,7 +340,8 @@ fn solved(world: &WorldFrame) -> Vec<String> {
         let mut lines = vec![format!("● A step gets 40 sweeps, solved or not: {off}.")];
         if parameters.bond > 0.0 {
             lines.push(
-                "● With cohesion piles fall so that stand if they are solved: Solved, under Law, solver, does that."
+                "● With cohesion, piles can slump although they would not if each step were solved. Choose Solved \
+                 under Law, solver."
                     .into(),
             );
         }
@@ -343,10 +351,10 @@ fn solved(world: &WorldFrame) -> Vec<String> {
     if unsolved == 0 {
         return vec![format!("● All {} are solved as asked, {off}.", counted(last.step, "step"))];
     }
-    let steps = counted(last.step, "step");
-    let mut lines = vec![format!("● {unsolved} of {steps} were not solved as asked, {off}.")];
+    let mut lines =
+        vec![format!("● In this run {} as asked, {off}.", unsolved_text(unsolved, last.step))];
     if *solver != SOLVED.among(&world.snapshot.surroundings, parameters) {
-        lines.push("● Solved, under Law, solver, leaves fewer.".into());
+        lines.push("● With Solved, under Law, solver, fewer steps are unsolved.".into());
     }
     lines
 }
@@ -383,4 +391,15 @@ fn begin(ui: &Ui, context: &PanelContext<'_>, of: String, config: Config) -> Run
         })
     });
     RunBudget { of, told, work: Some(work), failure: None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_step_was_and_two_steps_were_not_solved() {
+        assert_eq!(unsolved_text(1, 200), "1 of 200 steps was not solved");
+        assert_eq!(unsolved_text(2, 200), "2 of 200 steps were not solved");
+    }
 }

@@ -26,7 +26,7 @@ pub(super) fn budget_of(
         .variants
         .iter()
         .zip(1..)
-        .map(|(variant, series)| row(runs, variant, series, number))
+        .map(|(variant, series)| row((runs, ended), variant, series, number))
         .collect();
     let value = runs.interval(0, number);
     let failure = runs.failure(0, number);
@@ -47,7 +47,7 @@ pub(super) fn budget_of(
     };
     if let Some(failure) = failure {
         budget.answer =
-            format!("{} has no value: of the scene as it is, {failure}.", quantity.name);
+            format!("The {} has no value: of the scene as it is, {failure}.", quantity.name);
         return budget;
     }
     budget.limit_adds = limit(runs, design, number).map(|limit| ends(&limit));
@@ -73,15 +73,26 @@ fn unsolved(ran: &[Ran]) -> f64 {
     ran.iter().map(|ran| ran.values.unsolved).sum::<f64>() / ran.len().max(1) as f64
 }
 
-fn row(runs: &Runs, variant: &Variant, series: usize, quantity: usize) -> CauseRow {
+fn row(
+    (runs, ended): (&Runs, BudgetEnd),
+    variant: &Variant,
+    series: usize,
+    quantity: usize,
+) -> CauseRow {
     let ran = &runs.all[series];
-    let failure = match ran[..] {
-        _ if runs.is_begun(series) => runs.failure(series, quantity),
-        [] => Some("that does not fit into the time".to_owned()),
-        _ => Some(format!(
-            "that does not fit into the time: a run takes {:.0} times as long",
-            runs.cost_ratio(series)
-        )),
+    let failure = if runs.is_begun(series) {
+        runs.failure(series, quantity)
+    } else if ended == BudgetEnd::Stopped {
+        Some("that was not run often enough yet".to_owned())
+    } else {
+        // NaN, if no run was timed, compares false.
+        let times = runs.cost_ratio(series).round();
+        let cost = if times > 1.0 {
+            format!(" (a run takes {times} times as long)")
+        } else {
+            String::new()
+        };
+        Some(format!("that does not fit into the time{cost}"))
     };
     let adds = runs.interval(series, quantity);
     CauseRow {
@@ -267,12 +278,12 @@ mod tests {
         });
         assert_eq!(budget.trust, Trust::Mostly, "{}", budget.answer);
         assert!(
-            budget.answer.contains("The contact law range in place of this one adds 0.1"),
+            budget.answer.contains("The law range in place of this one adds 0.1"),
             "{}",
             budget.answer
         );
         assert!(
-            budget.answer.contains("No effect is seen of what steps leave unsolved (at most 0.0"),
+            budget.answer.contains("No effect is seen of not solving every step (at most 0.0"),
             "{}",
             budget.answer
         );
@@ -333,6 +344,30 @@ mod tests {
         );
         assert!(budget.causes.iter().any(|row| row.failure.is_some()), "{:?}", budget.causes);
         assert_eq!(budget.trust, Trust::NotKnownYet);
+        let steps = budget.causes.iter().filter(|row| row.kind == Cause::TimeStep);
+        for row in steps.filter(|row| row.failure.is_some()) {
+            let said = budget.answer.matches(&row.changed).count();
+            assert_eq!(said, 1, "{}: {}", row.changed, budget.answer);
+        }
+    }
+
+    #[test]
+    fn nothing_is_said_not_to_fit_into_the_time_before_the_end() {
+        let variants = variants(&built_in("pile").unwrap(), Some(&NewPile::default()), true);
+        let run = |SeriesRun { start, .. }| {
+            let values = vec![Some(0.3 + 0.01 * start as f64)];
+            let values = RunValues { values, failure: None, unsolved: 0.0, run_secs: 1.0 };
+            Ok(Ran { values, secs: 1.0, is_free: false })
+        };
+        let stop = &mut |_: &Runs| ControlFlow::Break(());
+        let costs = vec![1.0; variants.len() + 1];
+        let (runs, ended) = collect(costs, 1, FREE, (&run, &|_| Ok(false)), stop).unwrap();
+        let design = Design { variants: &variants, has_seeds: true, time_step_secs: 1e-3 };
+        let budget = budget_of(&runs, ended, &design, (0, &"slump".parse().unwrap()), None);
+        assert!(budget.causes.iter().all(|row| row.adds.is_none()), "{:?}", budget.causes);
+        assert!(budget.answer.starts_with("The slump is 0."), "{}", budget.answer);
+        assert!(budget.answer.ends_with("Not all runs are finished."), "{}", budget.answer);
+        assert!(!budget.answer.contains("fit") && !budget.answer.contains("Nothing is known"));
     }
 
     /// Checks that one expensive change of the scene does not use up the computing time of the other changes. Here,
@@ -353,7 +388,7 @@ mod tests {
         assert_eq!(dear.len(), 2);
         for row in dear {
             let note = row.failure.as_deref().unwrap_or("");
-            assert_eq!(note, "that does not fit into the time: a run takes 40 times as long");
+            assert_eq!(note, "that does not fit into the time (a run takes 40 times as long)");
         }
         let others = |row: &&CauseRow| row.kind != Cause::ContactLaw;
         let all: Vec<&CauseRow> = budget.causes.iter().filter(others).collect();

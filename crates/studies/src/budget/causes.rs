@@ -55,21 +55,17 @@ pub(crate) enum Cause {
 
 impl Cause {
     /// Returns three properties of the cause: its group, its name, and the phrase with which reports name the change
-    /// that tests the cause. In the phrase, as in "the contact law {} in place of this one", `{}` stands for the new
+    /// that tests the cause. In the phrase, as in "the {} in place of this one", `{}` stands for the new
     /// value.
     const fn row(self) -> (Share, &'static str, &'static str) {
         match self {
             Self::TimeStep => (Share::Method, "time step", "the {}"),
-            Self::Unsolved => {
-                (Share::Method, "what steps leave unsolved", "what steps leave unsolved")
-            }
-            Self::Start => (Share::Method, "where solves start", "the change to {}"),
-            Self::ContactLaw => {
-                (Share::Law, "contact law", "the contact law {} in place of this one")
-            }
+            Self::Unsolved => (Share::Method, "unsolved steps", "not solving every step"),
+            Self::Start => (Share::Method, "initial guess", "the change to {}"),
+            Self::ContactLaw => (Share::Law, "contact law", "the {} in place of this one"),
             Self::Cone => (Share::Law, "cone of friction", "the {}"),
             Self::TouchTolerance => (Share::Law, "touch tolerance", "the {}"),
-            Self::FrictionModel => (Share::Law, "friction model", "friction by {}"),
+            Self::FrictionModel => (Share::Law, "friction model", "{}"),
             Self::RestitutionThreshold => (Share::Law, "restitution threshold", "{}"),
             Self::Packing => (Share::Grains, "packing", "a pile {}"),
             Self::NumberOfGrains => (Share::Grains, "number of grains", "a pile of {}"),
@@ -150,7 +146,8 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
     }
     for stepper in [Stepper::Moreau, Stepper::Range, Stepper::Dem] {
         if stepper != base.stepper {
-            add(Cause::ContactLaw, stepper.name(), 4.0, at_equal_work(scene, stepper));
+            let label = format!("law {stepper}");
+            add(Cause::ContactLaw, &label, 4.0, at_equal_work(scene, stepper));
         }
     }
     let is_any = |scene_wide: f64, of: fn(&MaterialPair) -> Option<f64>| {
@@ -175,8 +172,8 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
     }
     if rubs && base.stepper.reads("friction-model") {
         let (model, label) = match solver.friction_model {
-            FrictionModel::Coulomb => (FrictionModel::Tresca, "bounds of friction"),
-            _ => (FrictionModel::Coulomb, "Coulomb's law"),
+            FrictionModel::Coulomb => (FrictionModel::Tresca, "bounded friction"),
+            _ => (FrictionModel::Coulomb, "Coulomb friction"),
         };
         let settings =
             by(&|it| (it.solver.method, it.solver.friction_model) = (Method::Auto, model));
@@ -185,10 +182,10 @@ pub(crate) fn variants(scene: &Scene, pile: Option<&NewPile>, resizes: bool) -> 
     let bounces = is_any(parameters.restitution, |pair| pair.restitution);
     if bounces && base.stepper.reads("restitution-threshold") {
         let (threshold, label) = match parameters.restitution_threshold > 0.0 {
-            true => (0.0, "Restitution at every speed".to_owned()),
+            true => (0.0, "restitution at every speed".to_owned()),
             false => (
                 RESTITUTION_THRESHOLD,
-                format!("No restitution below {RESTITUTION_THRESHOLD} g·Δt"),
+                format!("no restitution below {RESTITUTION_THRESHOLD} g·Δt"),
             ),
         };
         let settings = by(&|it| it.parameters.restitution_threshold = threshold);
@@ -318,7 +315,7 @@ mod tests {
         assert!(!causes(&drum, None).contains(&Cause::NumberOfGrains));
         // Few steppers support walls that a force drives, so the stepper `avbd` must not be a variant of this scene.
         let biaxial = variants(&built_in("biaxial").unwrap(), None, false);
-        assert!(biaxial.iter().all(|variant| variant.label != "avbd"));
+        assert!(biaxial.iter().all(|variant| variant.label != "law avbd"));
         for scene in crate::scene::SCENES {
             for variant in variants(&(scene.make)().unwrap(), None, false) {
                 let mut changed = (scene.make)().unwrap();

@@ -120,7 +120,7 @@ fn sheet(budget: &ErrorBudget, one: &QuantityBudget) -> Sheet {
     charts.extend(by_cost(one, &label));
     let width = 900 + 500 * (charts.len() as u32 - 1);
     let caption = vec![format!(
-        "{} starts. Lines of the causes: intervals that hold together in 95 % of budgets; dashes: ± {}.",
+        "{} starts. Lines of the causes: in 95 % of budgets all intervals contain the true effects; dashes: ± {}.",
         one.starts,
         one.with_unit(&short(one.within))
     )];

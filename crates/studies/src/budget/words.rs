@@ -37,15 +37,15 @@ fn listed(names: &[String]) -> String {
     }
 }
 
-/// Returns the subject of a sentence about the effect of a cause, such as "the contact law range in place of this one".
+/// Returns the subject of a sentence about the effect of a cause, such as "the law range in place of this one".
 fn subject(row: &CauseRow) -> String {
     row.kind.subject().replace("{}", &row.changed)
 }
 
-/// Returns the text with its first letter changed by the function `change`, for example to a capital letter.
-fn with_first(text: &str, change: fn(&char) -> char) -> String {
+/// Returns the text with a capital first letter.
+fn capitalised(text: &str) -> String {
     let mut letters = text.chars();
-    letters.next().iter().map(change).chain(letters).collect()
+    letters.next().map(|first| first.to_ascii_uppercase()).into_iter().chain(letters).collect()
 }
 
 /// Returns the findings of an error budget on one quantity as a paragraph. `is_halved` is true if the quantity has a
@@ -59,7 +59,7 @@ pub(super) fn paragraph(
     let within = budget.with_unit(&short(budget.within));
     let mut said = vec![budget.of_value(design.has_seeds)];
     said.extend(budget.of_time_step(is_halved));
-    said.extend(budget.of_causes());
+    said.extend(budget.of_causes(ended));
     said.push(budget.of_trust(&within));
     said.extend(budget.of_cost(&within, design.time_step_secs));
     said.push(of_end(runs, ended, design));
@@ -113,19 +113,19 @@ impl QuantityBudget {
                 format!(" The pile that was asked for has {}.", rounded(itself, spread))
             });
             return format!(
-                "{quantity} is {value} over {starts} piles that differ in their seed; single piles scatter by \
+                "The {quantity} is {value} over {starts} piles that differ in their seed; single piles scatter by \
                  {scatter}.{itself}"
             );
         }
         if spread <= SMOOTH * self.within {
             let value = self.with_unit(&self.number(mean, 0.0));
             return format!(
-                "{quantity} is {value}, and nearly the same if grains start 1e-9 d away."
+                "The {quantity} is {value}, and nearly the same if grains start 1e-9 d away."
             );
         }
         format!(
-            "{quantity} is {value} over {starts} starts that differ by 1e-9 d; single starts scatter by {scatter}: the \
-             scene is chaotic."
+            "The {quantity} is {value} over {starts} starts that differ by 1e-9 d; single starts scatter by \
+             {scatter}: the scene is chaotic."
         )
     }
 
@@ -158,35 +158,28 @@ impl QuantityBudget {
     }
 
     /// Returns one sentence for each significant effect, the largest effect first; one sentence for all other effects;
-    /// and one sentence for each reason why effects are not known.
-    fn of_causes(&self) -> Vec<String> {
-        let smallest = self.smallest_step().map(|row| &row.changed);
+    /// and one sentence for each reason why effects are not known. Before the end of the computation, effects that
+    /// still need runs are left out.
+    fn of_causes(&self, ended: BudgetEnd) -> Vec<String> {
         let (mut seen, mut unseen) = (Vec::new(), Vec::new());
         let mut missing: Vec<(&str, Vec<String>)> = Vec::new();
         for row in &self.causes {
-            let is_of_step = row.kind == Cause::TimeStep;
             match row.adds {
                 // The sentence about the time step covers these rows.
-                Some(_) if is_of_step => {}
-                None if is_of_step && Some(&row.changed) == smallest => {}
+                Some(_) if row.kind == Cause::TimeStep => {}
+                None if ended == BudgetEnd::Stopped && row.cost.is_none() => {}
                 Some([mean, low, high]) if self.is_told([mean, low, high]) => {
                     // The variant solves its steps more accurately, so the effect of unsolved steps is the opposite of
                     // the effect of this variant.
                     let is_undone = row.kind == Cause::Unsolved;
                     let ends = if is_undone { [-mean, -high, -low] } else { [mean, low, high] };
-                    let subject = with_first(&subject(row), char::to_ascii_uppercase);
+                    let subject = capitalised(&subject(row));
                     seen.push((mean.abs(), format!("{subject} {}.", self.effect(ends))));
                 }
-                Some(ends) => unseen.push(
-                    with_first(&subject(row), char::to_ascii_lowercase) + &self.at_most(ends),
-                ),
+                Some(ends) => unseen.push(subject(row) + &self.at_most(ends)),
                 None => {
                     let reason = row.failure.as_deref().unwrap_or_default();
-                    let name = if is_of_step {
-                        row.cause.into()
-                    } else {
-                        with_first(&subject(row), char::to_ascii_lowercase)
-                    };
+                    let name = subject(row);
                     match missing.iter_mut().find(|(known, _)| *known == reason) {
                         Some((_, names)) => names.push(name),
                         None => missing.push((reason, vec![name])),
@@ -222,7 +215,8 @@ impl QuantityBudget {
             Trust::NotKnownYet if self.is_solver_in_doubt() => {
                 let better = |left: f64| format!(" ({:.1} % with a better solver)", 100.0 * left);
                 format!(
-                    "{:.1} % of the steps are unsolved{}: what these steps do is not known.",
+                    "In the runs of this budget {:.1} % of the steps are unsolved{}: the effect of these steps is not \
+                     known.",
                     100.0 * self.unsolved,
                     self.unsolved_by_better().map(better).unwrap_or_default()
                 )
@@ -256,10 +250,10 @@ impl QuantityBudget {
 
 fn of_end(runs: &Runs, ended: BudgetEnd, design: &Design<'_>) -> String {
     let percent = 100.0 * (1.0 - OUTSIDE);
-    let all = format!("All intervals hold together in {percent:.0} % of budgets.");
+    let all = format!("In {percent:.0} % of budgets all intervals contain the true values.");
     match ended {
         BudgetEnd::Within => return all,
-        BudgetEnd::Stopped => return format!("{all} More runs follow."),
+        BudgetEnd::Stopped => return format!("{all} Not all runs are finished."),
         BudgetEnd::Cost | BudgetEnd::Failed => {}
     }
     let begun = (0..runs.all.len()).filter(|&series| runs.is_begun(series));
