@@ -5,9 +5,9 @@ use egui_plot::{AxisHints, GridInput, GridMark, Plot};
 
 use crate::render::numbers::{decimal, ticks};
 
-/// Smallest length of a linear axis, as a fraction of the largest absolute value on it. A shorter axis would show
-/// rounding errors.
-const LEAST_SPAN: f64 = 1e-3;
+/// Smallest length of a linear axis, as a fraction of the largest absolute value on it. With a shorter axis, rounding
+/// errors look like changes, and the labels of a constant quantity have many digits.
+const LEAST_SPAN: f64 = 0.02;
 /// Smallest length of a logarithmic axis, in decades. An axis of two decades always contains at least two powers of
 /// ten, at which it has labels.
 const LEAST_DECADES: f64 = 2.0;

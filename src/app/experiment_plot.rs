@@ -4,10 +4,11 @@
 use std::collections::BTreeMap;
 
 use egui::{Color32, Label, RichText, Ui};
-use egui_plot::{Line, VLine};
+use egui_plot::VLine;
 use glam::DVec2;
 
 use super::axes::{plot_with_axes, with_room};
+use super::curve_pieces::{interval_secs, solid, thinned};
 use super::theme;
 use crate::live::LiveFrame;
 use crate::scene::Scene;
@@ -96,9 +97,6 @@ pub(super) fn has_quantity(frame: &LiveFrame) -> bool {
 /// Least simulated time between the two values from which the plot computes a change per second, s. A shorter time
 /// would show the fluctuations between single frames.
 const RATE_SECS: f64 = 0.1;
-/// Largest number of points of a drawn curve. If the window has shown more frames, the curve omits some of them. With a
-/// larger number, drawing takes longer.
-const MOST_POINTS: usize = 2_000;
 
 /// Values of an experiment's main quantity (such as the angle of the surface in a drum) in the frames that the window
 /// has shown, by simulation and number of step.
@@ -148,8 +146,7 @@ impl ExperimentSeries {
                 }
             }
         };
-        let stride = values.len().div_ceil(MOST_POINTS).max(1);
-        values.iter().step_by(stride).map(point).filter(|[_, value]| value.is_finite()).collect()
+        values.iter().map(point).filter(|[_, value]| value.is_finite()).collect()
     }
 
     /// Draws the plot of the experiment's main quantity (such as the angle of the surface in a drum) into the remaining
@@ -167,7 +164,8 @@ impl ExperimentSeries {
             plot.vline(VLine::new("now", frame.time_secs()).color(Color32::GRAY).width(1.0));
             for (world, points) in worlds.into_iter().enumerate() {
                 let colour = theme::world_colour(world, dark);
-                plot.line(Line::new(title, points).color(colour).width(1.6));
+                let points = thinned(&points, interval_secs(plot));
+                plot.line(solid(title, points).color(colour).width(1.6));
             }
         });
     }

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use egui::{Color32, Label, RichText, Ui};
-use egui_plot::{HoverPosition, Line, LineStyle, PlotPoints, VLine};
+use egui_plot::{HoverPosition, Line, LineStyle, VLine};
 
 use super::axes::{plot_with_axes, with_room};
-use super::curve_pieces::pieces;
+use super::curve_pieces::{interval_secs, pieces, solid, thinned};
 use super::ensemble::Band;
 use super::glossary::explained;
 use super::number_text::clock_text;
@@ -107,29 +107,27 @@ fn plot(ui: &mut Ui, data: &PlotData, quantity: &Quantity<Observables>) -> Optio
         .allow_zoom([true, false])
         .label_formatter(move |position| hover_text(position, log))
         .show(ui, |plot| {
+            let interval_secs = interval_secs(plot);
             plot.vline(VLine::new("now", data.now_secs).color(Color32::GRAY).width(1.0));
             for ghost in &data.ghosts {
-                for piece in pieces(&ghost.curve, until_secs, value) {
-                    plot.line(Line::new(ghost.name.clone(), piece).color(ghost.colour).width(1.2));
+                for piece in pieces(&ghost.curve, until_secs, interval_secs, value) {
+                    plot.line(solid(ghost.name.clone(), piece).color(ghost.colour).width(1.2));
                 }
             }
             if quantity.name == OTHERS {
                 let worlds = data.ghosts.iter().chain(&data.worlds);
-                let lines = worlds.flat_map(|world| others(world, data.now_secs));
+                let lines = worlds.flat_map(|world| others(world, data.now_secs, interval_secs));
                 lines.for_each(|line| plot.line(line));
             }
             for WorldCurve { name, colour, curve, .. } in &data.worlds {
-                let lines = |name: String, value: &dyn Fn(&Observables) -> f64| {
-                    let pieces = pieces(curve, f64::INFINITY, value).into_iter();
-                    pieces.map(move |piece| Line::new(name.clone(), piece).color(*colour))
-                };
-                for line in lines(name.clone(), &value) {
-                    plot.line(line.width(1.6));
+                for piece in pieces(curve, f64::INFINITY, interval_secs, value) {
+                    plot.line(solid(name.clone(), piece).color(*colour).width(1.6));
                 }
                 for ((what, value), style) in beside(curve, quantity).zip(BESIDE) {
                     let value = |row: &Observables| scaled(value(row).unwrap_or(f64::NAN));
-                    for line in lines(format!("{name}: {what}"), &value) {
-                        plot.line(line.style(style).width(1.2));
+                    for piece in pieces(curve, f64::INFINITY, interval_secs, value) {
+                        let line = Line::new(format!("{name}: {what}"), piece);
+                        plot.line(line.color(*colour).style(style).width(1.2));
                     }
                 }
             }
@@ -144,26 +142,26 @@ fn end_secs(data: &PlotData) -> f64 {
     ends.map(|row| row.time_secs).fold(data.until_secs, f64::max)
 }
 
-/// Returns the part of a curve up to the displayed time: later slumps of other initial states must not be visible yet.
-fn until_now(points: &[[f64; 2]], now_secs: f64) -> PlotPoints<'static> {
-    points.iter().copied().take_while(|point| point[0] <= now_secs).collect()
-}
-
 /// Returns lines that show the slumps of runs from other initial states with the settings of the simulation `world`, up
-/// to the displayed time: a thin line per run, and their mean as a dashed line.
-fn others(world: &WorldCurve, now_secs: f64) -> Vec<Line<'static>> {
+/// to the displayed time `now_secs`: a thin line per run, and their mean as a dashed line. Later slumps must not be
+/// visible yet.
+fn others(world: &WorldCurve, now_secs: f64, interval_secs: f64) -> Vec<Line<'static>> {
     let Some(band) = world.others.as_ref().filter(|band| band.count > 0) else {
         return Vec::new();
     };
+    let shown = |points: &[[f64; 2]]| {
+        let until_now = points.partition_point(|point| point[0] <= now_secs);
+        thinned(&points[..until_now], interval_secs)
+    };
     let run = |run: &(usize, Vec<[f64; 2]>)| {
-        let line = Line::new(format!("{}: another pile", world.name), until_now(&run.1, now_secs));
+        let line = solid(format!("{}: another pile", world.name), shown(&run.1));
         line.color(world.colour.gamma_multiply(OTHERS_STRENGTH)).width(0.8)
     };
     let mean: Vec<_> =
         band.times_secs.iter().zip(&band.means).map(|(&at, &mean)| [at, mean]).collect();
     let name = format!("{}: mean of {} other piles", world.name, band.count);
     let style = LineStyle::Dashed { length: 5.0 };
-    let mean = Line::new(name, until_now(&mean, now_secs)).color(world.colour);
+    let mean = Line::new(name, shown(&mean)).color(world.colour);
     band.runs.iter().map(run).chain([mean.style(style).width(1.2)]).collect()
 }
 
@@ -191,6 +189,10 @@ fn title(data: &PlotData, quantity: &Quantity<Observables>) -> (String, f64) {
         let prefix;
         (prefix, factor) = si_prefix(rows.map(largest).fold(0.0, f64::max));
         title = format!("{title} ({prefix}{})", quantity.unit);
+    }
+    let mut rows = data.worlds.iter().flat_map(|world| world.curve.rows());
+    if quantity.logarithmic && rows.any(|row| row.step > 0 && (quantity.value)(row) == 0.0) {
+        title += "; gaps are zeros";
     }
     let has_more = |curve: &Curve| beside(curve, quantity).next().is_some();
     if data.worlds.iter().any(|world| has_more(&world.curve)) {
@@ -254,7 +256,8 @@ mod tests {
         let data = plots_of(world(curve_until(1.5)), vec![world(curve_until(9.0))]);
         assert_eq!(end_secs(&data), 1.5, "its own end alone counts");
         assert_eq!(end_secs(&PlotData { worlds: Vec::new(), ..data.clone() }), 1.0);
-        let shown = |until_secs| pieces(&data.ghosts[0].curve, until_secs, |_| 1.0)[0].len();
+        let ghost = &data.ghosts[0].curve;
+        let shown = |until_secs| pieces(ghost, until_secs, 0.01, |_| 1.0)[0].len();
         assert_eq!([shown(1.5), shown(4.5), shown(9.0)], [1, 2, 3], "and nothing beyond is drawn");
     }
 
@@ -271,7 +274,7 @@ mod tests {
         };
         let world = WorldCurve { others: Some(Arc::new(band)), ..world(curve_until(0.2)) };
         for (now_secs, points) in [(0.0, 1), (0.15, 2), (1.0, 3)] {
-            let ends: Vec<f64> = others(&world, now_secs)
+            let ends: Vec<f64> = others(&world, now_secs, 0.01)
                 .iter()
                 .map(|line| {
                     let PlotGeometry::Points(all) = line.geometry() else { panic!("no points") };
@@ -283,7 +286,22 @@ mod tests {
             assert_eq!(ends, [1.0, 2.0, 6.0, 3.0].map(|slope| slope * last));
         }
         let alone = WorldCurve { others: None, ..world };
-        assert!(others(&alone, 1.0).is_empty());
+        assert!(others(&alone, 1.0, 0.01).is_empty());
+    }
+
+    #[test]
+    fn the_title_says_why_a_logarithmic_plot_has_gaps() {
+        let error = QUANTITIES.iter().find(|quantity| quantity.name == "error").unwrap();
+        let of_errors = |errors: [f64; 3]| {
+            let mut curve = Curve::default();
+            for (step, velocity_error) in errors.into_iter().enumerate() {
+                let step = step as u64;
+                curve.push(Observables { step, velocity_error, ..Observables::default() });
+            }
+            title(&plots_of(world(curve), Vec::new()), error).0
+        };
+        assert!(of_errors([0.0, 1e-6, 0.0]).ends_with("; gaps are zeros"));
+        assert!(!of_errors([0.0, 1e-6, 1e-7]).contains("gaps"), "no step leads to the start");
     }
 
     /// Draws the plots, and counts the numbers along the x axis and along the y axis.
@@ -295,9 +313,10 @@ mod tests {
             let size = egui::vec2(500.0, 260.0);
             let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size));
             let input = egui::RawInput { screen_rect, ..egui::RawInput::default() };
-            let output = context.run_ui(input, |ui| {
+            let mut output = context.run_ui(input, |ui| {
                 draw(ui, data);
             });
+            output.textures_delta.clear();
             painted = output.shapes;
         }
         let mut counts = [0, 0];

@@ -2,7 +2,7 @@
 //! user has started it has one point: the mean over runs with the same settings from other initial states or, if such
 //! runs cannot be computed, the slump of the run itself.
 
-use egui::{Color32, Label, RichText, Ui};
+use egui::{Color32, RichText, Ui, WidgetText};
 use egui_plot::{HoverPosition, Line, Points};
 
 use super::axes::{plot_with_axes, with_room};
@@ -32,7 +32,7 @@ const CAP: f64 = 0.03;
 struct FigurePoint {
     time_step_secs: f64,
     mean: f64,
-    /// Half-width of the 95 % confidence interval of the mean slump; `None` for the slump of a single pile.
+    /// Half-width of the 95 % confidence interval of the mean slump; `None` for one or two piles.
     half: Option<f64>,
     /// Number of initial states over which the mean is taken.
     count: usize,
@@ -51,6 +51,7 @@ impl FigurePoint {
         let head = format!("{series}, Δt {}\nslump {mean:.3}", millis_text(*time_step_secs));
         match half {
             Some(half) => format!("{head} ± {half:.3}\n{count} piles"),
+            None if *count > 1 => format!("{head}\n{count} piles"),
             None => format!("{head}\none pile"),
         }
     }
@@ -72,8 +73,9 @@ pub(super) struct TimeStepFigure(Vec<FigureSeries>);
 impl TimeStepFigure {
     /// Makes the plot from `released`, the results of all runs that the user has started. `None` if there is no
     /// result yet. `worlds` are the settings of the visible simulations. If several simulations are
-    /// visible, and only one of them has the settings of a curve (apart from Δt), the curve has the colour of this
-    /// simulation. A single simulation has no effect on the colours.
+    /// visible, their curves are the first ones, in the order of the simulations. If only one of them has the settings
+    /// of a curve (apart from Δt), the curve has the colour of this simulation. A single simulation has no effect on
+    /// the colours.
     pub(super) fn new<'a>(
         released: impl Iterator<Item = &'a Released>,
         worlds: &[Settings],
@@ -93,8 +95,10 @@ impl TimeStepFigure {
                 None => all.push((shared, vec![point])),
             }
         }
-        let settings_of_all: Vec<_> = all.iter().map(|(settings, _)| *settings).collect();
         let worlds = if worlds.len() > 1 { worlds } else { &[] };
+        let place = |shared| worlds.iter().position(|world| without_time_step(world) == shared);
+        all.sort_by_key(|(settings, _)| place(*settings).unwrap_or(worlds.len()));
+        let settings_of_all: Vec<_> = all.iter().map(|(settings, _)| *settings).collect();
         let mut next = worlds.len();
         let series = all.into_iter().enumerate().map(|(index, (settings, mut points))| {
             points.sort_by(|one, other| one.time_step_secs.total_cmp(&other.time_step_secs));
@@ -105,7 +109,7 @@ impl TimeStepFigure {
             };
             let is_of_series = |world: &Settings| without_time_step(world) == settings;
             let is_alone = worlds.iter().filter(|world| is_of_series(world)).count() == 1;
-            let own = worlds.iter().position(is_of_series).filter(|_| is_alone);
+            let own = place(settings).filter(|_| is_alone);
             let colour = theme::world_colour(own.unwrap_or(next), is_dark);
             next += usize::from(own.is_none());
             FigureSeries { name, bond, colour, points }
@@ -120,14 +124,17 @@ impl TimeStepFigure {
         ui.horizontal(|ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 head(ui);
-                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                let in_rows = egui::Layout::left_to_right(egui::Align::Center).with_main_wrap(true);
+                ui.with_layout(in_rows, |ui| {
                     let hint =
                         if points().any(|it| it.half.is_some()) { HINT } else { HINT_OF_ONE };
                     let title = ui.label(RichText::new(TITLE).small()).on_hover_text(hint);
                     explained(title, TITLE);
                     for series in &self.0 {
-                        ui.label(RichText::new("■").small().color(series.colour));
-                        ui.add(Label::new(RichText::new(&series.name).small()).truncate());
+                        // The no-break space keeps the square next to the name.
+                        let square = RichText::new("■\u{a0}").small().color(series.colour);
+                        let name = RichText::new(&series.name).small();
+                        ui.label(WidgetText::concat(ui, [square, name]));
                     }
                 });
             });
@@ -226,6 +233,33 @@ mod tests {
     }
 
     #[test]
+    fn names_of_curves_are_complete_next_to_buttons_in_a_narrow_window() {
+        let base = Settings::default().over(5e-3);
+        let all = [20.0, 50.0, 100.0].map(|bond| released(base.with_bond(bond), 0.25, 0.0625));
+        let figure = TimeStepFigure::new(all.iter(), &[], false).unwrap();
+        let context = egui::Context::default();
+        let (mut buttons_left, mut painted) = (0.0, Vec::new());
+        for _ in 0..3 {
+            let size = egui::vec2(270.0, 150.0);
+            let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size));
+            let input = egui::RawInput { screen_rect, ..egui::RawInput::default() };
+            let mut output = context.run_ui(input, |ui| {
+                figure.draw(ui, |ui| buttons_left = ui.small_button("PNG CSV Clear").rect.left());
+            });
+            output.textures_delta.clear();
+            painted = output.shapes;
+        }
+        for bond in ["Bond 20", "Bond 50", "Bond 100"] {
+            let text = painted.iter().find_map(|clipped| match &clipped.shape {
+                egui::Shape::Text(text) if text.galley.text().ends_with(bond) => Some(text),
+                _ => None,
+            });
+            let text = text.expect(bond);
+            assert!(!text.galley.elided && text.visual_bounding_rect().right() <= buttons_left);
+        }
+    }
+
+    #[test]
     fn a_single_pile_has_a_point_without_interval() {
         let settings = Settings::default().with_bond(20.0).over(5e-3);
         let band = Band::of(&[(0, &vec![[0.5, 0.25]])]);
@@ -245,7 +279,8 @@ mod tests {
             figure.0.iter().map(|series| series.colour).collect::<Vec<_>>()
         };
         let of = |index| theme::world_colour(index, false);
-        assert_eq!(colours(&[weak, strong]), [of(1), of(0)]);
+        assert_eq!(colours(&[weak, strong]), [of(0), of(1)], "in the order of the worlds");
+        assert_eq!(colours(&[strong, weak]), [of(0), of(1)], "in the order of the worlds");
         assert_eq!(colours(&[weak, weak.over(1e-4)]), [of(2), of(3)], "two worlds in one series");
         assert_eq!(colours(&[weak]), [of(0), of(1)], "one world");
     }

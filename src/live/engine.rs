@@ -277,8 +277,9 @@ impl Engine {
         let now_secs = run.time_secs();
         let duration_secs =
             self.start.as_ref().map_or(f64::INFINITY, |start| start.scene.duration_secs);
-        let is_before_end = now_secs + 0.5 * run.time_step_secs() < duration_secs;
-        self.stop_at_secs = is_before_end.then_some(duration_secs);
+        // Without a next stop, a run that continues at the end of its scene would never end.
+        let passed = ((now_secs + 0.5 * run.time_step_secs()) / duration_secs).floor();
+        self.stop_at_secs = Some((passed + 1.0) * duration_secs);
         self.clock.start(now_secs);
         let is_slow = matches!(self.clock.pace, Pace::RealTime(_));
         self.mode = if is_slow && run.is_stored() && run.replays() {

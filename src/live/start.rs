@@ -33,8 +33,8 @@ pub trait StartSource: Send + 'static {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LiveStart {
-    /// The scene in its initial state. The run pauses when it reaches the duration of the scene, and the user can
-    /// continue the run.
+    /// The scene in its initial state. The run pauses when it reaches the duration of the scene. If the user continues
+    /// it, it pauses again after the same duration.
     pub scene: Scene,
     /// The configuration from which the scene can be built again.
     #[serde(with = "as_json")]

@@ -83,6 +83,9 @@ pub struct Style {
     pub legend: bool,
     /// Colours of the background, and of lines and text.
     pub theme: Theme,
+    /// Font size below which labels do not shrink in a small picture, pixels. Every picture has at least 10 pixels.
+    #[serde(skip)]
+    pub least_text_px: f32,
 }
 
 impl Default for Style {
@@ -100,6 +103,7 @@ impl Default for Style {
             scale_bar: true,
             legend: true,
             theme: Theme::Light,
+            least_text_px: 0.0,
         }
     }
 }
@@ -149,7 +153,8 @@ impl Style {
         // The font size is 16 px at 800 × 500. Larger pictures are viewed from a larger distance, but the distance
         // grows more slowly than the size.
         let side = f64::from(width).min(1.6 * f64::from(height));
-        (16.0 * (side / 800.0).sqrt()).clamp(10.0, 48.0).round() as f32
+        let usual = (16.0 * (side / 800.0).sqrt()).clamp(10.0, 48.0).round() as f32;
+        usual.max(self.least_text_px)
     }
 
     /// Returns the fraction by which the colours of grains are mixed with the colour of the background, 0 to 1; it is

@@ -430,6 +430,13 @@ fn a_step_while_the_slider_moves_is_not_the_answer_and_the_next_run_asks_nothing
     robot.until("0.3 s", |state| state.run.frame.time_secs() > 0.35);
     robot.frames(2);
     assert!(robot.shows("With 5 ms the pile had slumped by") && robot.shows("with 0.5 ms by"));
+    // A run that continues beyond the end of the scene pauses again after the same time.
+    robot.until("the end", |state| !state.run.frame.playing && state.run.frame.time_secs() > 0.99);
+    robot.type_number("Δt, time step", "0.6");
+    robot.until("as much time", |state| {
+        !state.run.frame.playing && state.run.frame.time_secs() > 1.99
+    });
+    assert!(robot.state().run.frame.time_secs() < 2.01);
     robot.click("start again when I move a slider");
     robot.type_number("Δt, time step", "0.4");
     robot.take_steps(2);

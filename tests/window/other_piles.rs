@@ -107,8 +107,10 @@ fn saved_points(robot: &mut Robot) -> Vec<(f64, (f64, f64, usize))> {
     let table = read(robot.saved());
     let point = |line: &str| {
         let cells: Vec<&str> = line.split(',').collect();
-        let [time_step, mean, half] = [2, 3, 4].map(|cell| cells[cell].parse().expect("a number"));
-        (time_step, (mean, half, cells[5].parse().expect("a count")))
+        let [time_step, mean] = [2, 3].map(|cell| cells[cell].parse().expect("a number"));
+        let count = cells[5].parse().expect("a count");
+        assert_eq!(cells[4].is_empty(), count < 3, "an interval of {count} piles: {line}");
+        (time_step, (mean, cells[4].parse().unwrap_or(f64::NAN), count))
     };
     table.lines().skip(1).map(point).collect()
 }

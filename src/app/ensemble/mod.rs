@@ -25,7 +25,7 @@ pub(crate) use pool::Released;
 pub(super) use pool::on_idle_cores;
 use pool::{EnsembleSummary, WorkerPool, idle_cores};
 pub(crate) use runs::Band;
-use runs::{others_of, pile_of};
+use runs::{LEAST_COUNT, others_of, pile_of};
 
 /// Hover text that explains the mean slump of runs from other initial states.
 const RULE: &str = "Idle cores run other piles with the present settings from their initial state on. They differ \
@@ -214,7 +214,7 @@ impl Ensemble {
 
     /// Returns a sentence that compares the mean slumps of runs from other initial states at the simulated time
     /// `time_secs`, s, under two settings: `before` and `after`. `None` if no started run has one of these settings, or
-    /// if fewer than two initial states ran under both.
+    /// if fewer than [`LEAST_COUNT`] initial states ran under both.
     pub(crate) fn effect(
         &self,
         before: &Settings,
@@ -265,11 +265,11 @@ impl Ensemble {
 
 /// Returns a text with the mean slump before and after a change of settings, and the mean difference, all three over
 /// the same initial states. `planned` is the number of initial states that will be computed. `None` if there are fewer
-/// than two so far.
+/// than [`LEAST_COUNT`] so far.
 fn effect([before, after, difference]: &[Mean; 3], planned: usize) -> Option<String> {
     const WORDS: [&str; 9] = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight"];
     let count = difference.count;
-    if count < 2 {
+    if count < LEAST_COUNT {
         return None;
     }
     let piles = match WORDS.get(count).filter(|_| count == planned) {
@@ -338,17 +338,18 @@ mod tests {
             None,
             "never released"
         );
+        ensemble.piles.push(NewPile::default());
+        assert!(said(&ensemble).is_some_and(|said| said.contains(", 3 of 4 piles each;")));
         ensemble.released[1].1 = Arc::new(band(&[0.4, 0.42]));
-        assert!(said(&ensemble).is_some_and(|said| said.contains(", 2 of 3 piles each;")));
-        ensemble.released[1].1 = Arc::new(band(&[0.4]));
-        assert_eq!(said(&ensemble), None, "one pile has no interval");
+        assert_eq!(said(&ensemble), None, "two piles have no interval");
     }
 
     #[test]
     fn numbers_come_with_their_interval_and_how_many_piles_they_are_of() {
         // Tables: t(0.975; 2) = 4.302653, and the standard error of 0.2, 0.3, 0.4 is 0.1/√3.
         assert_eq!(said(&told(&[0.2, 0.3, 0.4], None), 1.0), "other piles 0.300 ± 0.248 (n = 3)");
-        assert_eq!(said(&told(&[0.3, 0.3], None), 1.0), "other piles 0.300 ± 0.000 (n = 2 of 3)");
+        assert_eq!(said(&told(&[0.3, 0.3], None), 1.0), "other piles 0.300 (n = 2 of 3)");
+        assert_eq!(said(&told(&[0.3; 3], None), 1.0), "other piles 0.300 ± 0.000 (n = 3)");
         assert_eq!(said(&told(&[0.25], None), 1.0), "other piles 0.250 (n = 1 of 3)");
         assert_eq!(said(&told(&[], Some(2)), 0.0), "other piles: making pile 2 of 3");
         assert_eq!(said(&told(&[], None), 0.0), "other piles: none yet");

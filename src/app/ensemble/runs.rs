@@ -20,13 +20,17 @@ pub(crate) type SlumpSeries = Vec<[f64; 2]>;
 pub(crate) struct Band {
     pub times_secs: Vec<f64>,
     pub means: Vec<f64>,
-    /// Upper ends of the confidence intervals of the means; ∞ for a single run.
+    /// Upper ends of the confidence intervals of the means; ∞ for fewer than [`LEAST_COUNT`] runs.
     pub highs: Vec<f64>,
     pub count: usize,
     /// The slump curves of the runs, each with the index of its initial state among the other initial states of the
     /// scene.
     pub runs: Vec<(usize, SlumpSeries)>,
 }
+
+/// Smallest number of runs whose mean is shown with a confidence interval. Half the width of the interval of two runs is
+/// six times the difference of their slumps, so the interval says almost nothing about the mean.
+pub(super) const LEAST_COUNT: usize = 3;
 
 impl Band {
     /// Computes the mean slumps of runs that have the same settings and therefore the same times.
@@ -39,7 +43,7 @@ impl Band {
             let mean = study::mean(&slumps);
             band.times_secs.push(runs[0].1[index][0]);
             band.means.push(mean.mean);
-            band.highs.push(mean.high);
+            band.highs.push(if band.count < LEAST_COUNT { f64::INFINITY } else { mean.high });
         }
         band
     }
@@ -194,9 +198,11 @@ mod tests {
     }
 
     #[test]
-    fn one_run_has_no_interval_and_none_nothing() {
-        let band = Band::of(&[(0, &run([0.0, 1.0, 2.0]))]);
-        assert_eq!(band.at(0.5), Some((1.0, f64::INFINITY)));
+    fn one_run_and_two_have_no_interval_and_none_nothing() {
+        let run = run([0.0, 1.0, 2.0]);
+        for runs in [&[(0, &run)][..], &[(0, &run), (1, &run)]] {
+            assert_eq!(Band::of(runs).at(0.5), Some((1.0, f64::INFINITY)));
+        }
         assert_eq!(Band::of(&[]).at(0.0), None);
     }
 

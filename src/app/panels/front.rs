@@ -65,7 +65,7 @@ fn release_button(ui: &mut Ui, context: &mut PanelContext<'_>) {
     } else if frame.at_start() {
         ("▶  Start", "Let time pass (space)")
     } else if context.run.has_ended() {
-        ("▶  Continue", "The scene has reached its end: let more time pass (space)")
+        ("▶  Continue", "The scene has reached its end: let as much time pass again (space)")
     } else {
         ("▶  Resume", "Let time pass again from the visible moment (space)")
     };

@@ -15,6 +15,8 @@ use crate::app::titles::title_against;
 use crate::app::watched_run::WatchedRun;
 use crate::render::{Legend, ScaleBar, Style, scene_picture};
 
+/// Smallest font size of the labels in a simulation, points. Present mode therefore enlarges the labels.
+const LEAST_TEXT: f32 = 10.0;
 /// Height of the title of a compared simulation, points.
 const TITLE_HEIGHT: f32 = 22.0;
 /// Largest number of grains of an earlier run whose outlines are drawn. More outlines would hide the present grains.
@@ -43,13 +45,16 @@ impl ScenePanel {
         let area = ui.available_rect_before_wrap();
         ui.allocate_rect(area, Sense::hover());
         let dark = ui.visuals().dark_mode;
-        let style = shared_style(context.run, context.preferences, dark);
+        let pixels_per_point = ui.ctx().pixels_per_point();
+        let style = Style {
+            least_text_px: LEAST_TEXT * pixels_per_point,
+            ..shared_style(context.run, context.preferences, dark)
+        };
         let palette = style.theme.palette();
         fill(ui, area, theme::color32(palette.ground));
         if area.width() < 20.0 || area.height() < 20.0 {
             return;
         }
-        let pixels_per_point = ui.ctx().pixels_per_point();
         let pixels = |rect: Rect| -> [u32; 2] {
             let size = rect.size() * pixels_per_point;
             [size.x.round().max(1.0) as u32, size.y.round().max(1.0) as u32]
