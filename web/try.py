@@ -105,6 +105,18 @@ class Browser:
     def click(self, at):
         self.drag(at, at)
 
+    def press(self, name):
+        """Click a control when it has stayed at its place for half a second: new text moves controls."""
+        at = None
+        for _ in range(60):
+            told = self.told()
+            now = middle(told, name) if name in told["controls"] else None
+            if now and now == at:
+                return self.click(at)
+            at = now
+            time.sleep(0.5)
+        sys.exit(f"the control {name} does not stay at one place")
+
     def set_offline(self, is_offline):
         conditions = {"offline": is_offline, "latency": 0, "throughput": 0 if is_offline else -1}
         self.command("/chromium/network_conditions", network_conditions=conditions)
@@ -151,7 +163,7 @@ def state_of_page(options, steps):
 server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Files, directory=str(PAGE)))
 threading.Thread(target=server.serve_forever, daemon=True).start()
 address = f"http://127.0.0.1:{server.server_port}/index.html"
-browser = Browser((1280, 800))
+browser = Browser((1280, 1000))
 try:
     begun = time.time()
     browser.open(address)
@@ -169,8 +181,8 @@ try:
 
     # During the deposition of a new pile the worker receives no messages. It must be able to cancel the deposition
     # nevertheless.
-    browser.click(middle(browser.told(), "more"))
-    browser.click(middle(browser.until("the page Pile", lambda told: "new pile" in told["controls"]), "new pile"))
+    browser.press("more")
+    browser.press("new pile")
     browser.until("it rains", lambda told: told["loading"] and "cancel" in told["controls"])
     time.sleep(1)
     assert browser.told()["loading"], "the pile is there before it could be given up"

@@ -138,7 +138,7 @@ impl TrustPanel {
         (trust == Trust::No).then_some(reason)
     }
 
-    /// Shows the panel: the progress of the error budget, the reason of the verdict, the bars of the error budget, and
+    /// Shows the panel: the reason of the verdict, the progress of the error budget, the bars of the error budget, and
     /// below them the solved steps and warnings. Until the error budget has a result, the panel also shows the mean
     /// slump of runs from other initial states.
     pub(super) fn show(&mut self, ui: &mut Ui, context: &PanelContext<'_>) {
@@ -150,12 +150,12 @@ impl TrustPanel {
                 self.is_open &= !close.clicked();
             });
         });
-        // Above the text, so that the button is visible in a low window, too.
+        ui.label(RichText::new(&reason).strong());
+        // Above the bars, so that the button is visible in a low window, too.
         if let Some(work) = self.budget.as_ref().and_then(|budget| budget.work.as_ref()) {
             work.show(ui, "Error budget", "Stop", "The results so far stay.");
         }
         ScrollArea::vertical().id_salt("trust").auto_shrink([false, false]).show(ui, |ui| {
-            ui.label(RichText::new(&reason).strong());
             let answer = self.of_budget(context.run);
             if let Some(answer) = answer.as_ref().filter(|answer| !answer.effects.is_empty()) {
                 bars(ui, answer);
