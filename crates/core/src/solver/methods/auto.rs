@@ -7,8 +7,8 @@
 //! For a flowing pile Newton's method takes 12 factorisations in the median step at 138 grains and more than 100 at
 //! 2,000 grains. At 2,000 flowing grains sweeps leave a smaller error at the same cost, most of all over-relaxed sweeps.
 //! So `auto` stops Newton's method after fewer factorisations without progress if a problem is larger, and uses
-//! over-relaxed sweeps instead on a large flowing pile. With the stopping test `impulse-per-mass`, `auto` always chooses Gauss–Seidel, because studies with
-//! this test are about the error of Gauss–Seidel sweeps.
+//! over-relaxed sweeps instead on a large flowing pile. With the stopping test `impulse-per-mass`, `auto` always chooses
+//! Gauss–Seidel, because studies with this test are about the error of Gauss–Seidel sweeps.
 
 use super::newton::NewtonEffort;
 use super::{Memory, SolveReport, over_relaxed, solve_by, wedged};

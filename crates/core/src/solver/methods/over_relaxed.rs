@@ -62,3 +62,37 @@ pub(super) fn solve<M: Model>(
     };
     sweep_until_settled(problem, settings, one_sweep, |problem| residual(problem))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::SpinningPlane;
+    use crate::solver::methods::random_problem::random_problem;
+    use crate::world::FrictionCone;
+
+    #[test]
+    fn a_solution_is_a_fixed_point_of_over_relaxed_sweeps_and_other_impulses_are_not() {
+        let mut solved = 0;
+        for seed in 0..20 {
+            let law = ContactLaw::new(0.3, 0.1, FrictionCone::Shifted);
+            let mut problem = random_problem::<SpinningPlane>(seed, law, 60, 120, 3, 0.0..0.3);
+            for _ in 0..20_000 {
+                sweep::<_, false>(&mut problem);
+            }
+            let before = residual(&problem);
+            if before > 1e-11 {
+                continue;
+            }
+            solved += 1;
+            sweep_by::<_, OverRelaxed<true>, false>(&mut problem, false);
+            let after = residual(&problem);
+            assert!(after < 1e-9, "seed {seed}: {before:e}, {after:e}");
+            problem.rows.pairs[0].shifted_impulse += 1.0;
+            problem.form_velocities();
+            let moved = problem.rows.pairs[0].impulse();
+            sweep_by::<_, OverRelaxed<true>, false>(&mut problem, false);
+            assert_ne!(problem.rows.pairs[0].impulse(), moved, "seed {seed}");
+        }
+        assert!(solved >= 10, "the situation: {solved} of 20 problems are solved");
+    }
+}
